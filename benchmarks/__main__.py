@@ -25,7 +25,7 @@ from benchmarks.universe import universe
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run the benchmarks that the command line names, all of them by default."""
+    """Run the benchmarks that the command line names, or all of them."""
     contexts = contexts_here()
     suites: dict[str, Callable[[], Mapping[str, float]]] = {
         "bus": lambda: bus(contexts),

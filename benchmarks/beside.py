@@ -1,10 +1,9 @@
 """Two environments in turns: `python -m benchmarks.beside PYTHON [NAME ...] [--rounds N]`.
 
-This Python and another one, each with a checkout of cfepy installed (`pip install -e`), take the same benchmarks one
-after the other, so that what else the computer does strikes both alike. So a version is compared with the one before,
-or the kernel and the bus as sources with the same compiled. The table has the median of the ratios of all rounds, and
-from where to where they go; above 1, the other one is quicker. Rates are those of `python -m benchmarks NAME`, by the
-wall clock.
+This Python and another one, each with a checkout of cfepy installed (`pip install -e`), run the same benchmarks in
+turns, so that other load on the computer affects both alike. Use it to compare a version with the one before, or the
+kernel and the bus as sources with the same compiled. The table has the median of the ratios of all rounds, and their
+range; above 1, the other one is faster. Rates are those of `python -m benchmarks NAME`, in wall time.
 """
 
 from __future__ import annotations
@@ -24,20 +23,20 @@ NAMES = ("bus", "missions")
 ROUNDS = 5
 ROOT = "import cfepy, pathlib; print(pathlib.Path(cfepy.__file__).resolve().parents[1])"
 VERSION = "import sys; from cfepy.cli.main import main; main(['--version'])"
-SECONDS = "_s"  # ends the name of a figure that is no rate
+SECONDS = "_s"  # suffix of figures that are times, not rates
 
 Figures = dict[str, float]
 
 
 def root_of(python: str) -> Path:
-    """The checkout that is installed for a Python."""
+    """Return the checkout that is installed for a Python."""
     with tempfile.TemporaryDirectory() as elsewhere:
         done = subprocess.run([python, "-c", ROOT], cwd=elsewhere, capture_output=True, text=True, check=True)
     return Path(done.stdout.strip())
 
 
 def figures(python: str, root: Path, names: Sequence[str]) -> Figures:
-    """What the benchmarks of a checkout measure, by name."""
+    """Return the figures of a checkout's benchmarks, by name."""
     with tempfile.TemporaryDirectory() as folder:
         found = Path(folder) / "figures.json"
         command = [python, "-m", "benchmarks", *names, "--json", str(found)]
@@ -47,7 +46,7 @@ def figures(python: str, root: Path, names: Sequence[str]) -> Figures:
 
 
 def gain(figure: str, before: float, after: float) -> float:
-    """How many times better a figure is after."""
+    """Return the improvement factor of a figure."""
     return before / after if figure.endswith(SECONDS) else after / before
 
 

@@ -21,14 +21,14 @@ WIDTH = 16
 
 
 class _Silent:
-    """Event services that nobody listens to."""
+    """Event services without a listener."""
 
     def send_event_with_app_id(self, event_id: int, event_type: int, app_id: int, text: str) -> None:
         pass
 
 
 def make_bus(context: str, config: PlatformConfig | None = None) -> SoftwareBus:
-    """A bus on a kernel of its own, with a spacecraft clock; `config` in place of cFE's limits."""
+    """Return a bus on its own kernel, with a spacecraft clock. `config` replaces cFE's limits."""
     kernel, ports, config = Kernel(context, Trace()), Ports(), config or PlatformConfig()
     ports.evs, ports.memory = _Silent(), MemoryBudget(BoardProfile("linux"))  # type: ignore[assignment]
     ports.time = TimeServices(kernel, ports, config)
@@ -36,7 +36,7 @@ def make_bus(context: str, config: PlatformConfig | None = None) -> SoftwareBus:
 
 
 def packet(msg_id: int) -> bytes:
-    """A telemetry packet of 64 bytes."""
+    """Return a telemetry packet of 64 bytes."""
     return bytes(telemetry(msg_id, bytes(PACKET_BYTES - 16)))
 
 
@@ -65,7 +65,10 @@ def one_task(context: str, count: int = 300_000) -> int:
 
 
 def ping_pong(context: str, count: int = 100_000) -> int:
-    """Two tasks of one priority send each other a packet; a round trip is two messages and two task switches."""
+    """Measure two tasks of one priority that send each other a packet.
+
+    A round trip is two messages and two task switches.
+    """
     bus = make_bus(context)
     there, back = bus.create_pipe(10, "THERE"), bus.create_pipe(10, "BACK")
     bus.subscribe(0x0881, there)
@@ -88,7 +91,7 @@ def ping_pong(context: str, count: int = 100_000) -> int:
 
 
 def fan_out(context: str, count: int = 20_000) -> int:
-    """One packet into 16 pipes, all read by the task that sent it; counts deliveries."""
+    """Send one packet into 16 pipes, all read by the sending task. Counts deliveries."""
     bus = make_bus(context)
     pipes = [bus.create_pipe(10, f"PIPE{number}") for number in range(WIDTH)]
     for pipe in pipes:
@@ -106,7 +109,7 @@ def fan_out(context: str, count: int = 20_000) -> int:
 
 
 def fan_out_tasks(context: str, count: int = 5_000) -> int:
-    """One packet to 16 tasks, each waiting on its pipe; counts deliveries, each of which is a task switch."""
+    """Send one packet to 16 tasks, each waiting on its pipe. Counts deliveries, each of which is a task switch."""
     bus = make_bus(context)
     pipes = [bus.create_pipe(10, f"PIPE{number}") for number in range(WIDTH)]
     for pipe in pipes:
@@ -130,7 +133,7 @@ def fan_out_tasks(context: str, count: int = 5_000) -> int:
 
 
 def bus(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name: rates in 1/s, and ratios to the floor measured in the same run."""
+    """Return figures by name: rates in 1/s, and ratios to the floor measured in the same run."""
     figures: dict[str, float] = {"floor.queue_and_header": rate(floor.queue_and_header)}
     for context in contexts:
         figures[f"floor.hand_overs.{context}"] = rate(partial(floor.hand_overs, context))

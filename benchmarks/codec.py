@@ -1,4 +1,4 @@
-"""How fast messages are encoded and decoded, in microseconds and against a plain loop of one struct call per value."""
+"""Speed of encoding and decoding, in microseconds and relative to a plain loop with one struct call per value."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _ROUND_S = 0.003
 
 
 def codec() -> dict[str, float]:
-    """Figures by name.
+    """Return figures by name.
 
     Returns:
         for each message `<name>.pack_us` and `<name>.unpack_us`, and `<name>.ratio`: how many times faster than the
@@ -58,7 +58,7 @@ def _messages() -> dict[str, Any]:
 
 
 def _statuses(header: Any, count: int) -> Any:
-    """What an action server publishes about so many goals."""
+    """Return an action server's status message for `count` goals."""
     goal, status = message_class("actionlib_msgs/GoalID"), message_class("actionlib_msgs/GoalStatus")
     goals = [goal(genpy.Time(5, number), f"/client-{number}-5.{number:09d}") for number in range(count)]
     statuses = [status(each, 2, "It was cancelled.") for each in goals]
@@ -66,13 +66,13 @@ def _statuses(header: Any, count: int) -> Any:
 
 
 def _microseconds(call: Callable[[], object]) -> float:
-    """Best mean of many short rounds; without garbage collection, which missions have once in a while only."""
+    """Return the best mean of many short rounds, without garbage collection, which missions run rarely."""
     calls = max(1, int(_ROUND_S * 3 / timeit.timeit(call, number=3)))
     return min(timeit.repeat(call, number=calls, repeat=_ROUNDS)) / calls * 1e6
 
 
 def _decode(base: str, data: bytes, at: int) -> tuple[Any, int]:
-    """The plain decoder, the mirror of `reference.encode`."""
+    """Return the plain decoder, the mirror of `reference.encode`."""
     if base in PRIMITIVES:
         code = "<" + PRIMITIVES[base]
         return struct.unpack_from(code, data, at)[0], at + struct.calcsize(code)

@@ -1,6 +1,6 @@
-"""A compiled application against one in Python that does the same: ratios of the wall time of calls.
+"""A compiled application against an equivalent one in Python: ratios of the wall time of calls.
 
-`compiled_app/fsw/src/bench.c` also runs on NASA's cFE and says there how long it took.
+`compiled_app/fsw/src/bench.c` also runs on NASA's cFE and prints its times there.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class _Clock(Console):
 
 
 def _pieces(folder: Path, context: str) -> dict[str, float]:
-    """Seconds that each piece took."""
+    """Return seconds that each piece took."""
     clock = _Clock()
     with Mission(str(folder), tasks=context, console=clock) as flight:
         flight.run_for(FLIGHT_S)

@@ -1,4 +1,4 @@
-"""Many small nodes in one mission: how long they take to boot, and how much memory; `python -m benchmarks.crowd`."""
+"""Many small nodes in one mission: the time of their boot, and their memory; `python -m benchmarks.crowd`."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ REPEATS = 3
 
 
 def crowd(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name, of 500 nodes that publish and subscribe: seconds to boot, and MiB of the process.
+    """Return figures of 500 nodes that publish and subscribe, by name: seconds to boot, and MiB of the process.
 
-    Each run is a process of its own, so that its memory is its own; the boot of nodes that also log comes second.
+    Each run has its own process, so that its memory is measured alone. The boot of nodes that also log comes second.
     """
     figures: dict[str, float] = {}
     for context in contexts:
@@ -35,16 +35,16 @@ def crowd(contexts: tuple[str, ...]) -> dict[str, float]:
 
 
 def boot(folder: Path, nodes: int, context: str, talks: bool) -> float:
-    """Wall seconds from nothing to a mission in which every node has published once.
+    """Boot a mission until every node has published once. Returns the wall time in s.
 
     Args:
-        folder: an empty one.
+        folder: an empty folder.
         nodes: how many.
-        context: what tasks run on.
-        talks: the nodes log a line each.
+        context: kind of tasks.
+        talks: each node logs a line.
 
     Raises:
-        RuntimeError: not all of them came up.
+        RuntimeError: not all of them started.
     """
     (folder / SCRIPT.name).write_bytes(SCRIPT.read_bytes())
     lines = [f"CFE_APP, {SCRIPT.stem}, __main__, N{number}, 100, 4096, 0x0, 0;\n" for number in range(nodes)]

@@ -1,4 +1,4 @@
-"""What the same work costs without cfepy, in this process: the other side of every ratio."""
+"""The cost of the same work without cfepy, in this process: the denominator of every ratio."""
 
 from __future__ import annotations
 

@@ -11,12 +11,12 @@ from cfepy.writing.console import Console
 NODES = Path(__file__).parent / "nodes" / "frames"
 REPEATS = 5
 LINE = 100  # lookups for each line that the node prints
-START_S = 1.5  # virtual; a little later the node looks up for the first time
-LOOKING_S = 0.0002  # virtual; looking up takes none, but asking whether to go on does
+START_S = 1.5  # virtual; shortly after it, the node makes its first lookup
+LOOKING_S = 0.0002  # virtual; a lookup takes none, but checking whether to continue does
 
 
 def lookup_us(context: str) -> float:
-    """Wall time of a lookup in us."""
+    """Return the wall time of a lookup in us."""
     with Mission(str(NODES), tasks=context, console=Console(quiet=True)) as flight:
         flight.run_for(START_S)
         while not _looked(flight):
@@ -35,5 +35,5 @@ def _looked(flight: Mission) -> int:
 
 
 def frames(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Times in us of a lookup, by context."""
+    """Return times in us of a lookup, by context."""
     return {f"lookup_us.{context}": lookup_us(context) for context in contexts}

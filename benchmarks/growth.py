@@ -1,8 +1,8 @@
-"""Where cost grows: CPU time a message, by the number of nodes, pipes and tasks, of hours and of missions in a process.
+"""Growth of cost: CPU time per message, by the number of nodes, pipes and tasks, of hours and of missions in a process.
 
-`python -m benchmarks growth` has the figures. `python -m benchmarks.growth PICTURE` measures and draws them, and
-`python -m benchmarks.growth PICTURE --of FIGURES` draws what was measured before. Each size is measured in a process of
-its own, and in CPU time, which other programs on the computer disturb less than the wall clock.
+`python -m benchmarks growth` prints the figures. `python -m benchmarks.growth PICTURE` measures and draws them, and
+`python -m benchmarks.growth PICTURE --of FIGURES` draws earlier figures. Each size is measured in its own process, and
+in CPU time, which other programs on the computer disturb less than the wall clock.
 """
 
 from __future__ import annotations
@@ -34,9 +34,9 @@ BOOT_S = 1.0  # virtual; cFE's own boot takes half of it
 HZ, SLOW_HZ = 100, 10
 HOUR_S = 3600
 REPEATS = 3
-LOOK_S = 10  # virtual; a run looks for garbage so often
+LOOK_S = 10  # virtual; interval at which a run collects garbage
 MANY = 100
-NEIGHBOURS = 10  # missions of which the median is taken
+NEIGHBOURS = 10  # missions whose median counts
 
 Row = dict[int, float]
 """Microseconds of CPU a message, by size."""
@@ -44,7 +44,10 @@ Row = dict[int, float]
 
 @contextmanager
 def ring(nodes: int, hz: int, context: str) -> Iterator[Mission]:
-    """A mission in which nodes send each other messages in a circle; all of them are there, and have sent."""
+    """Run a mission whose nodes send each other messages in a circle.
+
+    When it yields, all nodes are up and have sent.
+    """
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place)
         (folder / SCRIPT.name).write_bytes(SCRIPT.read_bytes())
@@ -63,7 +66,7 @@ def ring(nodes: int, hz: int, context: str) -> Iterator[Mission]:
 
 
 def _delivered(flight: Mission) -> int:
-    """Messages of the ring that have arrived so far.
+    """Return messages of the ring that have arrived so far.
 
     Raises:
         RuntimeError: one was lost.
@@ -89,7 +92,7 @@ def nodes(size: int, context: str) -> Row:
 
 
 def hours(size: int, context: str) -> Row:
-    """Two nodes that send each other 10 messages a virtual second: the cost in each of so many virtual hours."""
+    """Return the cost in each virtual hour of two nodes that send each other 10 messages per virtual second."""
     with ring(2, SLOW_HZ, context) as flight:
         return {hour: _us_a_message(flight, HOUR_S) for hour in range(1, size + 1)}
 
@@ -214,7 +217,7 @@ KINDS: Mapping[str, tuple[Callable[[int, str], Row], tuple[int, ...], str]] = {
 
 
 def growth(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name: microseconds of CPU a message as KIND.CONTEXT.SIZE, and MiB of the process beside each."""
+    """Return figures by name: microseconds of CPU per message as KIND.CONTEXT.SIZE, each with MiB of the process."""
     figures: dict[str, float] = {}
     for kind, (_, sizes, _) in KINDS.items():
         for context in contexts:

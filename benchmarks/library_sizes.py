@@ -1,8 +1,8 @@
 """`python -m benchmarks.library_sizes`: the cost of the interface library for C++, for docs/reference/roscfe.md.
 
-Of each part all object files together, at -Os: what lies in read-only memory (code, constants, tables for exceptions)
-and what takes writable memory (initialised or not), as `size` says it; the arena of a node is not counted. The linker
-leaves out what a node does not use, and adds of the C++ library what it does.
+It adds up all object files of each part, at -Os, as `size` reports them: read-only memory (code, constants, tables for
+exceptions) and writable memory (initialised or not). The arena of a node is not counted. The linker leaves out parts
+that a node does not use, and adds the parts of the C++ library that it does use.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ PROFILES = (Profile.HOST, Profile.POOL, Profile.STRICT)
 
 
 def parts() -> dict[str, list[Path]]:
-    """Sources by part: the core, and the libraries beside it."""
+    """Return the sources by part: the core, and the libraries beside it."""
     folder = library_folder() / "src"
     found: dict[str, list[Path]] = {"core": sorted(folder.glob("*.cpp"))}
     found |= {each.name: sorted(each.glob("*.cpp")) for each in sorted(folder.iterdir()) if each.is_dir()}
@@ -35,7 +35,7 @@ def parts() -> dict[str, list[Path]]:
 
 
 def sizes(sources: Sequence[Path], profile: Profile, compiler: Sequence[str], folder: Path) -> tuple[int, int]:
-    """Bytes of read-only and of writable memory that sources take together."""
+    """Return bytes of read-only and of writable memory that sources take together."""
     messages = folder / "messages"
     write_headers(message_types(collect(sources, library_includes()).missing, shipped()), messages, profile, shipped())
     include = [f"-I{each}" for each in (messages, *library_includes())] + ["-isystem", str(headers_folder())]
@@ -52,7 +52,7 @@ def sizes(sources: Sequence[Path], profile: Profile, compiler: Sequence[str], fo
 
 
 def table() -> str:
-    """The table, a part in a row."""
+    """Return the table, a part in a row."""
     columns = [(target, profile) for target in COMPILERS for profile in PROFILES]
     lines = ["| part | " + " | ".join(f"{target}, {profile}" for target, profile in columns) + " |"]
     lines.append("|---" * (len(columns) + 1) + "|")

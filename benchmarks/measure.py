@@ -1,4 +1,4 @@
-"""Timing: the best of a few repeats, and what else the machine was doing."""
+"""Timing: the best of a few repeats, and the other load of the machine."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ REPEATS = 5
 
 
 def rate(run: Callable[[], int], repeats: int = REPEATS) -> float:
-    """The highest rate seen.
+    """Return the highest rate seen.
 
     Args:
         run: does something and returns how often it did it.
@@ -32,12 +32,12 @@ def rate(run: Callable[[], int], repeats: int = REPEATS) -> float:
 
 
 def contexts_here() -> tuple[str, ...]:
-    """The task contexts of this installation."""
+    """Return the task contexts of this installation."""
     return (THREAD, GREENLET) if has_greenlets() else (THREAD,)
 
 
 def machine() -> dict[str, object]:
-    """What the figures were measured on, and the load at the moment."""
+    """Return the machine of the measurement, and its current load."""
     load = os.getloadavg() if hasattr(os, "getloadavg") else (0.0, 0.0, 0.0)
     return {
         "python": platform.python_version(),

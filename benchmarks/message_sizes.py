@@ -1,7 +1,7 @@
-"""`python -m benchmarks.message_sizes`: what messages cost in C++, as the table of docs/reference/roscfe.md.
+"""`python -m benchmarks.message_sizes`: the cost of messages in C++, as the table of docs/reference/roscfe.md.
 
-Code is what the compiler makes of a message's length, writing and reading, at -Os, in an object file of its own: a node
-that has several types shares the parts that are the same. Memory is sizeof.
+Code is the compiled length, write and read functions of a message, at -Os, in a separate object file. A node with
+several types shares the parts that are equal. Memory is sizeof.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ bool read(Message &message, const std::uint8_t *from, std::size_t size)
 
 
 def code_size(name: str, includes: Sequence[Path], compiler: Sequence[str], folder: Path) -> int:
-    """Bytes of code and of read-only data."""
+    """Return bytes of code and of read-only data."""
     source, made = folder / "code.cpp", folder / "code.o"
     source.write_text(CODE.format(name=name, cpp=name.replace("/", "::")), encoding="utf-8")
     include = [f"-I{each}" for each in includes]
@@ -55,7 +55,7 @@ def code_size(name: str, includes: Sequence[Path], compiler: Sequence[str], fold
 
 
 def memory_of(types: Sequence[str], includes: Sequence[Path], compiler: Sequence[str]) -> dict[str, int]:
-    """sizeof of each type, which for another computer only its compiler knows."""
+    """Return sizeof of each type. For another computer, only its compiler knows it."""
     lines = [f"#include <{name}.h>" for name in types]
     lines += [
         f'extern "C" {{ char size_{number}[sizeof({name.replace("/", "::")})]; }}' for number, name in enumerate(types)
@@ -66,7 +66,7 @@ def memory_of(types: Sequence[str], includes: Sequence[Path], compiler: Sequence
 
 
 def capacities() -> Capacities:
-    """The default capacities, and `ITEMS` for each array of messages."""
+    """Return the default capacities, and `ITEMS` for each array of messages."""
     library = shipped()
     names = [f"{package}/{name}" for package in library.packages() for name in library.names(package) or ()]
     arrays = [(name, each) for name in names for each in library.spec(name).fields if each.is_array]
@@ -74,7 +74,7 @@ def capacities() -> Capacities:
 
 
 def table() -> str:
-    """The table, a type in a row."""
+    """Return the table, a type in a row."""
     columns = [(target, profile) for target in COMPILERS for profile in (Profile.HOST, Profile.STRICT)]
     cells: dict[str, list[str]] = {name: [] for name in TYPES}
     headers = shipped_files("roscfe")

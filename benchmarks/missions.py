@@ -1,4 +1,4 @@
-"""Whole missions: how many times faster than real time, messages a second from node to node, and the time of a boot."""
+"""Whole missions: the speed relative to real time, messages per second from node to node, and the time of a boot."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ REPEATS = 3
 
 
 def capture_speed(context: str) -> float:
-    """Virtual seconds a wall second of missions/capture, boot and loading of the nodes included."""
+    """Return virtual seconds per wall second of missions/capture, boot and loading of the nodes included."""
     return CAPTURE_S / min(_whole("capture", context, CAPTURE_S) for _ in range(REPEATS))
 
 
@@ -29,7 +29,10 @@ def _whole(mission: str, context: str, seconds: float) -> float:
 
 
 def publish_to_callback(context: str) -> float:
-    """JointState messages a second from a publisher in one node to a callback in another; none is lost."""
+    """Return JointState messages per second from a publisher in one node to a callback in another.
+
+    No message is lost.
+    """
     return max(_messages_per_second(context) for _ in range(REPEATS))
 
 
@@ -46,7 +49,10 @@ def _messages_per_second(context: str) -> float:
 
 
 def _counts(flight: Mission) -> tuple[int, int]:
-    """Messages delivered so far, and lost; as the nodes start, the publisher may be quicker than the subscriber."""
+    """Return the messages delivered so far, and lost.
+
+    During the start, the publisher may be ahead of the subscriber.
+    """
     assert flight.ros is not None
     msg_id = next(row.msg_id for row in flight.ros.topics() if row.name == "/joints")
     delivered, _, limited, overflown = flight.cfe.sb.routes[msg_id].totals()
@@ -54,7 +60,7 @@ def _counts(flight: Mission) -> tuple[int, int]:
 
 
 def boot_s() -> float:
-    """Wall seconds of a whole process: `cfepy run` of an empty mission for 0.6 virtual s, which ends OPERATIONAL."""
+    """Return the wall time in s of `cfepy run` of an empty mission for 0.6 virtual s, which ends OPERATIONAL."""
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "startup.scr").write_text("!\n", encoding="utf-8")
         command = [sys.executable, "-m", "cfepy", "run", folder, "--for", "0.6"]
@@ -69,7 +75,7 @@ def boot_s() -> float:
 
 
 def missions(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name: speeds in virtual seconds a wall second, rates in 1/s, times in s."""
+    """Return figures by name: speeds in virtual seconds per wall second, rates in 1/s, times in s."""
     figures = {"boot_empty_mission_s": boot_s()}
     for context in contexts:
         figures[f"capture_speed.{context}"] = capture_speed(context)

@@ -1,7 +1,7 @@
-"""cfepy beside the real things, in one run: rospy as Debian has it, and NASA's cFE where one was built.
+"""cfepy beside the originals, in one run: Debian's rospy, and NASA's cFE where one was built.
 
 `python -m benchmarks peers`, with `CFEPY_REAL_CFE=FOLDER` for NASA's: FOLDER has the executable `core-cpu1` and lies in
-the tree where it was built, as CONTRIBUTING.md says. What is not there is left out, and told.
+its build tree, as CONTRIBUTING.md describes. The program reports missing parts and leaves them out.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ HERE = Path(__file__).parent
 NODES = HERE / "nodes" / "peers"
 SOURCE = HERE / "peer_app" / "peer.c"
 STARTUP = b"CFE_APP, peer, PEER_Main, PEER, 50, 16384, 0x0, 0;\n!\n"
-PYTHON = "/usr/bin/python3"  # whose packages Debian's ROS is
+PYTHON = "/usr/bin/python3"  # Debian's ROS packages belong to it
 ROUND_TRIPS = 5000
 VIRTUAL_S = 0.2
 REPEATS = 5
@@ -39,10 +39,10 @@ LIMIT_S = 120  # wall time for NASA's
 
 
 def peers(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name, in microseconds: a round trip of rospy between two nodes, and what the Software Bus takes.
+    """Return figures in microseconds by name: a round trip of rospy between two nodes, and the Software Bus.
 
-    CPU time is that of all that takes part: for rospy both processes. NASA's cFE has one CPU, and is measured by the
-    clock that it has.
+    CPU time includes all participants: for rospy both processes. NASA's cFE has one CPU, and is measured by its own
+    clock.
     """
     figures: dict[str, float] = {}
     for context in contexts:
@@ -87,7 +87,7 @@ def _of_ros() -> dict[str, float]:
 
 @contextmanager
 def with_master() -> Iterator[dict[str, str] | None]:
-    """Around what takes part in a graph of Debian's ROS: the environment of its nodes; None where there is none."""
+    """Run a master of Debian's ROS while the block runs. Yields the environment of its nodes, or None without ROS."""
     has_ros = shutil.which("rosmaster") and not subprocess.run([PYTHON, "-c", "import rospy"], check=False).returncode
     if not has_ros:
         print("  no rospy of Debian (python3-rospy, python3-rosmaster): left out", file=sys.stderr)
@@ -102,7 +102,7 @@ def with_master() -> Iterator[dict[str, str] | None]:
 
 
 def _real_round_trip() -> tuple[float, float] | None:
-    """Microseconds of CPU time of both nodes, and of the wall clock; None without ROS."""
+    """Return the microseconds of CPU time of both nodes, and of the wall clock, or None without ROS."""
     with with_master() as environ:
         if environ is None:
             return None
@@ -120,7 +120,7 @@ def _real_round_trip() -> tuple[float, float] | None:
 
 @contextmanager
 def started(command: list[str], environ: dict[str, str]) -> Iterator[subprocess.Popen[str]]:
-    """Around a process, which is killed at the end; its output can be read."""
+    """Run a process with readable output while the block runs, and kill it at the end."""
     process = subprocess.Popen(command, env=environ, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
     try:
         yield process
@@ -136,7 +136,7 @@ def _wait_for(line: str, process: subprocess.Popen[str]) -> None:
 
 
 def _cpu_s(pid: int) -> float:
-    """CPU time of a process so far, in seconds."""
+    """Return the CPU time of a process so far, in seconds."""
     told = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     return (int(told[11]) + int(told[12])) / os.sysconf("SC_CLK_TCK")
 
@@ -162,10 +162,10 @@ def _of_nasa() -> dict[str, float]:
 
 
 def _flags(built: Path) -> list[str]:
-    """What its own sample application was compiled with.
+    """Return the compiler flags of its own sample application.
 
     Raises:
-        FileNotFoundError: it is not in the tree where it was built.
+        FileNotFoundError: the executable is not in its build tree.
     """
     found = sorted(built.parents[1].glob("**/sample_app.dir/flags.make"))
     if not found:
@@ -175,7 +175,7 @@ def _flags(built: Path) -> list[str]:
 
 
 def _flight(built: Path, folder: Path, library: bytes) -> dict[str, float]:
-    """Microseconds by what was measured."""
+    """Return the microseconds by measurement."""
     files = {"/cf/cfe_es_startup.scr": STARTUP, "/cf/peer.so": library}
     with RealCfe(built, folder, files) as cfe:
         cfe.wait(lambda: b"PEER fan_out: " in cfe.console(), "end of the measurement", LIMIT_S)

@@ -1,4 +1,4 @@
-"""What recording costs: missions/capture with a journal, against the same without."""
+"""The cost of recording: missions/capture with a journal, against the same without."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ REPEATS = 5
 
 
 def recording(contexts: tuple[str, ...]) -> dict[str, float]:
-    """CPU time of a recorded run by that of one that is not, and the journal's size in bytes a virtual second."""
+    """Return the relative CPU time of a recorded run, and the journal's bytes per virtual second."""
     figures: dict[str, float] = {}
     for context in contexts:
         plan = RunPlan(("capture",), seconds=CAPTURE_S, tasks=context)

@@ -1,8 +1,8 @@
 """A message there and back between a real rospy node and one of a mission, beside two real rospy nodes, in one run.
 
-`python -m benchmarks ros_host` needs Debian's python3-rospy, python3-rosmaster and python3-sensor-msgs. One node of
-rospy sends to two that echo, by turns: another one of rospy, and the same script as a node of a mission that has joined
-the graph in real time.
+`python -m benchmarks ros_host` needs Debian's python3-rospy, python3-rosmaster and python3-sensor-msgs. One rospy node
+sends to two echo nodes by turns: another rospy node, and the same script as a node of a mission that has joined the
+graph in real time.
 """
 
 from __future__ import annotations
@@ -14,12 +14,12 @@ from benchmarks.peers import HERE, PYTHON, started, with_master
 
 NODES = HERE / "nodes" / "ros_host"
 NAMES = ("rospy", "mission")
-SERIES, MESSAGES = 14, 50  # of each of the two
+SERIES, MESSAGES = 14, 50  # for each of the two
 LIMIT_S = 300
 
 
 def ros_host() -> dict[str, float]:
-    """Medians in microseconds of wall-clock time, and their ratio; nothing where there is no rospy of Debian."""
+    """Return medians in microseconds of wall-clock time, and their ratio; empty without Debian's rospy."""
     with with_master() as environ:
         if environ is None:
             return {}

@@ -1,6 +1,6 @@
-"""Exploring: how many schedules of missions/capture a second of CPU time runs, in this process and forked.
+"""Exploring: schedules of missions/capture per second of CPU time, in this process and forked.
 
-CPU time and not wall time, because exploring keeps every CPU busy: so much is run on each.
+It measures CPU time instead of wall time, because exploring keeps every CPU busy: each CPU runs that many.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ BOOTED = Schedule.parse("at:from=600ms")  # when the mission is OPERATIONAL, and
 
 
 def from_power_on(context: str, seconds: float) -> float:
-    """Schedules a CPU second, each from power-on to its end and the end of its nodes."""
+    """Return schedules per CPU second, each from power-on to its end and the end of its nodes."""
     spec = read_mission("capture")
     begin = _cpu_s()
     for seed in range(COUNT):
@@ -29,7 +29,7 @@ def from_power_on(context: str, seconds: float) -> float:
 
 
 def forked() -> float:
-    """Schedules a CPU second, of the first 0.2 s after the boot, which is the same for all and done once."""
+    """Return schedules per CPU second, of the first 0.2 s after the boot, which is the same for all and done once."""
     spec = read_mission("capture")
 
     def fly(schedule: LateSchedule) -> str:
@@ -38,7 +38,7 @@ def forked() -> float:
             return flight.trace.digest()
 
     begin = _cpu_s()
-    with closing(ForkServer(fly, BOOTED)) as server:  # what its processes took is known when it is closed
+    with closing(ForkServer(fly, BOOTED)) as server:  # the CPU time of its processes is known after it is closed
         digests = {server.run(Schedule("random", seed, from_ns=BOOTED.from_ns)) for seed in range(COUNT)}
     seconds = _cpu_s() - begin
     if len(digests) != COUNT:
@@ -47,7 +47,7 @@ def forked() -> float:
 
 
 def schedules(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Figures by name, in schedules a CPU second."""
+    """Return figures by name, in schedules per CPU second."""
     figures: dict[str, float] = {}
     for context in contexts:
         figures[f"power_on_to_0.2_s.{context}"] = from_power_on(context, SHORT_S)
@@ -58,7 +58,7 @@ def schedules(contexts: tuple[str, ...]) -> dict[str, float]:
 
 
 def _cpu_s() -> float:
-    """CPU time of this process and of its children that have ended."""
+    """Return the CPU time of this process and of its children that have ended."""
     return sum(os.times()[:4])
 
 

@@ -16,7 +16,7 @@ CALLING_S = 0.01  # virtual
 
 
 def call_us(context: str, *, persistent: bool) -> float:
-    """Wall time of a call in us; `persistent` keeps the connection from call to call."""
+    """Return the wall time of a call in us. `persistent` keeps the connection from call to call."""
     return min(_once(context, ("persistent",) if persistent else ()) for _ in range(REPEATS))
 
 
@@ -40,7 +40,7 @@ def _calls(flight: Mission) -> int:
 
 
 def services(contexts: tuple[str, ...]) -> dict[str, float]:
-    """Times in us of a call, by context and kind of proxy."""
+    """Return times in us of a call, by context and kind of proxy."""
     figures = {}
     for context in contexts:
         figures[f"call_us.{context}"] = call_us(context, persistent=False)

@@ -1,4 +1,4 @@
-"""What a node's universe costs: its making, its locks and queues against Python's own, and a threaded program."""
+"""The cost of a node's universe: its creation, its locks and queues against Python's own, and a threaded program."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ for thread in threads: thread.join()
 
 
 def universe(context: str = "thread") -> dict[str, float]:
-    """Figures by name.
+    """Return figures by name.
 
     Args:
         context: the task context of the kernel.
@@ -92,7 +92,7 @@ def _pass(items: Any) -> None:
 
 
 def _round_trip(kernel: Kernel) -> float:
-    """Microseconds."""
+    """Return the microseconds of a round trip."""
     made = _load(kernel, ("threading", "queue"))
     there, back = (made.importer.modules["queue"].Queue() for _ in range(2))
 
@@ -121,7 +121,7 @@ def _run(context: str) -> None:
 
 
 def _best(function: Callable[[], object], rounds: int = _ROUNDS) -> int:
-    """The shortest of several rounds in ns."""
+    """Return the shortest of several rounds in ns."""
     best = 1 << 62
     for _ in range(rounds):
         start = perf_counter_ns()

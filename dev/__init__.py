@@ -1,4 +1,4 @@
-"""Programs for those who work on cfepy; docs/reference/dev_programs.md lists them.
+"""Development programs for cfepy. docs/reference/dev_programs.md lists them.
 
-Nothing here is part of the package.
+They are not part of the installed package.
 """

@@ -1,8 +1,8 @@
-"""Ports of this computer for programs that have to be told one.
+"""Ports of this computer for programs that must be given a port number.
 
-A port that the system picks is free only for the moment: until the program opens it, anybody who opens port 0, or
-connects to somebody, may get it, and has it for another minute after the end of a connection (RFC 9293, 3.6.1). So a
-port is taken from below those that the system picks.
+A port that the system picks is free only for the moment. Until the program opens it, another process that opens port 0
+or connects to a peer may get it. That process keeps it for another minute after the end of a connection
+(RFC 9293, 3.6.1). Therefore this module takes a port below the range from which the system picks.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ _any_number = random.SystemRandom().randrange  # also where a test has set the s
 
 
 def first_picked() -> int:
-    """The lowest port that the system picks by itself."""
+    """Return the lowest port that the system may pick."""
     try:
         return int(_RANGE.read_text(encoding="utf-8").split()[0])
-    except OSError:  # of a system without it: those of macOS and Windows are higher
+    except OSError:  # other systems do not have it: macOS and Windows pick higher ports
         return USUAL_FIRST
 
 
 def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
-    """A port that nobody has, and that nobody gets who does not ask for it.
+    """Return a port that is unused, and that no process gets without asking for that number.
 
     Args:
-        kind: of its sockets, streams or datagrams.
+        kind: kind of its sockets, streams or datagrams.
     """
     while True:
         port = _any_number(LOWEST, max(first_picked(), LOWEST + 1000))

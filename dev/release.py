@@ -1,8 +1,8 @@
 """A version of cfepy made ready to publish: `python -m dev.release 0.1.0`.
 
-All is done with what git has, in a folder of its own, and the checkout is changed only when all of it went well: then
-CHANGELOG.md has the day, the commit is tagged, and `dist/` has the files. Nothing leaves this computer but what pip
-asks the package registry for; the last line that is printed is the command that uploads.
+It works on a copy of the committed files in a separate folder. It changes the checkout only after all steps succeed:
+then CHANGELOG.md has the day, the commit is tagged, and `dist/` has the files. It sends nothing except pip's requests
+to the package registry. The last line that it prints is the command that uploads.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ _UNRELEASED = "unreleased"
 
 
 def main(words: Sequence[str] | None = None) -> int:
-    """Make a version; 0 when all went well, 1 with what did not as the last line."""
+    """Make a version. Returns 0 on success, or 1 after printing the error as the last line."""
     parser = argparse.ArgumentParser(prog="python -m dev.release", description=__doc__)
     parser.add_argument("version", help="such as 0.1.0")
     parser.add_argument("--dry-run", action="store_true", help="check everything, and change nothing in the checkout")
@@ -57,15 +57,15 @@ def main(words: Sequence[str] | None = None) -> int:
 
 
 def release(root: Path, version: str, dry_run: bool) -> None:
-    """Check, build, check what was built, and tag.
+    """Check, build, check the build, and tag.
 
     Args:
         root: the checkout.
-        version: as users of pip know it.
-        dry_run: nothing in the checkout is changed.
+        version: the version for users of pip.
+        dry_run: change nothing in the checkout.
 
     Raises:
-        UsageError: what is wrong.
+        UsageError: the checkout, the version or the build is not in order.
     """
     say("the checkout")
     check_clean(root, version)
@@ -95,12 +95,12 @@ def release(root: Path, version: str, dry_run: bool) -> None:
 
 
 def say(text: str) -> None:
-    """Tell what is going on."""
+    """Print the progress."""
     print(f"== {text}", flush=True)
 
 
 def output(command: Sequence[str], folder: Path, more: Mapping[str, str] | None = None) -> str:
-    """What a command prints.
+    """Return the output of a command.
 
     Raises:
         UsageError: it failed.
@@ -125,7 +125,7 @@ def check_clean(root: Path, version: str) -> None:
 
 
 def check_version(root: Path, version: str) -> None:
-    """Refuse a version that is none, or is not what the one place says that has it."""
+    """Refuse an invalid version, or one that differs from the version in the code."""
     if not _VERSION.fullmatch(version):
         raise UsageError(f"{version} is no version such as 0.1.0 or 0.2.0rc1")
     told = ["git", "grep", "-E", '^(__version__|version) *= *"', "--", *PACKAGES, "pyproject.toml", f":!{LIBRARIES}"]
@@ -137,10 +137,10 @@ def check_version(root: Path, version: str) -> None:
 
 
 def dated(changes: str, version: str, day: str) -> str:
-    """The changelog with the day of a version, where it says that it is unreleased.
+    """Return the changelog with the day of a version, where it says that it is unreleased.
 
     Raises:
-        UsageError: it has no section of the version, an empty one, or not at the top.
+        UsageError: its section of the version is missing, empty, or not at the top.
     """
     sections = re.split(r"^## ", changes, flags=re.MULTILINE)[1:]
     mine = next((section for section in sections if section.startswith(f"[{version}] - ")), None)
@@ -158,7 +158,7 @@ def dated(changes: str, version: str, day: str) -> str:
 
 
 def export(root: Path, tree: Path) -> None:
-    """What git has of the commit, in a folder of its own."""
+    """Export the committed files into a separate folder."""
     tree.mkdir()
     archive = tree.parent / "tree.tar"
     output(["git", "archive", "--output", str(archive), "HEAD"], root)
@@ -166,15 +166,15 @@ def export(root: Path, tree: Path) -> None:
 
 
 def committed(root: Path) -> str:
-    """The time of the commit, for files that are the same whenever they are built; s since 1970."""
+    """Return the time of the commit, in s since 1970, so that each build gives the same files."""
     return output(["git", "log", "-1", "--format=%ct"], root).strip()
 
 
-# -- what is built ---------------------------------------------------------------------------------------------------
+# -- build -----------------------------------------------------------------------------------------------------------
 
 
 def tools(work: Path) -> Path:
-    """The Python of an environment that has `build` and `twine`."""
+    """Return the Python of an environment that has `build` and `twine`."""
     home = work / "tools"
     if not home.exists():
         say("tools")
@@ -184,12 +184,12 @@ def tools(work: Path) -> Path:
 
 
 def python_of(home: Path) -> Path:
-    """The interpreter of a virtual environment."""
+    """Return the interpreter of a virtual environment."""
     return home / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 
 
 def build(work: Path, tree: Path, epoch: str) -> list[Path]:
-    """The sdist, and the wheel that is built of it; both with metadata that the registry takes."""
+    """Return the sdist, and the wheel built from it. Both have metadata that the registry accepts."""
     python = str(tools(work))
     say("sdist, and a wheel of it")
     dist = work / "dist"
@@ -207,7 +207,7 @@ def build(work: Path, tree: Path, epoch: str) -> list[Path]:
 
 
 def same_wheel(work: Path, tree: Path, built: Sequence[Path]) -> None:
-    """Refuse a wheel of the sdist that is not the one of the checkout."""
+    """Refuse an sdist whose wheel differs from the wheel of the checkout."""
     say("a wheel of the checkout, to compare")
     there = work / "direct"
     output([str(tools(work)), "-m", "build", "--wheel", "--outdir", str(there), str(tree)], work)
@@ -220,13 +220,13 @@ def same_wheel(work: Path, tree: Path, built: Sequence[Path]) -> None:
 
 
 def hashes_of(wheel: Path) -> dict[str, str]:
-    """The files of a wheel with digests of what is in them."""
+    """Return the files of a wheel with digests of their contents."""
     with zipfile.ZipFile(wheel) as packed:
         return {name: hashlib.sha256(packed.read(name)).hexdigest() for name in packed.namelist()}
 
 
 def wanted_in(kind: str, tracked: Sequence[str]) -> set[str]:
-    """The files that a distribution is to have, but for its metadata.
+    """Return the files that a distribution is to have, but for its metadata.
 
     Args:
         kind: "whl" or "gz".
@@ -263,7 +263,7 @@ def check_contents(file: Path, version: str, tracked: Sequence[str]) -> None:
 
 
 def contents_of(file: Path, version: str) -> tuple[set[str], str]:
-    """The names of the files in a distribution, without its metadata; and the latter."""
+    """Return the file names in a distribution without its metadata, and the metadata."""
     if file.suffix == ".whl":
         info = f"cfepy-{version}.dist-info/"
         with zipfile.ZipFile(file) as packed:
@@ -297,7 +297,7 @@ def check_installed(home: Path, file: Path, version: str, digest: str) -> None:
 
 
 def demo_of(command: Sequence[str], folder: Path, more: Mapping[str, str]) -> str:
-    """The digest of the demonstration."""
+    """Return the digest of the demonstration."""
     return output([*command, *DEMO], folder, more).splitlines()[-1].removeprefix("trace: ")
 
 

@@ -1,7 +1,7 @@
-"""Hooks of mkdocs (`mkdocs.yml`): the site has the pages outside of docs/ as well, and links that fit where they are.
+"""Hooks of mkdocs (`mkdocs.yml`): add the pages outside of docs/ to the site, and adapt their links.
 
-The links in the repository are for readers of its files. On the site README, CONTRIBUTING and CHANGELOG are in
-project/, texts of missions and examples in folders of their own; a link to a file that is no page becomes its text.
+The links in the repository are for readers of its files. On the site, README, CONTRIBUTING and CHANGELOG are in
+project/, texts of missions and examples in folders of their own. A link to a file that is not a page becomes its text.
 """
 
 from __future__ import annotations
@@ -26,12 +26,12 @@ def pages() -> dict[str, str]:
 
 
 def slug(title: str, separator: str = "-") -> str:
-    """The anchor of a heading, as GitHub makes it."""
+    """Return the anchor of a heading, as GitHub makes it."""
     return re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", separator)
 
 
 def linked(text: str, source: str) -> str:
-    """The text of a page with links for its place on the site.
+    """Return the text of a page with links for its place on the site.
 
     Args:
         text: Markdown.

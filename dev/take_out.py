@@ -1,8 +1,8 @@
 """`python -m dev.take_out [NAME ...]`: take add-ons out of a copy of this checkout, one at a time, and fly the rest.
 
-A name is one of the folders of `cfepy/extra`, or `ros_libraries`; `all` is all of them at once. Without names each is
-taken out in turn. What is tried: the help, the check and the run of `lab`, the run of `capture`, `cfepy.boot`, and that
-a command which is gone says which add-on has it; with `--tests` also the quick tests of the rest.
+A name is one of the folders of `cfepy/extra`, or `ros_libraries`; `all` is all of them at once. Without names, each is
+taken out in turn. The program tries the help, the check and the run of `lab`, the run of `capture`, and `cfepy.boot`.
+It also checks that a removed command names its add-on. With `--tests` it also runs the quick tests of the rest.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "__pycache__", "*.so", ".*_ca
 
 
 class Tried(NamedTuple):
-    """What was tried, and what went wrong; `trouble` is empty when nothing did."""
+    """A check and its error; `trouble` is empty on success."""
 
     what: str
     trouble: str
@@ -39,8 +39,8 @@ class Copy:
     """A copy of the checkout without some add-ons.
 
     Args:
-        folder: where it is made; must not be there yet.
-        names: what is taken out.
+        folder: folder of the copy; must not exist yet.
+        names: add-ons to remove.
     """
 
     def __init__(self, folder: Path, names: Sequence[str]) -> None:
@@ -58,7 +58,7 @@ class Copy:
         return subprocess.run(command, cwd=self.folder, env=environ, capture_output=True, text=True, check=False)
 
     def flights(self) -> list[Tried]:
-        """Try what must go on without the add-ons."""
+        """Check everything that must work without the add-ons."""
         tried = [
             self._well("cfepy --help", "-m", "cfepy", "--help"),
             self._well("cfepy check lab", "-m", "cfepy", "check", "lab"),
@@ -72,7 +72,7 @@ class Copy:
         return tried
 
     def tests(self) -> list[Tried]:
-        """Run the quick tests of the rest; without all add-ons, the default tests of the computer."""
+        """Run the quick tests of the rest. Without all add-ons, run the default tests of the computer."""
         if set(NAMES) <= set(self.names):
             return [self.computer()]
         return [self._well("quick tests", *PYTEST, "-m", "quick", "tests")]
@@ -93,7 +93,7 @@ class Copy:
 
 
 def main() -> int:
-    """Take them out; the exit status is 1 if something does not go on."""
+    """Take add-ons out and check. Returns exit status 1 if a check fails."""
     parser = argparse.ArgumentParser(prog="python -m dev.take_out", description=__doc__)
     parser.add_argument(
         "names", metavar="NAME", nargs="*", help=f"{', '.join(NAMES)}, or {ALL} (default: each in turn)"

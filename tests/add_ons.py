@@ -1,6 +1,6 @@
-"""Which tests need which add-ons: those of an add-on that was taken out of a copy of the checkout are not collected.
+"""The add-ons that tests need. Tests of an add-on that was taken out of a copy of the checkout are not collected.
 
-`tests/extra/NAME` needs the add-on NAME; the table has every other file and folder that needs one. The program
+`tests/extra/NAME` needs the add-on NAME. The table has every other file and folder that needs one. The program
 `python -m dev.take_out --tests` takes add-ons out and runs the rest, so a file that the table lacks fails there.
 """
 

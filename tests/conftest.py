@@ -1,4 +1,5 @@
-"""What all tests share: both cores, the quick loop, and no clock that could fail a test on a busy machine."""
+"""Common configuration of all tests: both cores, the quick loop, and no clock that could fail a test on a busy
+machine."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ from hypothesis import settings
 from cfepy.interpreter.garbage import collect_every
 from cfepy.interpreter.host_system import ending_signals
 
-# What tests share says as much when it fails, and is not left out by python -O.
+# Helpers of tests report failures in the same detail, and python -O does not remove their assertions.
 pytest.register_assert_rewrite(
     "dev", *(f"tests.{each.stem}" for each in Path(__file__).parent.iterdir() if each.stem.isidentifier())
 )
@@ -22,7 +23,7 @@ pytest.register_assert_rewrite(
 from tests import quick  # noqa: E402
 from tests.add_ons import MISSING, lacks_add_on  # noqa: E402
 
-pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # the latter has this name when it is installed, too
+pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # an installed plugin has this name, too
 
 settings.register_profile("cfepy", settings.default, deadline=None)
 settings.load_profile("cfepy")
@@ -32,7 +33,7 @@ METER = "dev.costs.meter"
 RUNS_IN_MEMORY = 8  # missions that are over, before garbage is looked for
 collect_every(RUNS_IN_MEMORY)
 ENDING = tuple(ending_signals())
-signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell gives it ignored to what it runs in the background
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in background commands
 
 if sys.dont_write_bytecode:  # each process that a test starts would compile all of cfepy, and each run all tests
     CACHE = Path(__file__).parents[1] / ".pytest_cache" / "bytecode"
@@ -43,7 +44,7 @@ if sys.dont_write_bytecode:  # each process that a test starts would compile all
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_cmdline_main(config: pytest.Config) -> None:
-    """Runs of the whole suite use all cores, where pytest-xdist is at hand and nobody wants to look on."""
+    """Use all cores for runs of the whole suite, if pytest-xdist is installed and no option requires one process."""
     option = config.option
     whole = all(Path(config.invocation_params.dir, arg).resolve() == Path(__file__).parent for arg in config.args)
     looked_at = option.usepdb or option.trace or option.capture == "no" or option.collectonly
@@ -62,7 +63,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
 
 @pytest.fixture(autouse=True)
 def _nobody_is_followed() -> Iterator[None]:
-    """A debugger of a mission that went on after it would make all that comes in its process slow."""
+    """Assert that no debugger of a mission is still active, which would slow down the whole process."""
     yield
     owner = getattr(sys.gettrace(), "__self__", None)
     assert type(owner).__name__ != "AppDebugger"
@@ -70,7 +71,7 @@ def _nobody_is_followed() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def _signals_are_answered_as_before() -> Iterator[None]:
-    """After a test that left another answer, Ctrl-C would not reach the tests that come after it."""
+    """Fail a test that leaves other signal handlers, after restoring them: later tests need Ctrl-C."""
     before = {each: signal.getsignal(each) for each in ENDING}
     yield
     after = {each: signal.getsignal(each) for each in ENDING}
@@ -81,8 +82,8 @@ def _signals_are_answered_as_before() -> Iterator[None]:
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
-    """Do not even import files that need an add-on which is not here, nor those of which this run has no test."""
-    named = any("::" in word for word in config.args)  # then the marks say nothing about whole files
+    """Skip the import of files that need a missing add-on, and of files without a test in this run."""
+    named = any("::" in word for word in config.args)  # then the marks do not apply to whole files
     is_vain = not named and quick.is_read_in_vain(collection_path, config.getoption("markexpr"))
     return True if is_vain or lacks_add_on(collection_path.relative_to(TESTS).as_posix()) else None
 
@@ -94,14 +95,14 @@ def test_of(item: pytest.Item) -> str:
 
 @pytest.hookimpl(wrapper=True, tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, None, None]:
-    """Mark the tests of the quick loop, and see whether the table of costs is about the tests that there are."""
+    """Mark the tests of the quick loop, and check that the table of costs only lists existing tests."""
     if MISSING:
         items[:] = [item for item in items if not lacks_add_on(test_of(item))]
     for item in quick.quick_ones(items):
         item.add_marker(quick.MARK)
     if not any("::" in word for word in config.args) and not config.getoption("lf", False):
         config.stash[quick.STALE] = quick.stale_lines(items)
-    if not config.pluginmanager.hasplugin(METER):  # which measures them, too
+    if not config.pluginmanager.hasplugin(METER):  # the meter measures them, too
         for item in quick.slow_ones(items):
             item.add_marker(quick.SLOW)
     yield

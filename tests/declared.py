@@ -1,4 +1,4 @@
-"""Checks of what a service or an app declares for the ground: complete, and with the bytes of recorded packets."""
+"""Checks of the ground declarations of a service or an app: complete, and with the bytes of recorded packets."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ REAL = json.loads((Path(__file__).parent / "data" / "packets.json").read_text(en
 
 
 def assert_complete(packets: ModuleType) -> None:
-    """Every function code has its command, from 0 on; names are unique and NASA's, texts are sentences.
+    """Assert that every function code from 0 has its command, names are unique and NASA's, and texts are sentences.
 
     Args:
         packets: the module with `COMMANDS`, `TELEMETRY`, constants `*_MID`, and `*_CC` if it names its function codes.

@@ -13,7 +13,7 @@ DATA = Path(__file__).parent / "data"
 
 
 class CField(NamedTuple):
-    """A field of a C struct; `type` is C's, with "[N]" for an array."""
+    """A field of a C struct. `type` is C's, with "[N]" for an array."""
 
     name: str
     offset: int
@@ -31,7 +31,7 @@ class CStruct(NamedTuple):
 
 @cache
 def c_structs() -> dict[str, CStruct]:
-    """Every struct of the file, by name."""
+    """Return every struct of the file, by name."""
     found: dict[str, CStruct] = {}
     for block in (DATA / "layouts.txt").read_text(encoding="utf-8").replace("\n  ", "\t").splitlines():
         head, *rows = block.split("\t")

@@ -1,7 +1,7 @@
-"""A network of one's own for a test that needs certain ports: a Linux network namespace with nothing but loopback.
+"""A separate network for a test that needs certain ports: a Linux network namespace with nothing but loopback.
 
-`python -m tests.own_network MODULE WORD...` raises the loopback interface and runs a module in it; `run_in_own_network`
-starts that with `unshare`, which needs no rights where user namespaces are allowed.
+`python -m tests.own_network MODULE WORD...` raises the loopback interface and runs a module in it. `run_in_own_network`
+starts that with `unshare`, which needs no rights if user namespaces are allowed.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 UNSHARE = ("unshare", "--user", "--map-root-user", "--net")
-PATIENCE_S = 300  # for what would wait for ever
+PATIENCE_S = 300  # limit for a program that would wait forever
 SIOCSIFFLAGS, IFF_UP = 0x8914, 1
 
 
@@ -36,13 +36,13 @@ needs_own_network = pytest.mark.skipif(not _is_allowed(), reason="this system le
 
 
 def run_in_own_network(module: str, *words: object, cwd: Path, patience_s: float = PATIENCE_S) -> str:
-    """Run a module with `__main__` in a network of its own; what it printed.
+    """Run a module with `__main__` in a network of its own. Returns its output.
 
     Args:
         module: such as "tests.ground.page_flight".
         words: its arguments.
         cwd: its working folder.
-        patience_s: after how many seconds it is held to wait for ever.
+        patience_s: limit in seconds, after which it counts as waiting forever.
     """
     command = [*UNSHARE, sys.executable, "-m", __name__, module, *map(str, words)]
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONUNBUFFERED": "1"}

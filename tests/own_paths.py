@@ -1,4 +1,4 @@
-"""Which texts name cfepy's own source files, wherever the checkout, the user's folder and the temporary files are."""
+"""Texts that name cfepy's own source files, with any place of the checkout, the user's folder and temporary files."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The quick loop: `python -m pytest -m quick`, all tests that cost little, after a change and before the whole suite.
 
-A test is in it unless it is a slow one or stands in the table of costs, `tests/costs.tsv`, which `python -m dev.costs`
-measures and writes. A new test is in it until it was measured.
+A test belongs to it unless it is slow or in the table of costs, `tests/costs.tsv`, which `python -m dev.costs`
+measures and writes. A new test belongs to it until it is measured.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ STALE = pytest.StashKey[list[str]]()
 
 
 def is_dear(path: Path) -> bool:
-    """Whether no test of a file is in the quick loop, which need not be read then."""
+    """Return whether no test of a file is in the quick loop, so that the file need not be read."""
     return _name_of(path) in TABLE.costs
 
 
@@ -32,7 +32,10 @@ def _name_of(path: Path) -> str:
 
 
 def is_read_in_vain(path: Path, marks: str) -> bool:
-    """Return whether a run of tests with `-m MARKS` has no test of a file: to import all files takes ten seconds."""
+    """Return whether a run of tests with `-m MARKS` needs no test of a file.
+
+    Importing all files would take ten seconds.
+    """
     if marks == MARK and is_dear(path):
         return True
     if marks not in (MARK, SLOW, f"not {SLOW}") or not path.name.startswith("test_") or not path.is_file():
@@ -49,12 +52,12 @@ def slow_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
 
 
 def quick_ones(tests: Iterable[pytest.Item]) -> Iterator[pytest.Item]:
-    """The tests of the quick loop."""
+    """Return the tests of the quick loop."""
     return (test for test in tests if not test.get_closest_marker("slow") and test.nodeid not in TABLE)
 
 
 def stale_lines(tests: Iterable[pytest.Item]) -> list[str]:
-    """The lines of the table that stand for none of the tests, which are all of their files."""
+    """Return the lines of the table that stand for none of the tests, which are all of their files."""
     names = [test.nodeid for test in tests if not test.get_closest_marker("slow")]
     known = {name for test in names for name in (test, function_of(test), file_of(test))}
     files = {file_of(name) for name in names}

@@ -10,7 +10,7 @@ from cfepy.status import CfeError
 
 
 def status_of(call: Callable[..., object], *arguments: object) -> int:
-    """The status of a call that must fail."""
+    """Return the status of a call that must fail."""
     with pytest.raises(CfeError) as caught:
         call(*arguments)
     return caught.value.status

@@ -1,4 +1,4 @@
-"""The table of the tests that need add-ons: each line is about tests and add-ons that there are."""
+"""The table of the tests that need add-ons: each line names existing tests and add-ons."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Each public name of cFE, OSAL and PSP is here or explained, and docs/reference/generated/api_map.md lists it."""
+"""Each public name of cFE, OSAL and PSP exists or is explained, and docs/reference/generated/api_map.md lists it."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from dev.pages import api_map
 from dev.pages.api_names import snake
 from tests.extra.c.building import needs_compiler
 
-pytestmark = needs_compiler  # the engine knows what it answers itself
+pytestmark = needs_compiler  # the engine has the list of its own functions
 
 
 @pytest.fixture(scope="module")
 def mission() -> Iterator[Mission]:
-    """A booted mission, on whose handle names are looked up."""
+    """Return a booted mission, on whose handle names are looked up."""
     with api_map.booted() as made:
         assert made.booted is not None
         yield made

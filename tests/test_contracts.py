@@ -1,4 +1,4 @@
-"""The contracts of `pyproject.toml`, which import-linter checks: what the core must not import."""
+"""The contracts of `pyproject.toml`, which import-linter checks: modules that the core must not import."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def contract(beginning: str) -> dict[str, Any]:
 
 
 def above(parts: tuple[str, ...], base: int = GROUND_FLOOR) -> set[str]:
-    """The packages that stand neither among the parts nor on the ground floor, as contracts name them."""
+    """Return the packages that are neither parts nor on the ground floor, by their names in contracts."""
     own = {part for part, level in LEVEL.items() if level > base and part not in parts}
     shown = {f"cfepy.{part}" for part in own if (ROOT / "cfepy" / part).exists()}
     shown |= {f"cfepy.{part}" for part in own if (ROOT / "cfepy" / f"{part}.py").exists() and not part.startswith("__")}

@@ -1,4 +1,4 @@
-"""What core applications have in common: their loop and their answers."""
+"""Common parts of core applications: their loop and their answers."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cfepy.ports import DEBUG, ERROR, INFORMATION, PEND_FOREVER, SYSTEM_CORE_REA
 
 
 class Peers:
-    """ES, EVS and SB, which note down what they are asked."""
+    """ES, EVS and SB, which record their calls."""
 
     def __init__(self, *packets: bytes | None) -> None:
         self.noted: list[Any] = []

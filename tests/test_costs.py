@@ -1,4 +1,4 @@
-"""The table of costs: it says much in few lines, all of them are about tests that there are, and none is too dear."""
+"""The table of costs: it is compact, all lines name existing tests, and no test is too expensive."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The programs of dev/: a page lists them all, each says what it is for, and none needs the tests or is among them."""
+"""The programs of dev/: a page lists them all, each states its purpose, and none needs the tests or is among them."""
 
 from __future__ import annotations
 
@@ -38,13 +38,13 @@ _GUARD = re.compile(r"^if __name__ == .__main__.:", re.MULTILINE)
 
 
 def file_of(program: str) -> Path:
-    """The file of a program: a module, or the `__main__.py` of a package."""
+    """Return the file of a program: a module, or the `__main__.py` of a package."""
     path = ROOT.joinpath(*program.split("."))
     return path / "__main__.py" if path.is_dir() else path.with_suffix(".py")
 
 
 def programs() -> Iterator[str]:
-    """What can be run: `__main__.py` of packages, and modules that ask whether they are the main one."""
+    """Yield the runnable programs: `__main__.py` of packages, and modules that check whether they are the main one."""
     for path in sorted(DEV.rglob("*.py")):
         name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
         if path.name == "__main__.py" or _GUARD.search(path.read_text(encoding="utf-8")):
@@ -74,7 +74,7 @@ def test_a_program_says_what_it_is_for(
 
 
 def imported(path: Path) -> Iterator[str]:
-    """The uppermost packages of what a file imports."""
+    """Yield the top-level packages that a file imports."""
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         names = [node.module or ""] if isinstance(node, ast.ImportFrom) else []
         names += [each.name for each in node.names] if isinstance(node, ast.Import) else []
@@ -86,7 +86,7 @@ def test_no_program_needs_the_tests() -> None:
 
 
 def test_the_tests_have_no_programs() -> None:
-    """But for what tests start, and scripts of ROS nodes, which say which Python is theirs."""
+    """Exceptions are programs that tests start, and scripts of ROS nodes, which name their own Python."""
     texts = {path: path.read_text(encoding="utf-8") for path in TESTS.rglob("*.py")}
     guarded = {path for path, text in texts.items() if _GUARD.search(text) and not text.startswith("#!")}
     guarded |= set(TESTS.rglob("__main__.py"))

@@ -1,4 +1,4 @@
-"""The documentation: links lead somewhere, commands can be given as they stand, nothing goes stale unnoticed."""
+"""The documentation: links have targets, commands work unchanged, and generated parts are up to date."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ each_document = pytest.mark.parametrize("path", DOCS, ids=lambda path: str(path.
 
 
 def anchors(path: Path) -> set[str]:
-    """The anchors that GitHub makes of headings."""
+    """Return the anchors that GitHub makes of headings."""
     titles = HEADING.findall(FENCE.sub("", path.read_text(encoding="utf-8")))
     return {re.sub(r"[^\w\- ]", "", title.lower()).replace(" ", "-") for title in titles}
 
@@ -36,7 +36,7 @@ def broken(path: Path, link: str) -> bool:
 
 
 def commands(path: Path) -> Iterator[list[str]]:
-    """The `cfepy` commands in a document's code blocks, split into words."""
+    """Yield the `cfepy` commands in a document's code blocks, split into words."""
     for block in FENCE.findall(path.read_text(encoding="utf-8")):
         for line in block.splitlines():
             for command in line.removeprefix("$ ").split(" && "):
@@ -46,7 +46,7 @@ def commands(path: Path) -> Iterator[list[str]]:
 
 
 def is_understood(words: list[str]) -> bool:
-    """Whether `cfepy` takes this command line."""
+    """Return whether `cfepy` takes this command line."""
     try:
         cli.parser_for(words).parse_args(words)
     except SystemExit as stopped:

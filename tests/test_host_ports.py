@@ -1,4 +1,4 @@
-"""Ports for programs that are told one."""
+"""Ports for programs that must be given one."""
 
 from __future__ import annotations
 

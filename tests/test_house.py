@@ -1,4 +1,4 @@
-"""The measure of the house: it finds what is hidden, and the pictures in docs are those of this tree."""
+"""The measurements of the architecture: they find hidden dependencies, and the pictures in docs match this tree."""
 
 from __future__ import annotations
 
@@ -117,7 +117,7 @@ def test_the_pictures_are_those_of_this_tree(path: Path) -> None:
 
 
 def test_each_package_names_its_central_file() -> None:
-    """Packages below the names that a design speaks of, and those that are an app each, say it for themselves."""
+    """Exceptions are packages below the names that a design uses, and packages that are an app each."""
     tree = the_tree()
     for module in tree.modules.values():
         top, *rest = module.name.split(".")

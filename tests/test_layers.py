@@ -19,7 +19,7 @@ from dev.house.tree import ROOT, Module, Tree, the_tree
 
 LONGEST = 600  # lines of a module: more than that is more than one idea
 PAST_FACES = 61  # pairs of modules that meet past the face of a package
-ONE_USER = 53  # modules that only one other imports, and that are no protocol, table of facts or entry point
+ONE_USER = 53  # modules that only one other imports, except for protocols, tables of facts and entry points
 CIRCLES_OF_TYPES = 4  # groups of modules that know each other's types
 NAMED_TWICE = 50  # names of modules that stand for two, but for the patterns of `figures.modules_named_twice`
 ENTRIES = 39  # modules and packages right below cfepy/
@@ -154,7 +154,10 @@ def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
 
 @pytest.mark.slow
 def test_libraries_are_code_of_nodes(tree: Tree) -> None:
-    """They run in a node's universe, with its rospy and its clock: they import what a node does, none of the house."""
+    """They run in a node's universe, with its rospy and its clock.
+
+    They import the modules of nodes, none of the house.
+    """
     libraries = ROOT / "ros_libraries"
     others = {folder.name for folder in libraries.iterdir()} | {path.stem for path in TOOLS.glob("*.py")}
     others |= {"rospy", "genpy", "lz4", "zstandard", "numpy", "yaml"}
@@ -181,7 +184,8 @@ def test_numpy_and_test_libraries_are_imported_lazily(tree: Tree) -> None:
 
 
 def is_imported_late(path: Path) -> bool:
-    """The display and the screen are themselves imported only when needed; so are the tools for tests, by tests."""
+    """Return whether a module is imported late: the display and the screen only when needed, tools for tests by
+    tests."""
     return (
         (path.name in {"display.py", "screen.py", "tables.py"} and "cli" in path.parts)
         or path.name == "in_tests.py"
@@ -189,7 +193,7 @@ def is_imported_late(path: Path) -> bool:
     )
 
 
-# -- what is printed ---------------------------------------------------------------------------------------------------
+# -- output ------------------------------------------------------------------------------------------------------------
 
 PRINT_PAST = {
     "cfepy.writing.escapes": "it is the place",
@@ -208,7 +212,7 @@ _PAST_NAMES = {"raw", "for_data", "__stdout__", "__stderr__"}
 
 
 def ways_past(tree: ast.AST) -> Iterator[str]:
-    """What in a module writes past the safe streams, or makes a stream that is not safe."""
+    """Yield statements of a module that write past the safe streams, or make an unsafe stream."""
     for node in ast.walk(tree):
         if isinstance(node, ast.ImportFrom) and node.module == "cfepy.writing.escapes":
             yield from (each.name for each in node.names if each.name in _PAST_NAMES)

@@ -1,4 +1,4 @@
-"""The door for add-ons: what is installed, what is missing, and add-ons of other packages."""
+"""The door for add-ons: installed ones, missing ones, and add-ons of other packages."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Give = Callable[..., "subprocess.CompletedProcess[str]"]
 
 
 def offer(folder: Path, name: str, value: str) -> None:
-    """Write what pip writes of an installed package with an add-on."""
+    """Write the metadata that pip writes for an installed package with an add-on."""
     about = folder / f"cfepy_{name}-1.0.dist-info"
     about.mkdir()
     (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: cfepy-{name}\nVersion: 1.0\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The face of the library: what runs, what type checkers see, what is written down, and what is loaded."""
+"""The public API of the library: names at run time, names for type checkers, documentation, and loaded modules."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_everything_is_documented(name: str) -> None:
 
 @needs_docstrings
 def test_the_options_are_those_of_a_plan() -> None:
-    """Each attribute of a plan is an option, but for what the mission itself says."""
+    """Each attribute of a plan is an option, except for those that the mission defines."""
     from cfepy.pilot import RunPlan
 
     options = set(cfepy.RunOptions.__annotations__)

@@ -1,4 +1,4 @@
-"""The samples of output in README: what is printed there is what the commands print."""
+"""The samples of output in README equal the output of the commands."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ HOW_LONG = re.compile(r"in [\d.]+ s: [\d.]+ x real time, board linux, \w+ tasks"
 
 
 def sample(first: str) -> list[str]:
-    """The lines of the code block that begins with a line."""
+    """Return the lines of the code block that begins with a line."""
     block = next(each for each in re.findall(r"^```\w*\n(.*?)^```", README, re.M | re.S) if each.startswith(first))
     return block.splitlines()
 
 
 def masked(line: str) -> str:
-    """A line without what depends on the computer."""
+    """Return a line without parts that depend on the computer."""
     line = re.sub(r"^trace: .*", "trace: ...", HOW_LONG.sub("in so long", line))
     return re.sub(r" +", " ", line).rstrip()
 
 
 def missing(lines: list[str], printed: str) -> Iterator[str]:
-    """The lines that are not printed, or only before one that stands above them; `...` stands for any lines."""
+    """Yield the lines that are not printed, or only before a line above them; `...` stands for any lines."""
     left = [masked(line) for line in printed.splitlines()]
     for line in map(masked, lines):
         if line.strip() == LEFT_OUT:

@@ -1,4 +1,4 @@
-"""The documentation as a site: links fit where pages are there, and mkdocs has nothing to complain of."""
+"""The documentation as a site: links fit the places of its pages, and mkdocs reports no problem."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""CI_LAB, the command ingest app: what arrives at UDP port 1234 goes onto the Software Bus. NASA's ci_lab v7.0.0."""
+"""CI_LAB, the command ingest app: puts datagrams from UDP port 1234 on the Software Bus. NASA's ci_lab v7.0.0."""
 
 from __future__ import annotations
 

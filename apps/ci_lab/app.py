@@ -22,7 +22,7 @@ MAIN_TASK_PERF_ID = 32
 
 
 def CI_LAB_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(MAIN_TASK_PERF_ID)
     app = CommandIngest(cfe)
     try:
@@ -36,7 +36,7 @@ def CI_LAB_AppMain(cfe: Cfe) -> None:
 
 
 class CommandIngest:
-    """CI_LAB's command counters and pipe; what arrives from the ground is `uplink`'s."""
+    """CI_LAB's command counters and pipe. `uplink` handles datagrams from the ground."""
 
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe
@@ -48,10 +48,12 @@ class CommandIngest:
         self._commands.handle(pk.READ_UPLINK, self._read_uplink, any_length=True)
 
     def start(self) -> None:
-        """Everything before the first message; what fails is reported, and the app goes on without it.
+        """Prepare everything before the first message.
+
+        Failures are reported, and the app continues without the failed part.
 
         Raises:
-            CfeError: there is no pipe, without which the app would only spin.
+            CfeError: the pipe is missing, and the app would only spin without it.
         """
         cfe = self._cfe
         try:
@@ -82,7 +84,7 @@ class CommandIngest:
                 cfe.evs.send_err(event_id, f"Error subscribing to SB {what}, RC = {error.hex}")
 
     def wait(self) -> None:
-        """Do one message or wait half a second; then look at the socket, unless a scheduler says when."""
+        """Handle one message or wait half a second. Then read the socket, unless a scheduler controls that."""
         packet = self._cfe.sb.receive_buffer(self._pipe, WAKEUP_MS)
         self._cfe.es.perf_log_entry(MAIN_TASK_PERF_ID)
         if packet is not None:
@@ -91,7 +93,7 @@ class CommandIngest:
             self._uplink.read()
 
     def _handle(self, packet: bytes) -> None:
-        """Do a message. A function code that does not exist goes unnoticed, as in NASA's code."""
+        """Handle a message. An unknown function code is ignored, as in NASA's code."""
         done = self._commands.dispatch(packet)
         if done.outcome == BAD_LENGTH:
             self._rejected += 1

@@ -1,4 +1,4 @@
-"""CI_LAB's socket: reading datagrams, checking them, sending them on (ci_lab_app.c, ci_lab_passthru_decode.c)."""
+"""CI_LAB's socket: read datagrams, check them, send them on (ci_lab_app.c, ci_lab_passthru_decode.c)."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ SOCKET_RCV_PERF_ID = 33
 
 
 class Uplink:
-    """The socket at which commands arrive.
+    """The socket that receives commands.
 
     Attributes:
         is_open: whether it is bound.
-        packets, errors: datagrams that were taken for a packet, and those that were not.
+        packets, errors: datagrams that were accepted as packets, and those that were not.
     """
 
     def __init__(self, cfe: Cfe) -> None:
@@ -31,7 +31,7 @@ class Uplink:
         self.packets = self.errors = 0
 
     def open(self, port: int) -> None:
-        """Bind the socket, or tell why that is impossible."""
+        """Bind the socket, or report why that is impossible."""
         cfe = self._cfe
         try:
             self._socket = cfe.os.socket_open(OS_SocketDomain_INET, OS_SocketType_DATAGRAM)
@@ -49,13 +49,13 @@ class Uplink:
         cfe.es.write_to_sys_log(f"CI_LAB listening on UDP port: {port}")
 
     def close(self) -> None:
-        """What happens when the app's task is deleted."""
+        """Close the socket when the app's task is deleted."""
         self._cfe.os.printf("CI delete callback -- Closing CI Network socket.\n")
         with suppress(OsalError):  # it may never have been opened
             self._cfe.os.close(self._socket)
 
     def read(self) -> None:
-        """Send on what has arrived, eleven datagrams at most."""
+        """Send on the received datagrams, eleven at most."""
         for _ in range(MAX_PACKETS):
             received = self._cfe.os.socket_recv_from(self._socket, MAX_INGEST, OS_CHECK)
             if received is None or not received[0]:  # an empty datagram ends this round, as in NASA's code
@@ -67,7 +67,7 @@ class Uplink:
                 self._cfe.evs.send_err(ev.INGEST_SEND_ERR_EID, f"CI_LAB: Ingest failed, status={status}\n")
 
     def _ingest(self, data: bytes) -> int | None:
-        """Check a datagram and put it on the bus as it is; a status when that failed."""
+        """Check a datagram and put it on the bus unchanged. Returns a status if that failed."""
         size = self._size_of(data)
         if size is None:
             self.errors += 1
@@ -80,7 +80,7 @@ class Uplink:
         return None
 
     def _size_of(self, data: bytes) -> int | None:
-        """Bytes of the packet as its header says; None when the datagram is too short for that."""
+        """Return the packet size in bytes according to its header, or None if the datagram is too short for that."""
         size = get_size(data) if len(data) >= CMD_HEADER_SIZE else None
         if size is None:
             text = f"CI: cmd dropped, bad packet length={len(data)}\n"

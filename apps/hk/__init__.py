@@ -1,7 +1,7 @@
-"""HK, the housekeeping app: collects parts of other apps' telemetry into combined packets, as its copy table says.
+"""HK, the housekeeping app: collects parts of other apps' telemetry into combined packets, defined by its copy table.
 
-NASA's HK v7.0.0. Its event ids and texts, packets and table formats are NASA's. What NASA chooses when HK is compiled,
-to discard combined packets that lack data, is here an argument of `run`, for a mission's own entry point.
+NASA's HK v7.0.0. Its event ids and texts, packets and table formats are NASA's. NASA's compile-time option to discard
+combined packets that lack data is an argument of `run` here, for a mission's own entry point.
 """
 
 from __future__ import annotations

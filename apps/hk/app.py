@@ -31,7 +31,7 @@ POOL_BYTES = 6144
 
 
 def HK_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     run(cfe)
 
 
@@ -55,7 +55,7 @@ def run(cfe: Cfe, discard_incomplete: bool = False) -> None:
 
 
 class HkApp:
-    """HK's counters, pipe, pool and tables; arguments as of `run`."""
+    """HK's counters, pipe, pool and tables. The arguments are those of `run`."""
 
     def __init__(self, cfe: Cfe, discard_incomplete: bool) -> None:
         self._cfe = cfe
@@ -75,10 +75,10 @@ class HkApp:
     # --- start ---
 
     def start(self) -> None:
-        """Everything before the first message.
+        """Prepare everything before the first message.
 
         Raises:
-            CfeError: a service refused; an event, or the system log, says so.
+            CfeError: a service refused; an event, or the system log, reports it.
         """
         cfe = self._cfe
         try:
@@ -197,7 +197,7 @@ class HkApp:
     # --- tables ---
 
     def _look_after_tables(self) -> None:
-        """Do what the ground asked for of either table; when a service refuses, HK ends."""
+        """Perform pending ground requests for either table. If a service refuses, HK ends."""
         try:
             self._look_after_copy_table()
             self._look_after_runtime_table()
@@ -221,7 +221,7 @@ class HkApp:
             self._combiner.use_table(entries)
 
     def _validate_copy_table(self) -> None:
-        """Have a new table checked; that this fails is told, and no reason for HK to end."""
+        """Validate a new table. HK reports a failure and continues."""
         try:
             _expect_success(self._cfe.tbl.validate(self._copy_table))
         except CfeError as error:
@@ -239,7 +239,7 @@ class HkApp:
 
     @contextmanager
     def _reporting(self, event_id: int, text: str, separator: str = ",") -> Iterator[None]:
-        """Send an error event when a service refuses what is done inside."""
+        """Send an error event if a service refuses a call inside the block."""
         try:
             yield
         except CfeError as error:

@@ -1,4 +1,4 @@
-"""What is in a combined packet: the copy table says it, so the declaration follows from the table, for tools."""
+"""The content of combined packets as a declaration for tools. It follows from the copy table."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class _Piece(NamedTuple):
 
 
 def combined_telemetry(table: bytes | memoryview, known: Mapping[int, Telemetry]) -> list[Telemetry]:
-    """The combined packets of a copy table; fields have the names of the packets and fields that they are copies of.
+    """Return the combined packets of a copy table. Fields have the names of the packets and fields that they copy.
 
-    What of a packet is no whole field of it, or comes from one whose layout is not declared, is bytes.
+    Parts of a packet that are not a whole field, or whose packet has no declared layout, are bytes.
 
     Args:
         table: the image of the table.
-        known: declared telemetry by MsgId; one whose layout is not known has no payload.
+        known: declared telemetry by MsgId; a packet without a known layout has no payload.
     """
     found: dict[int, list[CopyEntry]] = {}
     for entry in read_entries(table):
@@ -48,9 +48,9 @@ def _packet(msg_id: int, entries: Iterable[CopyEntry], known: Mapping[int, Telem
 
 
 def _pieces(entry: CopyEntry, source: Telemetry | None) -> Iterator[_Piece]:
-    """What an entry copies into the payload: whole fields, and bytes between them."""
+    """Yield the pieces that an entry copies into the payload: whole fields, and bytes between them."""
     shift = entry.output_offset - entry.input_offset
-    at = max(entry.input_offset, TLM_HEADER_SIZE - shift)  # what goes into the header is no field
+    at = max(entry.input_offset, TLM_HEADER_SIZE - shift)  # bytes copied into the header belong to no field
     name = f"MID_{entry.input_mid:04X}" if source is None else source.name
     layout = None if source is None or source.payload.on_the_wire else source.payload
     for cell in () if layout is None else layout.cells():
@@ -70,7 +70,10 @@ def _bytes(begin: int, end: int, shift: int, name: str) -> _Piece:
 
 
 def _fields(pieces: Iterable[_Piece]) -> Iterator[tuple[str, Any]]:
-    """Names and types without gaps; of two that overlap, the first stays. A field that is copied twice has a number."""
+    """Yield names and types without gaps.
+
+    If two overlap, the first stays. A field that is copied twice gets a number.
+    """
     counts: dict[str, int] = {}
     at = 0
     for piece in pieces:

@@ -1,4 +1,4 @@
-"""The combined packets: built from a copy table, filled as telemetry comes in, sent on request (hk_utils.c)."""
+"""The combined packets: built from a copy table, filled from incoming telemetry, sent on request (hk_utils.c)."""
 
 from __future__ import annotations
 
@@ -44,7 +44,10 @@ class Combiner:
         self._subscribed: set[int] = set()
 
     def use_table(self, table: memoryview) -> None:
-        """Build the packets of a new copy table and subscribe to its inputs; `tear_down` the old one before."""
+        """Build the packets of a new copy table and subscribe to its inputs.
+
+        Call `tear_down` for the old one before.
+        """
         self._entries = read_entries(table)
         for index, entry in enumerate(self._entries):
             if not entry.is_used:
@@ -88,7 +91,7 @@ class Combiner:
         self._packets, self._inputs, self._subscribed = {}, {}, set()
 
     def take_in(self, msg_id: int, packet: bytes) -> None:
-        """Copy what the table wants of an input packet; entries that reach past its end are reported once."""
+        """Copy the parts of an input packet that the table uses. Entries that reach past its end are reported once."""
         too_short = 0
         for index in self._inputs.get(msg_id, ()):
             entry = self._entries[index]
@@ -108,10 +111,12 @@ class Combiner:
             )
 
     def send(self, msg_id: int) -> tuple[int, int]:
-        """Send a combined packet, unless it lacks data and such are discarded, and wait for all of it anew.
+        """Send a combined packet, unless it lacks data and such packets are discarded.
+
+        Then wait for all of its data anew.
 
         Returns:
-            How many packets were sent, and how many lacked data: (0, 0), (1, 0), (1, 1), or (0, 1) when discarded.
+            How many packets were sent, and how many lacked data: (0, 0), (1, 0), (1, 1), or (0, 1) if discarded.
         """
         packet = self._packets.get(msg_id)
         if packet is None:

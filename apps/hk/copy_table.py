@@ -1,4 +1,4 @@
-"""The copy table: which bytes of which packet go where, and when such a table is good."""
+"""The copy table: it copies bytes of input packets into combined packets. This module also checks such a table."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class CopyEntry(NamedTuple):
 
     @property
     def is_used(self) -> bool:
-        """Whether it names packets at all; an unused entry names none."""
+        """Whether it names packets; an unused entry names none."""
         return is_valid_msg_id(self.input_mid) or is_valid_msg_id(self.output_mid)
 
     @property
@@ -34,7 +34,7 @@ class CopyEntry(NamedTuple):
         return self.output_offset + self.size
 
     def fault(self) -> str | None:
-        """What is wrong with a used entry, in the words of HK's event; None when it is good."""
+        """Return the fault of a used entry, in the words of HK's event, or None if it is valid."""
         limit = MAX_COMBINED_PACKET_SIZE
         if not is_valid_msg_id(self.output_mid):
             return f"Invalid Output MID: 0x{self.output_mid:x}"
@@ -48,12 +48,12 @@ class CopyEntry(NamedTuple):
 
 
 def read_entries(table: bytes | memoryview) -> list[CopyEntry]:
-    """All entries of a copy table, unused ones included."""
+    """Return all entries of a copy table, unused ones included."""
     return [CopyEntry(*row.values()) for row in COPY_TABLE.unpack(table)]
 
 
 def find_fault(table: bytes | memoryview) -> str | None:
-    """The first fault of a copy table with the index of its entry; None when the table is good."""
+    """Return the first fault of a copy table with the index of its entry, or None if the table is valid."""
     for index, entry in enumerate(read_entries(table)):
         fault = entry.fault() if entry.is_used else None
         if fault is not None:

@@ -1,4 +1,4 @@
-"""Event ids of HK (hk_events.h); those of null pointers cannot happen here."""
+"""Event ids of HK (hk_events.h). Events about null pointers cannot happen here."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """HK's messages and tables: ids, function codes, layouts (hk_msgstruct.h, hk_tblstruct.h, hk_internal_cfg.h).
 
-`COMMANDS`, `TELEMETRY` and `TABLES` are what tools on the ground find.
+Ground tools read `COMMANDS`, `TELEMETRY` and `TABLES`.
 """
 
 from __future__ import annotations

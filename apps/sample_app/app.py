@@ -1,7 +1,7 @@
 """SAMPLE_APP: waits for commands on a pipe, answers with events and telemetry, and keeps a parameter table.
 
-Every cFE app has this shape. The startup script names the entry point `SAMPLE_APP_Main`; cFE calls it in a task of its
-own with the handle `cfe`, through which the app reaches everything: `cfe.CFE_service.function`, named as in NASA's API
+Every cFE app has this shape. The startup script names the entry point `SAMPLE_APP_Main`. cFE calls it in a separate
+task with the handle `cfe`, which gives access to all services: `cfe.CFE_service.function`, named as in NASA's API
 (CFE_SB_CreatePipe is cfe.sb.create_pipe). A call that fails raises CfeError with NASA's status.
 """
 
@@ -51,7 +51,7 @@ class SampleApp:
         self.cfe = cfe
         self.accepted = 0
         self.rejected = 0
-        # Which function handles which command; each command says itself how long it must be.
+        # Maps each command to its handler. Each command defines its own length.
         self.commands = CommandTable(
             (pk.NOOP, self.noop),
             (pk.RESET_COUNTERS, self.reset_counters),
@@ -61,10 +61,10 @@ class SampleApp:
         self.commands.handle(pk.SEND_HK, self.send_hk, any_length=True)  # NASA's does not look
 
     def start(self) -> None:
-        """Register with the services: events first, so that anything after can be reported.
+        """Register with the services: events first, so that later failures can be reported.
 
         Raises:
-            CfeError: a service refused; an event says so.
+            CfeError: a service refused; an event reports it.
         """
         cfe = self.cfe
         try:
@@ -81,13 +81,13 @@ class SampleApp:
         try:
             with self.reporting(ev.TABLE_REG_ERR_EID, "Error Registering Example Table"):
                 self.table = cfe.tbl.register(pk.TABLE.own_name, pk.TABLE.size, validate=check_table)
-            cfe.tbl.load(self.table, pk.TABLE.file)  # CFE_TBL itself reports when this fails
+            cfe.tbl.load(self.table, pk.TABLE.file)  # CFE_TBL itself reports a failure
         finally:
             cfe.evs.send_info(ev.INIT_INF_EID, f"Sample App Initialized.{VERSION_TEXT}")
 
     @contextmanager
     def reporting(self, event_id: int, text: str) -> Iterator[None]:
-        """Send an error event when a service refuses what is done inside."""
+        """Send an error event if a service refuses a call inside the block."""
         try:
             yield
         except CfeError as error:
@@ -95,7 +95,7 @@ class SampleApp:
             raise
 
     def receive(self) -> bytes | None:
-        """Wait for the next message; when the pipe is broken, the app ends."""
+        """Wait for the next message. If the pipe is broken, the app ends."""
         try:
             return self.cfe.sb.receive_buffer(self.pipe, PEND_FOREVER)
         except CfeError:
@@ -104,7 +104,7 @@ class SampleApp:
             return None
 
     def handle(self, packet: bytes) -> None:
-        """Give a message to its handler, or tell the ground why not."""
+        """Pass a message to its handler, or report the reason for refusing it to the ground."""
         done = self.commands.dispatch(packet)
         if done.outcome == BAD_MSG_ID:
             text = f"SAMPLE: invalid command packet,MID = 0x{done.msg_id:x}"
@@ -117,13 +117,14 @@ class SampleApp:
             self.cfe.evs.send_err(ev.CMD_LEN_ERR_EID, f"Invalid Msg length: {what}")
 
     def send_hk(self, packet: bytes) -> None:
-        """The scheduler asks for housekeeping: send the counters, then do what the ground wants with the table."""
+        """Answer the scheduler's housekeeping request: send the counters, then perform ground requests for the
+        table."""
         counters = pk.HK_TLM.packet(CommandErrorCounter=self.rejected & 0xFF, CommandCounter=self.accepted & 0xFF)
         self.cfe.sb.transmit_msg(counters)
         self.cfe.tbl.manage(self.table)
 
     def noop(self, packet: bytes) -> None:
-        """The ground asks whether the app is alive."""
+        """Answer the ground's NOOP command, which checks that the app is alive."""
         self.accepted += 1
         self.cfe.evs.send_info(ev.NOOP_INF_EID, f"SAMPLE: NOOP command {VERSION}")
 
@@ -152,5 +153,5 @@ class SampleApp:
 
 
 def check_table(image: memoryview) -> int:
-    """Whether a table image is good: 0, or a negative number. cFE asks before the image is ever used."""
+    """Return whether a table image is good: 0, or a negative number. cFE asks before the image is ever used."""
     return 0 if pk.find_fault(image) is None else pk.TABLE_OUT_OF_RANGE

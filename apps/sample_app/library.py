@@ -1,6 +1,6 @@
-"""How SAMPLE_APP reaches the sample library: by the name of its function, as the dynamic linker does in C.
+"""Calls the sample library by its function's name, as the dynamic linker does in C.
 
-Apart from the app, since an application that `cfepy new` makes from it has no library.
+It is separate from the app, because an application that `cfepy new` makes from it has no library.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ FUNCTION = "SAMPLE_LIB_Function"
 
 
 def call_library(cfe: Cfe) -> None:
-    """Call the library; when the startup script did not load it, the system log says so."""
+    """Call the library. If the startup script did not load it, write that to the system log."""
     try:
         function = cfe.os.symbol_lookup(FUNCTION)
     except OsalError:

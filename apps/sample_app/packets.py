@@ -1,7 +1,7 @@
 """SAMPLE_APP's commands, telemetry and table: ids, function codes, and layouts as the C structs have them in memory.
 
-A message id is made of a topic id, which a mission gives out once per topic. `COMMANDS`, `TELEMETRY` and `TABLES` are
-what tools on the ground find.
+A message id is made from a topic id, which a mission assigns once per topic. Ground tools read `COMMANDS`,
+`TELEMETRY` and `TABLES`.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ TABLE_OUT_OF_RANGE = -1
 
 
 def find_fault(image: bytes | memoryview) -> str | None:
-    """What is wrong with an image of the table; None when it is good."""
+    """Return the fault of a table image, or None if it is valid."""
     value = EXAMPLE_TABLE.unpack(image)["Int1"]
     return f"Int1 is {value}, at most {INT1_MAX} is allowed" if value > INT1_MAX else None
 

@@ -1,7 +1,7 @@
 """SAMPLE_LIB, the smallest cFE library: an init function, and a function for apps to call. NASA's sample_lib v7.0.0.
 
-A library is code that a startup script loads before the apps (CFE_LIB). Its functions run in the task of the app that
-calls them. An app finds one by its name with `cfe.os.symbol_lookup`, which is the dynamic linker's part in C.
+A library is code that a startup script loads before the apps (CFE_LIB). Its functions run in the task of the calling
+app. An app finds a function by its name with `cfe.os.symbol_lookup`, which the dynamic linker does in C.
 """
 
 from __future__ import annotations
@@ -15,13 +15,16 @@ BUFFER = "SAMPLE DATA"
 
 
 def SAMPLE_LIB_Init(cfe: Cfe) -> int:
-    """The init function that the startup script names; anything but CFE_SUCCESS unloads the library again."""
+    """Initialize the library; the startup script names this function.
+
+    A result other than CFE_SUCCESS unloads the library.
+    """
     cfe.os.printf(f"SAMPLE Lib Initialized.{VERSION}\n")
     return CFE_SUCCESS
 
 
 def SAMPLE_LIB_Function(cfe: Cfe) -> int:
-    """What the library is good for: it prints its buffer.
+    """Print the library's buffer.
 
     Args:
         cfe: the handle of the calling app.

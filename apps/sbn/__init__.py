@@ -1,6 +1,6 @@
 """SBN, the Software Bus Network: joins the Software Buses of several processors. NASA's SBN 1.18.0.
 
-Each SBN tells its peers what its processor subscribes to, and sends on what they subscribe to.
+Each SBN sends its processor's subscriptions to its peers, and forwards the messages to which they subscribe.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""SBN's main task: start, configuration, and what it does at every wakeup (sbn_app.c).
+"""SBN's main task: start, configuration, and the work of every wakeup (sbn_app.c).
 
-It wakes up when a scheduler says so, and after 200 ms in any case. Where the configuration table says so, further tasks
-wait for what comes from a net and for what is to be sent to a peer, so that nothing waits for a wakeup.
+It wakes up when a scheduler says so, and after 200 ms in any case. The configuration table can add tasks that wait for
+messages from a net and for messages to a peer, so that no message waits for a wakeup.
 """
 
 from __future__ import annotations
@@ -35,16 +35,16 @@ UDP_OPS, REMAP_FILTER = "SBN_UDP_Ops", "SBN_F_Remap"
 
 
 def SBN_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     run(cfe)
 
 
 def run(cfe: Cfe, ident: str = IDENT) -> None:
-    """SBN's life, to its end.
+    """Run SBN to its end.
 
     Args:
         cfe: the app's handle.
-        ident: the source that peers were built from (SBN_IDENT); one that says another is not sent what it wants.
+        ident: the source that peers were built from (SBN_IDENT). A peer with another ident gets no subscribed messages.
     """
     app = Sbn(cfe, ident)
     run_status = APP_RUN
@@ -66,7 +66,7 @@ class ConfError(CfeError):
 
 
 class Sbn:
-    """SBN's pipe, tables, nets and tasks; arguments as of `run`."""
+    """SBN's pipe, tables, nets and tasks. The arguments are those of `run`."""
 
     def __init__(self, cfe: Cfe, ident: str) -> None:
         self._cfe = cfe
@@ -80,10 +80,10 @@ class Sbn:
     # -- start and end -----------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Everything before the first wakeup.
+        """Prepare everything before the first wakeup.
 
         Raises:
-            CfeError, OsalError: a service refused, or the configuration cannot be; an event says so.
+            CfeError, OsalError: a service refused, or the configuration is invalid; an event reports it.
         """
         cfe = self._cfe
         cfe.evs.register()
@@ -172,7 +172,7 @@ class Sbn:
         self.clean_up()
         try:
             self._set_up()
-        except (CfeError, OsalError):  # it was reported; SBN waits for a better one
+        except (CfeError, OsalError):  # already reported; SBN waits for a better one
             return
         self._cfe.evs.send_info(ev.TBL_EID, "SBN re-initialized.")
 
@@ -253,7 +253,7 @@ class Sbn:
                 return
 
     def _take_from(self, net: Net, pend: bool) -> bool:
-        """Take a message from a net; whether one was there, even if it was of no use."""
+        """Take a message from a net. Returns whether there was one, even an unusable one."""
         assert net.module is not None
         try:
             message = net.module.recv(net, pend)
@@ -264,7 +264,7 @@ class Sbn:
         return message is not None
 
     def _look_after_peers(self) -> None:
-        """Notice who is gone, send what is wanted, start the tasks that are missing (CheckPeerPipes, PeerPoll)."""
+        """Detect lost peers, send subscribed messages, and start missing tasks (CheckPeerPipes, PeerPoll)."""
         for net in self._network.nets:
             if net.task_flags & pk.TASK_RECV and not net.recv_task:
                 self._start_receiver(net)
@@ -279,7 +279,7 @@ class Sbn:
                 return
 
     def _send_one(self, peer: Peer) -> bool:
-        """Send a peer one message that waits for it; whether there was one."""
+        """Send a peer one waiting message. Returns whether there was one."""
         if not peer.connected or peer.send_task:
             return False
         packet = self._cfe.sb.receive_buffer(peer.pipe, POLL)

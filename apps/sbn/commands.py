@@ -1,4 +1,4 @@
-"""What the ground may ask of SBN (sbn_cmds.c)."""
+"""SBN's ground commands (sbn_cmds.c)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class SbnCommands:
     Args:
         cfe: the app's handle.
         network: the nets and peers.
-        subscriptions: those of this processor.
+        subscriptions: subscriptions of this processor.
         reload: takes tables that were loaded.
     """
 
@@ -135,7 +135,7 @@ class SbnCommands:
         telemetry = pk.HK_MYSUBS_TLM.packet(CC=pk.HK_MYSUBS.code, SubCnt=len(subs), Subs=subs)
         self._cfe.sb.transmit_msg(telemetry)
 
-    # -- what a command names ----------------------------------------------------------------------------------------
+    # -- objects named by commands -----------------------------------------------------------------------------------
 
     def _net(self, index: int) -> Net | None:
         nets = self._network.nets
@@ -153,7 +153,7 @@ class SbnCommands:
         return None
 
     def _time(self, name: str, time: OsTime) -> dict[str, int]:
-        """A local time as two fields."""
+        """Return a local time as two fields."""
         os = self._cfe.os
         return {
             f"{name}Seconds": os.time_get_total_seconds(time),

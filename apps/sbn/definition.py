@@ -1,4 +1,4 @@
-"""SBN's tables from what people think in: who is where, and which MsgIds change on the way.
+"""Build SBN's tables from readable terms: the addresses of peers, and the MsgIds that change between them.
 
 Scripts that make table files use it; see apps/sbn/tables.
 """
@@ -26,7 +26,7 @@ def peer(
     filters: Sequence[str] = ("Remap",),
     tasks: int = POLL,
 ) -> dict[str, Any]:
-    """An entry of the configuration table; one of them is the processor itself.
+    """Return an entry of the configuration table. One of the entries is the processor itself.
 
     Args:
         processor: its processor id.
@@ -48,7 +48,7 @@ def peer(
 
 
 def configuration(peers: Sequence[dict[str, Any]]) -> TableImage:
-    """The configuration table, with the module UDP and the filter Remap.
+    """Return the configuration table, with the module UDP and the filter Remap.
 
     Args:
         peers: at most 16 entries of `peer`.
@@ -71,12 +71,12 @@ def configuration(peers: Sequence[dict[str, Any]]) -> TableImage:
 def remapping(
     entries: Iterable[tuple[int, int, int]], spacecraft: int = SPACECRAFT, sends_others: bool = True
 ) -> TableImage:
-    """The remapping table.
+    """Return the remapping table.
 
     Args:
         entries: processor id of a peer, MsgId on this bus, MsgId that the peer gets; 0 for none.
         spacecraft: id of the peers' spacecraft.
-        sends_others: whether MsgIds that are not there go to peers as they are.
+        sends_others: whether MsgIds without an entry go to peers unchanged.
 
     Raises:
         UsageError: more than 256, or a value that does not fit.

@@ -1,7 +1,7 @@
-"""The nets and peers of an SBN, what goes to them and comes from them (SBN_NetInterface_t, SBN_PeerInterface_t).
+"""The nets and peers of an SBN, and the messages between them (SBN_NetInterface_t, SBN_PeerInterface_t).
 
-A peer that is heard of is connected: it gets a pipe of its own, into which go the messages that it subscribes to, and
-is told the protocol's version and what this processor subscribes to. How it is reached is the protocol module's affair.
+A peer is connected when its first message arrives. It gets its own pipe, which receives the messages that it subscribes
+to. SBN sends it the protocol's version and this processor's subscriptions. The protocol module handles the transport.
 """
 
 from __future__ import annotations
@@ -27,23 +27,25 @@ class Module(Protocol):
     """A protocol module (SBN_IfOps_t)."""
 
     def init_net(self, net: Net) -> None:
-        """Open what the net is reached by."""
+        """Open the net's socket."""
 
     def poll_peer(self, peer: Peer) -> None:
-        """Do what is due for a peer: say that this processor is there, notice that the other one is not any more."""
+        """Do pending work for a peer: announce this processor, and detect the loss of the peer."""
 
     def send(self, peer: Peer, message: pr.NetMsg) -> None:
-        """Send a message; OsalError when that failed."""
+        """Send a message. Raises OsalError if that fails."""
 
     def recv(self, net: Net, pend: bool) -> pr.NetMsg | None:
-        """The next message of a net, of one of its peers, which is connected then; None when there is none now.
+        """Return the next message of a net, or None if there is none now.
+
+        Its sender is a peer, which is then connected.
 
         Args:
-            net: which.
-            pend: wait for it.
+            net: the net.
+            pend: wait for a message.
 
         Raises:
-            Malformed: what came is none. The module told of it.
+            Malformed: the datagram is not a message. The module has reported it.
         """
 
     def unload_net(self, net: Net) -> None:
@@ -56,11 +58,11 @@ class Peer:
 
     Attributes:
         processor_id, spacecraft_id, address, task_flags: as in the configuration table.
-        net: where it is.
-        filters: what its messages pass.
-        subs: the MsgIds on this processor's bus that it wants.
-        pipe: for messages that it wants; 0 when it is not connected.
-        is_new: it was connected by the message that is looked at now.
+        net: its net.
+        filters: filters of its messages.
+        subs: the MsgIds on this processor's bus that it subscribes to.
+        pipe: for messages that it subscribes to; 0 if it is not connected.
+        is_new: it was connected by the current message.
         last_send, last_recv: local times.
         send_cnt, recv_cnt, send_err_cnt, recv_err_cnt: messages since it was connected.
         send_task: id of the task that sends to it; 0 without one.
@@ -100,10 +102,10 @@ class Net:
 
     Attributes:
         index: its number in the configuration table.
-        module, protocol_idx: the protocol module; None while the table has not said how this processor is reached.
+        module, protocol_idx: the protocol module; None until the table gives this processor's own entry.
         address, task_flags: of this processor.
         peers: the others.
-        socket: what the module opened; 0 for nothing.
+        socket: the socket that the module opened; 0 for none.
         recv_task: id of the task that receives; 0 without one.
     """
 
@@ -117,7 +119,7 @@ class Net:
     recv_task: int = 0
 
     def peer(self, processor_id: int, spacecraft_id: int) -> Peer | None:
-        """The peer with these ids (SBN_GetPeer)."""
+        """Return the peer with these ids (SBN_GetPeer)."""
         for peer in self.peers:
             if (peer.processor_id, peer.spacecraft_id) == (processor_id, spacecraft_id):
                 return peer
@@ -125,14 +127,14 @@ class Net:
 
 
 class Nets:
-    """All nets, and the ways from and to the Software Bus.
+    """All nets, and the transfer from and to the Software Bus.
 
     Args:
         cfe: the app's handle.
-        subscriptions: those of this processor.
+        subscriptions: subscriptions of this processor.
 
     Attributes:
-        nets: by number; one that the table leaves out has no module.
+        nets: by number; a net that is not in the table has no module.
         longest: bytes of the longest message.
     """
 
@@ -151,7 +153,7 @@ class Nets:
     # -- connections -------------------------------------------------------------------------------------------------
 
     def connected(self, peer: Peer) -> None:
-        """A peer is there: make its pipe, tell it the version and what this processor wants (SBN_Connected)."""
+        """Connect a peer: make its pipe, send it the version and this processor's subscriptions (SBN_Connected)."""
         cfe = self._cfe
         name = f"SBN_{peer.processor_id}_{peer.spacecraft_id}_Pipe"
         try:
@@ -168,7 +170,7 @@ class Nets:
             self.send(peer, pr.SUB_MSG, self._subscriptions.all())
 
     def disconnected(self, peer: Peer) -> None:
-        """A peer is gone: so are its pipe and subscriptions (SBN_Disconnected)."""
+        """Disconnect a peer: remove its pipe and subscriptions (SBN_Disconnected)."""
         cfe = self._cfe
         pipe, peer.pipe, peer.connected = peer.pipe, 0, False
         peer.subs.clear()
@@ -183,7 +185,7 @@ class Nets:
     # -- out ---------------------------------------------------------------------------------------------------------
 
     def send(self, peer: Peer, kind: int, payload: bytes = b"") -> bool:
-        """Send a message to a peer; whether that was possible (SBN_SendNetMsg)."""
+        """Send a message to a peer. Returns whether that was possible (SBN_SendNetMsg)."""
         cfe = self._cfe
         module = peer.net.module
         if module is None:
@@ -199,7 +201,7 @@ class Nets:
         try:
             module.send(peer, message)
             peer.send_cnt += 1
-        except CfeError:  # the module told of it
+        except CfeError:  # the module has reported it
             peer.send_err_cnt += 1
             return False
         finally:
@@ -217,7 +219,7 @@ class Nets:
     # -- in ----------------------------------------------------------------------------------------------------------
 
     def process(self, net: Net, message: pr.NetMsg) -> None:
-        """Do what a message of a connected peer says (SBN_ProcessNetMsg)."""
+        """Handle a message of a connected peer (SBN_ProcessNetMsg)."""
         peer = net.peer(message.processor_id, message.spacecraft_id)
         if peer is None:
             return
@@ -248,7 +250,7 @@ class Nets:
             raise pr.Malformed("unknown message type")
 
     def _publish(self, peer: Peer, packet: bytes) -> None:
-        """Put a message of a peer on the bus as it is."""
+        """Put a message of a peer on the bus unchanged."""
         size = get_size(packet) if len(packet) > PRIMARY_HEADER_SIZE else self.longest + 1
         if size > len(packet):
             raise pr.Malformed(f"a packet of {len(packet)} bytes that says it has {size}")
@@ -257,10 +259,10 @@ class Nets:
             self._cfe.sb.transmit_msg(filtered, is_origination=False)
 
     def _compare_versions(self, peer: Peer, payload: bytes) -> None:
-        """Tell whether a peer has the same version.
+        """Report whether a peer has the same version.
 
-        It tells so when it takes this processor for connected, which it may do anew: after a reset it knows nothing of
-        what this one wants.
+        The peer sends its version when it connects to this processor. It may connect again: after a reset it has lost
+        this processor's subscriptions.
         """
         if not payload:
             raise pr.Malformed("a protocol version of no bytes")
@@ -275,7 +277,7 @@ class Nets:
 
 
 def through(peer: Peer, packet: bytes) -> bytes | None:
-    """A packet as the filters of a peer leave it; None when it is not to go on."""
+    """Pass a packet through the filters of a peer. Returns the result, or None if a filter drops it."""
     passed: bytes | None = packet
     for each in peer.filters:
         if passed is None:

@@ -1,6 +1,6 @@
 """SBN's messages and tables (sbn_msgids.h, sbn_msgdefs.h, sbn_msg.h, sbn_tbl.h, sbn_remap_tbl.h).
 
-Answers to all requests have one MsgId; the first byte says which request it was. They are packed as on the wire:
+Answers to all requests have one MsgId. Their first byte names the request. They are packed as on the wire:
 big-endian, without padding.
 """
 

@@ -1,8 +1,8 @@
-"""The bytes that SBN peers exchange: a header, and what follows it (SBN_PackMsg, SBN_UnpackMsg, sbn_subs.c).
+"""The bytes that SBN peers exchange: a header and a payload (SBN_PackMsg, SBN_UnpackMsg, sbn_subs.c).
 
 All numbers are big-endian and nothing is aligned. The header: bytes of the payload (i16), type (u8), processor id (u32)
-and spacecraft id (u32) of the sender. The payload of subscriptions: which source the sender was built from (48 bytes),
-how many (u16), and for each MsgId (u32), priority (u8), reliability (u8).
+and spacecraft id (u32) of the sender. The payload of subscriptions: the sender's source ident (48 bytes), their number
+(u16), and for each MsgId (u32), priority (u8), reliability (u8).
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ A peer that was built from another one refuses subscriptions.
 
 IDENT_LEN = 48
 MAX_SUBS = 256  # SBN_MAX_SUBS_PER_PEER
-LONGEST = 0x7FFF  # bytes of a payload that the header can tell
+LONGEST = 0x7FFF  # bytes of a payload that the header can express
 _HEADER = struct.Struct(">hBII")
 _COUNT = struct.Struct(">H")
 _SUB = struct.Struct(">IBB")
@@ -36,14 +36,14 @@ HEADER_SIZE = _HEADER.size
 
 
 class Malformed(CfeError):
-    """A message of a peer that is none; the text says why."""
+    """A malformed message of a peer. The text gives the reason."""
 
     def __init__(self, text: str) -> None:
         super().__init__(CFE_STATUS_WRONG_MSG_LENGTH, text)
 
 
 class NetMsg(NamedTuple):
-    """A message: its type, who sent it, and the payload."""
+    """A message: its type, its sender, and the payload."""
 
     kind: int
     processor_id: int
@@ -52,7 +52,7 @@ class NetMsg(NamedTuple):
 
 
 class Sub(NamedTuple):
-    """What a processor subscribes to: a MsgId, and the quality of service as two bytes (CFE_SB_Qos_t)."""
+    """A subscription of a processor: a MsgId, and the quality of service as two bytes (CFE_SB_Qos_t)."""
 
     msg_id: int
     priority: int = 0
@@ -60,17 +60,17 @@ class Sub(NamedTuple):
 
 
 def pack(message: NetMsg) -> bytes:
-    """A message as bytes (SBN_PackMsg)."""
+    """Return a message as bytes (SBN_PackMsg)."""
     kind, processor_id, spacecraft_id, payload = message
     return _HEADER.pack(len(payload), kind, processor_id, spacecraft_id) + payload
 
 
 def unpack(data: bytes, longest: int) -> NetMsg:
-    """The message in a datagram; what follows it there is not looked at (SBN_UnpackMsg).
+    """Return the message in a datagram. Bytes after it are ignored (SBN_UnpackMsg).
 
     Args:
         data: the datagram.
-        longest: bytes that a payload may have (CFE_MISSION_SB_MAX_SB_MSG_SIZE).
+        longest: maximum bytes of a payload (CFE_MISSION_SB_MAX_SB_MSG_SIZE).
 
     Raises:
         Malformed: it is shorter than its header, or than its header says; or no payload has such a length.
@@ -86,7 +86,7 @@ def unpack(data: bytes, longest: int) -> NetMsg:
 
 
 def pack_subscriptions(subscriptions: Sequence[Sub], ident: str) -> bytes:
-    """The payload of SUB_MSG and UNSUB_MSG.
+    """Return the payload of SUB_MSG and UNSUB_MSG.
 
     Args:
         subscriptions: at most 256.
@@ -97,7 +97,7 @@ def pack_subscriptions(subscriptions: Sequence[Sub], ident: str) -> bytes:
 
 
 def unpack_subscriptions(payload: bytes) -> tuple[str, list[Sub]]:
-    """The other way round: ident, up to its first NUL, and subscriptions.
+    """Parse that payload. Returns the ident, up to its first NUL, and the subscriptions.
 
     Raises:
         Malformed: it ends too early.

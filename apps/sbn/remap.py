@@ -1,4 +1,4 @@
-"""The filter Remap: other MsgIds on the way to and from a peer, or none at all (sbn_f_remap.c)."""
+"""The filter Remap: replaces or drops MsgIds on the way to and from a peer (sbn_f_remap.c)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class Remap:
 
     Args:
         cfe: the app's handle.
-        base_eid: what its event ids count from.
+        base_eid: base of its event ids.
     """
 
     def __init__(self, cfe: Cfe, base_eid: int) -> None:
@@ -32,7 +32,7 @@ class Remap:
         self._handle: int | None = None
 
     def load(self) -> None:
-        """Register the table and load it from its file; without one, nothing passes."""
+        """Register the table and load it from its file. Without a table, nothing passes."""
         tbl, table = self._cfe.tbl, pk.REMAP_TABLE
         try:
             self._handle = tbl.register(table.own_name, table.size, validate=_validate)
@@ -71,7 +71,7 @@ class Remap:
             self._from.setdefault((*peer, entry["ToMID"]), entry["FromMID"])
 
     def filter(self, packet: bytes, processor_id: int, spacecraft_id: int) -> bytes | None:
-        """A packet that goes to a peer or comes from it; None when it is not to go on."""
+        """Return the filtered packet to or from a peer, or None if it is dropped."""
         msg_id = get_msg_id(packet)
         other = self._to.get((processor_id, spacecraft_id, msg_id), msg_id if self._sends_others else 0)
         if not other or other == msg_id:
@@ -81,7 +81,7 @@ class Remap:
         return bytes(changed)
 
     def wanted(self, msg_id: int, processor_id: int, spacecraft_id: int) -> int:
-        """What a peer that subscribes to a MsgId is to get of this processor's bus."""
+        """Return the MsgId on this processor's bus for a MsgId that a peer subscribes to."""
         return self._from.get((processor_id, spacecraft_id, msg_id), msg_id)
 
 

@@ -1,4 +1,4 @@
-"""What this processor subscribes to, as peers are told, and what they want of it (sbn_subs.c)."""
+"""This processor's subscriptions, as sent to peers, and the subscriptions of the peers (sbn_subs.c)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ OWN = (evs.LONG_EVENT_MSG_MID, pk.CMD_MID, pk.TLM_MID)
 
 
 class SubscribedPeer(Protocol):
-    """A peer that wants messages: who it is, what its messages pass, what it wants, and the pipe for that."""
+    """A subscribing peer: its identity, its filters, its subscriptions, and the pipe for its messages."""
 
     processor_id: int
     spacecraft_id: int
@@ -40,10 +40,10 @@ class Subscriptions:
 
     Args:
         cfe: the app's handle.
-        ident: which source this SBN claims to be built from; peers that say another one are not listened to.
+        ident: the source that this SBN claims to be built from; subscriptions of peers with another ident are ignored.
 
     Attributes:
-        mine: those of this processor, with how many of its applications have each.
+        mine: subscriptions of this processor, with the number of its applications that have each.
         tell: called with the type of a message and its payload, for all peers.
     """
 
@@ -57,7 +57,7 @@ class Subscriptions:
     # -- of this processor -------------------------------------------------------------------------------------------
 
     def open(self) -> None:
-        """Make the pipe to which the Software Bus reports."""
+        """Create the pipe to which the Software Bus reports."""
         sb_api = self._cfe.sb
         self._pipe = sb_api.create_pipe(SUB_PIPE_DEPTH, "SBNSubPipe")
         sb_api.subscribe_local(sb.ALLSUBS_TLM_MID, self._pipe, MAX_ALLSUBS_ON_PIPE)
@@ -91,7 +91,7 @@ class Subscriptions:
             self._remove(report["MsgId"])
 
     def all(self) -> bytes:
-        """The payload that tells a peer all of them."""
+        """Return the payload with all subscriptions for a peer."""
         return pr.pack_subscriptions([each for each, _ in self.mine.values()], self._ident)
 
     def _add(self, new: pr.Sub) -> None:
@@ -117,12 +117,7 @@ class Subscriptions:
     # -- of peers ----------------------------------------------------------------------------------------------------
 
     def from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
-        """A peer wants messages (SBN_ProcessSubsFromPeer).
-
-        Raises:
-            Malformed: the payload is none.
-            CfeError: the Software Bus has no room for them.
-        """
+        """Add a peer's subscriptions (SBN_ProcessSubsFromPeer)."""
         for each in self._read(peer, payload):
             self._subscribe(peer, _wanted(peer, each.msg_id))
 
@@ -141,11 +136,7 @@ class Subscriptions:
         peer.subs[msg_id] = None
 
     def unsub_from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
-        """A peer wants messages no more (SBN_ProcessUnsubsFromPeer).
-
-        Raises:
-            Malformed: the payload is none.
-        """
+        """Remove a peer's subscriptions (SBN_ProcessUnsubsFromPeer)."""
         for each in self._read(peer, payload):
             msg_id = _wanted(peer, each.msg_id)
             if msg_id in peer.subs:
@@ -166,12 +157,12 @@ class Subscriptions:
 
 
 def _subscription(entry: Mapping[str, Any]) -> pr.Sub:
-    """A subscription out of a report of the Software Bus."""
+    """Return a subscription out of a report of the Software Bus."""
     return pr.Sub(entry["MsgId"], entry["Qos"]["Priority"], entry["Qos"]["Reliability"])
 
 
 def _wanted(peer: SubscribedPeer, msg_id: int) -> int:
-    """The MsgId on this processor's bus that becomes one that a peer subscribes to."""
+    """Return the MsgId on this processor's bus that becomes one that a peer subscribes to."""
     for each in peer.filters:
         msg_id = each.wanted(msg_id, peer.processor_id, peer.spacecraft_id)
     return msg_id

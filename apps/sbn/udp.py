@@ -1,4 +1,4 @@
-"""The protocol module UDP: each datagram is a message; announces, heartbeats and good-byes (sbn_udp_if.c)."""
+"""The protocol module UDP: each datagram is a message; announcements, heartbeats and disconnects (sbn_udp_if.c)."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ class Udp:
     Args:
         cfe: the app's handle.
         network: the nets and peers.
-        base_eid: what its event ids count from.
+        base_eid: base of its event ids.
 
     Attributes:
-        rejected: datagrams that are no message of a peer.
+        rejected: datagrams that are not messages of a peer.
     """
 
     def __init__(self, cfe: Cfe, network: Nets, base_eid: int) -> None:
@@ -76,7 +76,7 @@ class Udp:
             net.socket = 0
 
     def _address(self, text: str) -> SockAddr | None:
-        """The address "HOST:PORT"; None, and an event, when it is none."""
+        """Return the address "HOST:PORT". If it is invalid, send an event and return None."""
         os = self._cfe.os
         host, _, port = text.partition(":")
         address = os.socket_addr_init(OS_SocketDomain_INET)
@@ -141,7 +141,7 @@ class Udp:
         self._error(ev.UDP_DEBUG_EID, text)
 
     def _seconds(self, now: OsTime, then: OsTime) -> int:
-        """Whole seconds between two times."""
+        """Return whole seconds between two times."""
         return self._cfe.os.time_get_total_seconds(OsTime(now - then))
 
     def _info(self, event_id: int, text: str) -> None:

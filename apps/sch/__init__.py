@@ -1,4 +1,4 @@
-"""SCH, the scheduler app: 100 slots a second, in each of which it sends the messages that its tables say.
+"""SCH, the scheduler app: 100 slots per second, each of which sends the messages that its tables define.
 
 NASA's SCH 2.2.2 on the interfaces of cFE 7: its commands, telemetry, tables, event ids and texts are NASA's. A mission
 has either SCH or SCH_LAB.

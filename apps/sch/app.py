@@ -27,7 +27,7 @@ LIBRARY_STATE = "SCH_GetProcessingState"
 
 
 def SCH_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(PERF_ID)
     app = SchSlots(cfe)
     run_status, status = APP_RUN, CFE_SUCCESS
@@ -51,7 +51,7 @@ def SCH_AppMain(cfe: Cfe) -> None:
 
 
 class SchSlots:
-    """The schedule in the making: which slot comes next, and what is sent in it."""
+    """The progress of the schedule: selects the next slot and sends its messages."""
 
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe
@@ -66,10 +66,10 @@ class SchSlots:
     # -- start and end ---------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Everything before the first frame.
+        """Prepare everything before the first frame.
 
         Raises:
-            CfeError, OsalError: a service refused; an event, or the system log, says so.
+            CfeError, OsalError: a service refused; an event, or the system log, reports it.
         """
         cfe = self._cfe
         try:
@@ -121,7 +121,7 @@ class SchSlots:
         try:
             self._goes_on = self._cfe.os.symbol_lookup(LIBRARY_STATE)
         except OsalError:
-            pass  # the startup script does not load SCH's library, so nobody can hold the schedule
+            pass  # the startup script does not load SCH's library, so no app can hold the schedule
 
     def clean_up(self) -> None:
         """Let no tone come here any more."""
@@ -132,7 +132,7 @@ class SchSlots:
 
     @contextmanager
     def _reporting(self, event_id: int, text: str) -> Iterator[None]:
-        """Send an error event when a service refuses what is done inside; the text has {} where the status goes."""
+        """Send an error event if a service refuses a call inside the block. {} in the text stands for the status."""
         try:
             yield
         except (CfeError, OsalError) as error:
@@ -142,7 +142,7 @@ class SchSlots:
     # -- slots -----------------------------------------------------------------------------------------------------
 
     def wait(self) -> None:
-        """Wait for the next frame and do what is due.
+        """Wait for the next frame and do the work that is due.
 
         Raises:
             CfeError: the pipe or a table failed.
@@ -175,7 +175,7 @@ class SchSlots:
             self._do_slot()
 
     def _skip(self, current: int, count: int) -> None:
-        """Go on with the current slot; commands that waited for the end of the table are not held up by that."""
+        """Continue with the current slot. Commands that waited for the end of the table are not delayed by that."""
         counters, frames = self._counters, self._frames
         counters.skipped_slots += 1
         text = f"Slots skipped: slot = {frames.following}, count = {count}"

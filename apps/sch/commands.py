@@ -12,11 +12,11 @@ from .state import VERSION, SchCounters, Tables
 
 
 class SchCommands:
-    """Does what the ground wants.
+    """Executes ground commands.
 
     Args:
         cfe: the app's handle.
-        counters, frames, tables: what commands change and telemetry tells of.
+        counters, frames, tables: state that commands change and telemetry reports.
     """
 
     def __init__(self, cfe: Cfe, counters: SchCounters, frames: Frames, tables: Tables) -> None:
@@ -37,10 +37,10 @@ class SchCommands:
         )
 
     def handle(self, packet: bytes) -> None:
-        """Do a message, or tell the ground why not.
+        """Handle a message, or report the reason for refusing it to the ground.
 
         Raises:
-            CfeError: a table cannot be had any more.
+            CfeError: a table is no longer available.
         """
         evs = self._cfe.evs
         done = self._table.dispatch(packet)

@@ -1,4 +1,4 @@
-"""SCH's tables from what people think in: messages by name of what they ask for, activities by slot.
+"""Build SCH's tables from readable terms: messages by name, activities by slot.
 
 Scripts that make table files use it; see apps/sch/tables.
 """
@@ -19,14 +19,14 @@ _NO_MESSAGE = pk.UNUSED_MID.to_bytes(2, "big")
 def activity(
     message: int, frequency: int = 1, remainder: int = 0, groups: int = 0, enabled: bool = True
 ) -> dict[str, int]:
-    """An entry of the schedule.
+    """Return an entry of the schedule.
 
     Args:
         message: index of the message in the message table, 1 to 127.
         frequency: seconds from one time to the next.
         remainder: in which of these seconds, 0 to `frequency` - 1.
         groups: number of its group in the highest byte, bits of multi-groups in the others.
-        enabled: whether it happens before a command enables it.
+        enabled: whether it is active before a command enables it.
     """
     return {
         "EnableState": pk.ENABLED if enabled else pk.DISABLED,
@@ -39,7 +39,7 @@ def activity(
 
 
 def schedule_image(slots: Mapping[int, Sequence[Mapping[str, int]]]) -> TableImage:
-    """The schedule definition table.
+    """Return the schedule definition table.
 
     Args:
         slots: activities by the number of their slot, 0 to 99; at most 5 each.
@@ -51,7 +51,7 @@ def schedule_image(slots: Mapping[int, Sequence[Mapping[str, int]]]) -> TableIma
 
 
 def message_image(messages: Mapping[int, bytes | bytearray]) -> TableImage:
-    """The message definition table.
+    """Return the message definition table.
 
     Args:
         messages: whole packets by their index, 1 to 127; an even number of bytes, at most 128.

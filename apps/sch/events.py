@@ -1,4 +1,4 @@
-"""Event ids of SCH, with NASA's names and numbers (sch_events.h), and those that are filtered."""
+"""Event ids of SCH, with NASA's names and numbers (sch_events.h), and the filtered ones."""
 
 from __future__ import annotations
 

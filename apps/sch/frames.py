@@ -1,8 +1,8 @@
-"""SCH's clockwork: the major frame, which is TIME's tone, and the minor frames between two of them (sch_custom.c).
+"""SCH's clock: the major frame, which is TIME's tone, and the minor frames between two of them (sch_custom.c).
 
 cFE 7 refuses OS_TimerSet in the callback of a timer, where SCH 2.2.2 uses it to make the last slot of a second longer.
 So the timer ticks evenly here, every half slot, and the callback counts: two ticks make a slot, three the last slot,
-one the slot after a tone that did not come. Only the major frame, in TIME's task, sets the timer.
+one the slot after a missing tone. Only the major frame, in TIME's task, sets the timer.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ SOURCE_NONE, SOURCE_CFE_TIME, SOURCE_MINOR_FRAME_TIMER = 0, 1, 2
 
 
 class Frames:
-    """Counts minor frames and wakes SCH at each; names of attributes are those of the housekeeping packet.
+    """Counts minor frames and wakes SCH at each. Names of attributes are those of the housekeeping packet.
 
     Attributes:
         semaphore: given at every frame.
-        worst_slots: how many slots a wake-up may have to do when the timer is coarse.
+        worst_slots: how many slots a wake-up may have to do if the timer is coarse.
     """
 
     def __init__(self, cfe: Cfe) -> None:
@@ -59,13 +59,13 @@ class Frames:
     # -- start -----------------------------------------------------------------------------------------------------
 
     def create_timer(self) -> int:
-        """Make the timer of minor frames.
+        """Create the timer of minor frames.
 
         Returns:
             Its accuracy in us.
 
         Raises:
-            OsalError: there is none to be had.
+            OsalError: no timer is available.
         """
         os = self._cfe.os
         self._timer = os.timer_create(TIMER_NAME, self._on_tick)
@@ -77,15 +77,15 @@ class Frames:
         return accuracy_us
 
     def create_semaphore(self) -> None:
-        """Make the semaphore that wakes SCH.
+        """Create the semaphore that wakes SCH.
 
         Raises:
-            OsalError: there is none to be had.
+            OsalError: no semaphore is available.
         """
         self.semaphore = self._cfe.os.bin_sem_create(SEMAPHORE_NAME, 0)
 
     def start(self) -> None:
-        """Wait for tones from now on; when none comes in 5 s, SCH goes by the mission elapsed time.
+        """Wait for tones from now on. If there is none in 5 s, SCH uses the mission elapsed time.
 
         Raises:
             CfeError: TIME refused the callback.
@@ -97,13 +97,13 @@ class Frames:
     # -- frames ----------------------------------------------------------------------------------------------------
 
     def current_slot(self) -> int:
-        """The slot that it is."""
+        """Return the current slot."""
         if self.sync_to_met == NOT_SYNCHRONIZED:
             return self.since_tone
         return (self.met_slot() - self.last_sync_met_slot) % SLOTS
 
     def met_slot(self) -> int:
-        """The slot of the mission elapsed time."""
+        """Return the slot of the mission elapsed time."""
         time = self._cfe.time
         return slot_of_us(time.sub2micro_secs(time.get_met_subsecs()), SLOT_US)
 
@@ -113,7 +113,7 @@ class Frames:
         self._noisy_in_a_row = 0
 
     def on_major_frame(self) -> None:
-        """The tone (SCH_MajorFrameCallback), in TIME's task."""
+        """Handle the tone (SCH_MajorFrameCallback), in TIME's task."""
         if not self._cfe.time.get_clock_info() & FLAG_FLYING:
             self._judge_noise()
             if not self.ignored:
@@ -146,7 +146,7 @@ class Frames:
             self._on_minor_frame()
 
     def _on_minor_frame(self) -> None:
-        """A slot is over (SCH_MinorFrameCallback)."""
+        """Handle the end of a slot (SCH_MinorFrameCallback)."""
         self._ticks_left = self._ticks(SLOT_US)
         if self.source == SOURCE_NONE:  # no tone in the time for it
             self.source = SOURCE_MINOR_FRAME_TIMER
@@ -176,5 +176,5 @@ class Frames:
         return True
 
     def _ticks(self, period_us: int) -> int:
-        """Ticks of the timer in a time, rounded up."""
+        """Return ticks of the timer in a time, rounded up."""
         return -(-period_us // self._tick_us)

@@ -1,7 +1,7 @@
 """SCH's messages and tables: message ids, commands, telemetry, layouts (sch_msg.h, sch_msgdefs.h, sch_tbldefs.h).
 
-NASA's message ids of SCH 2.2.2 are those that cFE 7 makes of the topics 0x95 to 0x98. MsgIds in the diagnostic packet
-have 32 bits, as everywhere in cFE 7.
+NASA's message ids of SCH 2.2.2 equal the ids that cFE 7 makes from the topics 0x95 to 0x98. MsgIds in the diagnostic
+packet have 32 bits, as everywhere in cFE 7.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Which slots are to be done: the arithmetic of waking up too early, too late, or far behind (sch_app.c).
+"""Calculation of the slots that are due after waking up too early, too late, or far behind (sch_app.c).
 
-Pure functions of numbers. `current` is the slot that the time says, `following` the one that would be done next; both
-go from 0 to SLOTS - 1.
+The functions are pure. `current` is the slot of the current time, `following` the one that would be done next; both
+range from 0 to SLOTS - 1.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ MAX_PER_WAKEUP = 5
 
 
 class Due(NamedTuple):
-    """What a wake-up has to do: `todo` slots; `behind` is what the clock made of it, for the next wake-up.
+    """The work of a wake-up: `todo` slots. `behind` is the clock's difference, for the next wake-up.
 
-    With `same` the slot did not advance; with `skipped` so many slots are left out, and the current one is done alone.
+    With `same` the slot did not advance. With `skipped` that many slots are left out, and only the current one is done.
     """
 
     todo: int
@@ -30,13 +30,13 @@ class Due(NamedTuple):
 
 
 def due(current: int, following: int, behind_before: int) -> Due:
-    """How many slots a wake-up has to do.
+    """Return how many slots a wake-up has to do.
 
-    A timer that is a little late once makes two slots due, then none; one that is a little early none, then two. So one
-    slot is done where two are due after a wake-up with one, and where none is due after a wake-up with some.
+    A timer that is slightly late once makes two slots due, then none. One that is slightly early makes none due, then
+    two. So one slot is done if two are due after a wake-up with one, and if none is due after a wake-up with some.
 
     Args:
-        current: the slot that it is.
+        current: the slot of the current time.
         following: the slot after the last that was done.
         behind_before: `Due.behind` of the wake-up before.
     """
@@ -52,10 +52,10 @@ def due(current: int, following: int, behind_before: int) -> Due:
 
 
 def is_due(second: int, frequency: int, remainder: int) -> bool:
-    """Whether an activity happens in this pass of the table."""
+    """Return whether an activity happens in this pass of the table."""
     return second % frequency == remainder
 
 
 def slot_of_us(microseconds: int, period_us: int) -> int:
-    """The slot of a time within a second; a microsecond before its begin is near enough."""
+    """Return the slot of a time within a second. One microsecond before a slot already counts as the slot."""
     return (microseconds + 1) // period_us % SLOTS

@@ -1,6 +1,6 @@
-"""What SCH keeps: its counters, and its two tables with the memory they are in and what makes them good.
+"""SCH's state: its counters, and its two tables with their memory and their validation.
 
-The judges of a table's image stand for SCH_ValidateScheduleData and SCH_ValidateMessageData.
+The functions that judge a table's image replace SCH_ValidateScheduleData and SCH_ValidateMessageData.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ MDT_BAD_MSG_ID = -3
 
 @dataclass(slots=True)
 class SchCounters:
-    """What housekeeping tells of commands, activities and slots."""
+    """Counters of commands, activities and slots, as in the housekeeping packet."""
 
     commands_done: int = 0
     commands_failed: int = 0
@@ -50,7 +50,7 @@ class SchCounters:
     table_passes: int = 0
 
     def reset(self) -> None:
-        """Start anew; the passes go on, since the schedule counts by them."""
+        """Reset the counters. The table pass counter continues, because the schedule counts by it."""
         for field in fields(self):
             if field.name != "table_passes":
                 setattr(self, field.name, 0)
@@ -92,22 +92,22 @@ class Tables:
         _expect_success(self._cfe.tbl.load(self._messages_handle, pk.MESSAGE_TABLE.file))
 
     def acquire(self) -> None:
-        """Let Table Services do what is pending, then take hold of both tables (SCH_AcquirePointers).
+        """Let Table Services perform pending requests, then acquire both tables (SCH_AcquirePointers).
 
         Raises:
-            CfeError: a table cannot be had.
+            CfeError: a table is not available.
         """
         tbl = self._cfe.tbl
         for handle in (self._schedule_handle, self._messages_handle):
             try:
                 tbl.manage(handle)
             except CfeError:
-                pass  # the table stays as it is, and CFE_TBL has told the ground
+                pass  # the table stays unchanged, and CFE_TBL has reported it to the ground
         self._schedule, _ = tbl.get_address(self._schedule_handle)
         self._messages, _ = tbl.get_address(self._messages_handle)
 
     def renew(self) -> None:
-        """Let go of both tables for a moment, so that updates can be done; raises CfeError."""
+        """Release both tables for a moment, so that they can be updated; raises CfeError."""
         for handle in (self._schedule_handle, self._messages_handle):
             self._cfe.tbl.release_address(handle)
         self.acquire()
@@ -138,24 +138,24 @@ class Tables:
     # -- content ---------------------------------------------------------------------------------------------------
 
     def state(self, slot: int, entry: int) -> int:
-        """State of an entry: UNUSED, ENABLED, DISABLED, or something that nobody should have written."""
+        """Return the state of an entry: UNUSED, ENABLED, DISABLED, or an invalid value."""
         return self._schedule[_offset(slot, entry)]
 
     def is_enabled(self, slot: int, entry: int) -> bool:
-        """Whether an entry is enabled."""
+        """Return whether an entry is enabled."""
         return self.state(slot, entry) == pk.ENABLED
 
     def entry(self, slot: int, entry: int) -> dict[str, int]:
-        """The fields of an entry."""
+        """Return the fields of an entry."""
         return pk.SCHEDULE_ENTRY.unpack(self._schedule, _offset(slot, entry))
 
     def message(self, index: int) -> memoryview:
-        """The memory of a message."""
+        """Return the memory of a message."""
         at = index * pk.MAX_MESSAGE_SIZE
         return self._messages[at : at + pk.MAX_MESSAGE_SIZE]
 
     def members_of(self, groups: int) -> list[Place]:
-        """Entries of a group, or of any of some multi-groups: the number is in the highest byte, the rest are bits."""
+        """Return the entries of a group (number in the highest byte) or of any of some multi-groups (other bits)."""
         number = groups & pk.GROUP_NUMBER_MASK
         found = []
         for place in _places():
@@ -171,7 +171,7 @@ class Tables:
         self._cfe.tbl.modified(self._schedule_handle)
 
     def diagnostics(self) -> bytes:
-        """The payload of the diagnostic packet."""
+        """Return the payload of the diagnostic packet."""
         words = [0] * pk.STATE_WORDS
         msg_ids = []
         for number, place in enumerate(_places()):
@@ -198,7 +198,7 @@ def _expect_success(status: int) -> None:
 
 @dataclass(slots=True)
 class TableVerdict:
-    """Entries counted; `status` and `fault` are those of the first bad one: a code below 0, and what the event says."""
+    """Counts of entries. `status` and `fault` describe the first bad one: a code below 0, and the text of the event."""
 
     good: int = 0
     bad: int = 0
@@ -215,12 +215,12 @@ class TableVerdict:
 def judge(
     entries: Iterable[Any], status_of: Callable[[Any], int | None], text_of: Callable[[int, Any], str]
 ) -> TableVerdict:
-    """Look at every entry of a table.
+    """Check every entry of a table.
 
     Args:
         entries: in table order.
-        status_of: 0 for a good entry, None for an unused one, else what is wrong.
-        text_of: what the event says of the bad entry of an index.
+        status_of: returns 0 for a good entry, None for an unused one, otherwise the error code.
+        text_of: returns the event text for a bad entry and its index.
     """
     verdict = TableVerdict()
     for index, entry in enumerate(entries):

@@ -1,4 +1,4 @@
-"""SCH_LAB, the scheduler app: sends the commands of its table, each every so many ticks. NASA's sch_lab v2.3.0.
+"""SCH_LAB, the scheduler app: sends the commands of its table, each with its period in ticks. NASA's sch_lab v2.3.0.
 
 It has neither commands nor telemetry of its own.
 """

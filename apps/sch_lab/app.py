@@ -1,4 +1,4 @@
-"""SCH_LAB's main task: a timer gives it a tick, every tick it sends what is due (sch_lab_app.c).
+"""SCH_LAB's main task: a timer ticks, and at every tick SCH_LAB sends the commands that are due (sch_lab_app.c).
 
 The first 1 Hz packet of TIME starts it, so that it keeps step with the spacecraft's seconds from then on.
 """
@@ -28,7 +28,7 @@ PERF_ID = 36
 
 
 def SCH_LAB_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(PERF_ID)
     app = SchLab(cfe)
     try:
@@ -51,10 +51,10 @@ class SchLab:
         self._pipe = NO_PIPE
 
     def start(self) -> None:
-        """Everything before the first tick.
+        """Prepare everything before the first tick.
 
         Raises:
-            CfeError: no table, or an OSAL object could not be made; the system log says which.
+            CfeError: no table, or an OSAL object could not be made; the system log names it.
         """
         cfe = self._cfe
         timer = self._make_timer()
@@ -113,7 +113,7 @@ class SchLab:
             cfe.os.printf("SCH Error subscribing to 1hz!\n")
 
     def _tick_period(self, tick_rate: int) -> int:
-        """Microseconds of a tick, from ticks a second."""
+        """Return microseconds of a tick, from ticks a second."""
         log = self._cfe.es.write_to_sys_log
         if tick_rate == 0:
             log("SCH_LAB_AppInit: Using default tick rate of 1 second")
@@ -124,7 +124,10 @@ class SchLab:
         return max(1, SECOND_US // tick_rate)
 
     def wait(self) -> None:
-        """One tick: wait for it, then send the commands that are due. Failures are for the events that tell them."""
+        """Wait for one tick, then send the commands that are due.
+
+        Failed sends are reported only by the services' events.
+        """
         cfe = self._cfe
         has_ticked = False
         with suppress(CfeError):

@@ -56,7 +56,7 @@ class ScheduleEntry:
         self._ticks = 0
 
     def tick(self) -> bool:
-        """Count a tick; whether the command is due now."""
+        """Count a tick. Returns whether the command is due now."""
         self._ticks += 1
         if self._ticks < self._period:
             return False
@@ -65,16 +65,16 @@ class ScheduleEntry:
 
 
 def read(table: bytes | memoryview) -> tuple[int, list[ScheduleEntry]]:
-    """The tick rate of a schedule table and its entries that are in use, in table order."""
+    """Return the tick rate of a schedule table and its entries that are in use, in table order."""
     values = TABLE.unpack(table)
     rows = [row for row in values["Config"] if row["PacketRate"]]
     return values["TickRate"], [ScheduleEntry(_message(row), row["PacketRate"]) for row in rows]
 
 
 def _message(row: dict[str, Any]) -> bytes:
-    """What CFE_MSG_Init and CFE_MSG_SetFcnCode make of an entry; SCH_LAB does not look at what they say of it.
+    """Make the message of an entry with CFE_MSG_Init and CFE_MSG_SetFcnCode. SCH_LAB ignores their status.
 
-    A payload that is longer than its field has the rest of the entry behind it.
+    If a payload is longer than its field, the bytes behind it are the rest of the entry.
     """
     msg_id, length = row["MessageID"], row["PayloadLength"]
     if not is_valid_msg_id(msg_id):
@@ -91,10 +91,10 @@ def _message(row: dict[str, Any]) -> bytes:
 
 
 def image(tick_rate: int, rows: list[tuple[int, int, int, bytes]]) -> TableImage:
-    """A schedule table's file.
+    """Return the file of a schedule table.
 
     Args:
-        tick_rate: ticks a second.
+        tick_rate: ticks per second.
         rows: (message id, period in ticks, function code, payload) of each command.
 
     Raises:

@@ -1,7 +1,7 @@
-"""SCH's library: lets other apps hold the schedule for a while (sch_api.c).
+"""SCH's library: lets other apps hold the schedule temporarily (sch_api.c).
 
-An app finds a function with `cfe.os.symbol_lookup` and calls it with its own handle. How often the schedule is held is
-the value of a counting semaphore, which is all that the library keeps.
+An app finds a function with `cfe.os.symbol_lookup` and calls it with its own handle. The number of holds is the value
+of a counting semaphore, which is the library's only state.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ SEMAPHORE = "SCH_LIB"
 
 
 def SCH_LibInit(cfe: Cfe) -> int:
-    """The init function that the startup script names: the schedule is not held."""
+    """Return the init function that the startup script names: the schedule is not held."""
     cfe.os.count_sem_create(SEMAPHORE, 0)
     return CFE_SUCCESS
 
@@ -25,10 +25,10 @@ def SCH_DisableProcessing(cfe: Cfe) -> None:
 
 
 def SCH_EnableProcessing(cfe: Cfe) -> None:
-    """Take one hold back; nothing happens when there is none."""
+    """Release one hold, if there is one."""
     cfe.os.count_sem_timed_wait(cfe.os.count_sem_get_id_by_name(SEMAPHORE), OS_CHECK)
 
 
 def SCH_GetProcessingState(cfe: Cfe) -> bool:
-    """Whether the schedule goes on."""
+    """Return whether the schedule is running."""
     return cfe.os.count_sem_get_info(cfe.os.count_sem_get_id_by_name(SEMAPHORE)).value == 0

@@ -1,6 +1,6 @@
 """TO_LAB, the telemetry output app: sends the packets of its table to UDP port 1235 of the ground.
 
-NASA's to_lab v2.3.0 as it goes with cFE v7.0.0 (equuleus-rc1+dev62).
+NASA's to_lab v2.3.0, the version of cFE v7.0.0 (equuleus-rc1+dev62).
 """
 
 from __future__ import annotations

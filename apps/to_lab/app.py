@@ -24,7 +24,7 @@ MAIN_TASK_PERF_ID = 34
 
 
 def TO_LAB_AppMain(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the app; the startup script names this entry point."""
     cfe.es.perf_log_entry(MAIN_TASK_PERF_ID)
     app = TelemetryOutput(cfe)
     run_status = app.start()
@@ -44,7 +44,7 @@ class TelemetryOutput:
         self._downlink = Downlink(cfe)
 
     def start(self) -> int:
-        """Everything before the first packet; the run status to go on with."""
+        """Prepare everything before the first packet. Returns the run status to continue with."""
         cfe = self._cfe
         try:
             self._register()
@@ -59,7 +59,7 @@ class TelemetryOutput:
         return APP_ERROR if refused else APP_RUN
 
     def work(self) -> None:
-        """One round: what waits for the ground, then the commands."""
+        """Run one round: forward the packets that wait for the ground, then handle the commands."""
         self._downlink.forward(self._telemetry)
         while (packet := self._cfe.sb.receive_buffer(self._commands_pipe, POLL)) is not None:
             self._commands.handle(packet)
@@ -93,7 +93,10 @@ class TelemetryOutput:
         self._commands = ToLabCommands(self._cfe, self._downlink, self._telemetry, self._table, VERSION)
 
     def _subscribe(self) -> bool:
-        """Subscribe to the packets of the table, up to the first row without one; whether the last was refused."""
+        """Subscribe to the packets of the table, up to the first empty row.
+
+        Returns whether the last subscription was refused.
+        """
         refused = False
         for row in pk.SUBSCRIPTIONS.unpack(self._table):
             stream = row["Stream"]

@@ -1,6 +1,6 @@
 """TO_LAB's commands (to_lab_cmds.c, to_lab_dispatch.c).
 
-NASA's code does not look at a command's length; where one is too short, what is missing counts as zeros here.
+NASA's code does not check a command's length. If a command is too short, its missing bytes count as zeros here.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ SAMPLE = {
 
 
 class ToLabCommands:
-    """What the ground can ask of TO_LAB.
+    """TO_LAB's ground commands.
 
     Args:
         cfe: the app's handle.
-        downlink: where packets leave.
+        downlink: sends the packets.
         pipe: the pipe of packets for the ground.
         table: the image of the table.
         version: for the answer to NOOP.
@@ -67,7 +67,7 @@ class ToLabCommands:
             self._commands.handle(command, handler, any_length=True)
 
     def handle(self, packet: bytes) -> None:
-        """Do a command, or tell the ground why not."""
+        """Execute a command, or report the reason for refusing it to the ground."""
         done = self._commands.dispatch(packet)
         if done.outcome == BAD_CODE:
             self._rejected += 1
@@ -143,10 +143,10 @@ class ToLabCommands:
 
 
 def read(command: Command, packet: bytes) -> dict[str, Any]:
-    """The fields of a command, zeros where it is too short."""
+    """Return the fields of a command, zeros where it is too short."""
     return command.read(packet.ljust(command.length, b"\0"))
 
 
 def qos_of(fields: dict[str, Any]) -> int:
-    """Quality of service of a row or a command, as one number."""
+    """Return the quality of service of a row or a command, as one number."""
     return int(fields["Flags"]["Priority"] | fields["Flags"]["Reliability"] << 8)

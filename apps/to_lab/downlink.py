@@ -1,4 +1,4 @@
-"""TO_LAB's socket: sending packets to the ground (to_lab_app.c, to_lab_passthru_encode.c)."""
+"""TO_LAB's socket: sends packets to the ground (to_lab_app.c, to_lab_passthru_encode.c)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SOCKET_SEND_PERF_ID = 35
 
 
 class Downlink:
-    """The socket at which packets leave; nothing leaves before it is enabled."""
+    """The socket that sends packets. It sends nothing before it is enabled."""
 
     def __init__(self, cfe: Cfe) -> None:
         self._cfe = cfe
@@ -28,7 +28,7 @@ class Downlink:
         cfe.os.socket_addr_set_port(self._address, TLM_PORT)
 
     def enable(self, host: str) -> None:
-        """Send to a host from now on. What is no address stands for this computer, as in NASA's code."""
+        """Send to a host from now on. An invalid address stands for this computer, as in NASA's code."""
         self._address = self._cfe.os.socket_addr_init(OS_SocketDomain_INET)
         self._cfe.os.socket_addr_set_port(self._address, TLM_PORT)
         with suppress(OsalError):
@@ -39,14 +39,14 @@ class Downlink:
             self._is_on = True
 
     def close(self) -> None:
-        """What happens when the app's task is deleted."""
+        """Close the socket when the app's task is deleted."""
         self._cfe.os.printf("TO delete callback -- Closing TO Network socket.\n")
         if self._is_on:
             with suppress(OsalError):  # it could not be opened
                 self._cfe.os.close(self._socket)
 
     def forward(self, pipe: int) -> None:
-        """Send what waits in a pipe, fifty packets at most."""
+        """Send the packets that wait in a pipe, fifty at most."""
         for _ in range(MAX_PACKETS):
             packet = self._cfe.sb.receive_buffer(pipe, POLL)
             if packet is None:

@@ -1,6 +1,6 @@
-"""Event ids of TO_LAB (to_lab_eventids.h), and the line numbers that its event texts begin with.
+"""Event ids of TO_LAB (to_lab_eventids.h), and the line numbers at the beginning of its event texts.
 
-NASA's texts say where in the C sources they come from; ground systems show the number, so it is part of the text.
+NASA's texts name their place in the C sources. Ground systems show the number, so it is part of the text.
 """
 
 from __future__ import annotations

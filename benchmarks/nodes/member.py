@@ -1,4 +1,4 @@
-"""One of many small nodes: publishes on a topic of its own and listens to the next one's."""
+"""One of many small nodes: publishes on its own topic and listens to the next one's."""
 
 import rospy
 from std_msgs.msg import UInt32

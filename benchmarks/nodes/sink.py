@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Takes JointStates and looks at one field."""
+"""Receives JointStates and reads one field."""
 
 import rospy
 from sensor_msgs.msg import JointState

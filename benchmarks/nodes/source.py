@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Publishes JointStates of seven joints in bursts that fit into a subscriber's queue, as fast as they are taken."""
+"""Publishes JointStates of seven joints as fast as its subscriber allows, in bursts that fit into its queue."""
 
 import rospy
 from sensor_msgs.msg import JointState

@@ -1,1 +1,1 @@
-"""Programs about compiled applications: NASA's own tests, NASA's answers, another kind of processor."""
+"""Programs for compiled applications: NASA's own tests, NASA's recorded answers, and an emulated processor."""

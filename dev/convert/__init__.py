@@ -1,1 +1,1 @@
-"""Programs about the convertor: public nodes, damaged sources, flights on NASA's cFE."""
+"""Programs for the convertor: public nodes, damaged sources, and flights on NASA's cFE."""

@@ -1,4 +1,4 @@
-"""A small mission in C++ that hears packets of a stranger, which end before what they say."""
+"""A small mission in C++ that receives truncated packets from a foreign sender."""
 
 from __future__ import annotations
 
@@ -90,5 +90,5 @@ LAUNCH = '<param name="value" value="7.0"/>' + node("helper") + node("target")
 
 
 def packet_of(msg_id: int, payload: bytes, flags: int = 0xC0, sequence: int = 0) -> bytes:
-    """A packet with a payload behind the six bytes of its primary header."""
+    """Return a packet with a payload behind the six bytes of its primary header."""
     return struct.pack(">HBBH", msg_id, flags, sequence, len(payload) - 1) + payload

@@ -1,8 +1,7 @@
 """A cFS mission tree with converted ROS nodes in it: conversions, the build, and boots on NASA's cFE.
 
-Such a tree is a checkout of cFS 7.0.0 with its submodules, and sample_defs; it is copied. Needs Linux, cmake, a
-compiler and the rights of root, for `dev.twin.real` boots in namespaces of its own. `dev.convert.real_flights`
-flies.
+The tree is copied from a checkout of cFS 7.0.0 with its submodules and sample_defs. It needs Linux, cmake, a compiler
+and root rights, because `dev.twin.real` boots in its own namespaces. `dev.convert.real_flights` flies it.
 """
 
 from __future__ import annotations
@@ -43,12 +42,15 @@ class MissionTree:
         targets.write_text(APPS.sub(f"SET(cpu1_APPLIST ci_lab {' '.join(apps)})", text), encoding="utf-8")
 
     def convert(self, words: Sequence[str], name: str = "ros_nodes", profile: str = "host") -> list[str]:
-        """Convert nodes into the tree; the names of their applications.
+        """Convert nodes into the tree.
 
         Args:
-            words: what is converted, and options.
-            name: of the folder in apps/.
-            profile: of the nodes.
+            words: the nodes to convert, and options.
+            name: name of the folder in apps/.
+            profile: profile of the nodes.
+
+        Returns:
+            The names of their applications.
         """
         made = self._folder / "apps" / name
         if main(["convert", *words, "-o", str(made), "--profile", profile]):
@@ -61,10 +63,13 @@ class MissionTree:
         return list(apps)
 
     def build(self) -> Path:
-        """Build; the folder of the executable.
+        """Build the tree.
+
+        Returns:
+            The folder of the executable.
 
         Raises:
-            SystemExit: it failed, or the compiler warned of something in the nodes or the library.
+            SystemExit: the build failed, or the compiler warned of the nodes or the library.
         """
         for words in (["SIMULATION=native", "prep"], [], [f"DESTDIR={self._folder / 'build'}", "install"]):
             done = subprocess.run(
@@ -83,11 +88,11 @@ class MissionTree:
         return self._folder / "build/exe/cpu1"
 
     def startup(self, apps: Iterable[str], lines: Iterable[str] = ()) -> bytes:
-        """A startup script with converted nodes.
+        """Return a startup script with converted nodes.
 
         Args:
             apps: names of their applications.
-            lines: what comes before.
+            lines: lines that come first.
         """
         return "\n".join([*lines, *(self._lines[app] for app in apps), "!", ""]).encode()
 
@@ -128,5 +133,5 @@ class MissionTree:
 
 
 def said(cfe: RealCfe) -> str:
-    """What it has printed."""
+    """Return the console output so far."""
     return cfe.console().decode("utf-8", "replace")

@@ -1,10 +1,10 @@
 """Damaged sources for the check: `python -m dev.convert.mutate --files N [--seed S] [--sources FOLDER]`.
 
-Each file is a node, of this module or of a folder, that has been damaged: tokens taken away, doubled and exchanged, the
-end cut off, bytes of junk, braces without partners, deep nesting. The check must come to an end, and must not call
-clean what the compiler, asked here in its own way, does not accept. It is asked of those that the check calls clean,
-which are few. Nodes of this module are compiled against a stub of roscpp of a few lines, so that ten thousand of them
-take less than an hour, not days; those of a folder, one in fifty, against the interface library.
+Each file is a damaged node, from this module or from a folder. The damages are: tokens removed, doubled and exchanged,
+a truncated end, junk bytes, unmatched braces, deep nesting. The check must terminate, and must not call a file clean
+that the compiler rejects. The compiler is started separately here, and only for the few files that the check calls
+clean. Nodes of this module are compiled against a stub of roscpp of a few lines, so that ten thousand of them take
+less than an hour instead of days. Of the nodes of a folder, one in fifty is compiled against the interface library.
 """
 
 from __future__ import annotations
@@ -129,13 +129,13 @@ OWN = Path(__file__).parents[2] / "tests/extra/convert"
 
 
 class Outcome(NamedTuple):
-    """What became of a damaged file.
+    """Result of checking a damaged file.
 
     Attributes:
-        kind: of the damage.
+        kind: kind of the damage.
         of_folder: whether it is compiled against the interface library.
         refused: whether the check refuses it.
-        problem: what is wrong with the check; empty when nothing is.
+        problem: what is wrong with the check; empty if nothing is.
     """
 
     kind: str
@@ -230,12 +230,12 @@ DAMAGES: dict[str, Callable[[random.Random, bytes], bytes]] = {
 
 
 class Damaging:
-    """Damages nodes, and holds the check against the compiler.
+    """Damages nodes and compares the check with the compiler.
 
     Args:
-        seed: of what is drawn.
-        folder: for the files.
-        sources: folder of more nodes.
+        seed: seed of the random numbers.
+        folder: folder for the files.
+        sources: folder with more nodes.
     """
 
     def __init__(self, seed: int, folder: Path, sources: Path = OWN) -> None:
@@ -260,7 +260,7 @@ class Damaging:
             yield self.check(kind, DAMAGES[kind](chance, source), of_folder)
 
     def check(self, kind: str, source: bytes, of_folder: bool) -> Outcome:
-        """Hold the check against the compiler, for one file; `of_folder` compiles it against the interface library."""
+        """Compare the check with the compiler for one file. `of_folder` compiles it against the interface library."""
         file = self._folder / "node.cpp"
         file.write_bytes(source)
         includes = [] if of_folder else [self._stub]
@@ -268,14 +268,14 @@ class Damaging:
         profile = self._chance.choice(list(Profile))
         try:
             report = check_program(program, profile, {})
-        except Exception as error:  # whatever it is, it is what is looked for
+        except Exception as error:  # any exception is a finding here
             return Outcome(kind, of_folder, False, f"{type(error).__name__}: {error}"[:200])
         clean = not report.is_refused
         wrong = clean and not self._compiles(file, includes or [self._headers(profile)], profile)
         return Outcome(kind, of_folder, not clean, "clean, but it does not compile" if wrong else "")
 
     def _headers(self, profile: Profile) -> Path:
-        """The headers of all messages that the nodes of the folder and the library include, as far as known."""
+        """Return the headers of all messages that the nodes of the folder and the library include, as far as known."""
         if profile not in self._messages:
             made = self._messages[profile] = self._folder / f"messages_{profile.name}"
             made.mkdir()
@@ -287,7 +287,7 @@ class Damaging:
         return self._messages[profile]
 
     def _compiles(self, file: Path, includes: list[Path], profile: Profile) -> bool:
-        """The compiler's word, asked in the plainest way."""
+        """Return whether the plain compiler accepts a file."""
         folders = [f"-I{each}" for each in (*includes, *library_includes())]
         command = ["g++", LANGUAGE[0], *profile_flags(profile), "-w", "-fsyntax-only", *folders, str(file)]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
@@ -295,7 +295,7 @@ class Damaging:
 
 
 def main() -> int:
-    """Damage files and tell what came of them."""
+    """Damage files and report the results."""
     parser = argparse.ArgumentParser(prog="python -m dev.convert.mutate", description=__doc__)
     parser.add_argument("--files", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)

@@ -1,4 +1,4 @@
-"""Missions of the packages in the folder nodes: launch files with nodes in C++, flown on this computer."""
+"""Missions of the packages in the folder nodes: launch files with nodes in C++, flown on cfepy."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NODES = Path(__file__).parents[2] / "tests/extra/convert/nodes"
 
 
 def mission_of(package: str, launch: str = "all", **args: str) -> Mission:
-    """The mission of a package's launch file, not begun yet.
+    """Return the mission of a package's launch file, not begun yet.
 
     Args:
         package: its name.

@@ -1,4 +1,4 @@
-"""A small package of ROS nodes in C++, with a launch file of groups, arguments, parameters and remaps."""
+"""A small package of ROS nodes in C++, with a launch file that uses groups, arguments, parameters and remaps."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ FILES = {
 
 
 def ping_package(folder: Path) -> Path:
-    """Write the package below a folder; its path."""
+    """Write the package into a folder. Returns its path."""
     package = folder / "ping"
     for name, text in FILES.items():
         (package / name).parent.mkdir(parents=True, exist_ok=True)

@@ -4,11 +4,11 @@
 
 TREE is a mission tree of cFS 7.0.0 (`dev.convert.mission_tree`), for `arm` with NASA's HK in apps/hk. The flights:
 
-ping    a package with a launch file, a library and a nodelet: its nodes hear each other (--profile host, pool)
-strict  nodes in the profile strict say there what they say on cfepy; one that allocates after its start ends
+ping    a package with a launch file, a library and a nodelet: its nodes exchange messages (--profile host, pool)
+strict  nodes in the profile strict print there the same as on cfepy; one that allocates after its start ends
 lives   two nodes of one program share nothing, and one that is restarted begins anew
-hostile packets that end before what they say, on MsgIds that a node hears, leave it and the others at work
-ends    a call returns whose server is ended meanwhile, and the service is known to be gone
+hostile truncated packets on MsgIds that a node subscribes to do not disturb it or the other nodes
+ends    a call returns if its server ends meanwhile, and the service is then known to be gone
 arm     examples/arm: two nodes close a loop at 1 kHz beside HK, which collects from them and is commanded by a third
 """
 
@@ -44,12 +44,15 @@ GREEDY = "GREEDY: memory was allocated after initialisation: the profile is stri
 
 
 def ping(tree: Path, scratch: Path, profile: str) -> list[str]:
-    """Nodes of a package hear each other; what they said.
+    """Fly nodes of a package that exchange messages.
 
     Args:
         tree: the mission tree.
         scratch: an empty folder.
-        profile: of the nodes.
+        profile: profile of the nodes.
+
+    Returns:
+        The log lines of the nodes.
     """
     package = ping_package(scratch)
     os.environ["ROS_PACKAGE_PATH"] = str(scratch)
@@ -62,7 +65,7 @@ def ping(tree: Path, scratch: Path, profile: str) -> list[str]:
 
 
 def arm(tree: Path, scratch: Path, profile: str) -> list[str]:
-    """5,000 messages each way at 1 kHz, beside HK; what the nodes said."""
+    """Fly 5,000 messages each way at 1 kHz, beside HK. Returns the log lines of the nodes."""
     package = EXAMPLES / "arm"
     mission = MissionTree(tree, scratch, ["hk"])
     words = [str(package / "launch/arm.launch"), "cycles:=5000", "--ids", str(package / "mission")]
@@ -76,7 +79,7 @@ def arm(tree: Path, scratch: Path, profile: str) -> list[str]:
 
 
 def strict(tree: Path, scratch: Path, profile: str) -> list[str]:
-    """Nodes that take no memory once they work; what they said, which is what they say on cfepy."""
+    """Fly nodes that allocate no memory after their start. Returns their log lines, which equal those on cfepy."""
     os.environ["ROS_PACKAGE_PATH"] = f"{NODES}:{TWINS}"
     package = NODES / "strict"
     mission = MissionTree(tree, scratch)
@@ -93,7 +96,7 @@ def strict(tree: Path, scratch: Path, profile: str) -> list[str]:
 
 
 def lives(tree: Path, scratch: Path, profile: str) -> list[str]:
-    """Two nodes of one program, one of which is restarted; what they said."""
+    """Fly two nodes of one program and restart one of them. Returns their log lines."""
     os.environ["ROS_PACKAGE_PATH"] = f"{NODES}:{TWINS}"
     mission = MissionTree(tree, scratch)
     apps = mission.convert([str(NODES / "lives/launch/all.launch")], profile=profile)
@@ -112,7 +115,7 @@ def lives(tree: Path, scratch: Path, profile: str) -> list[str]:
 
 
 def hostile(tree: Path, scratch: Path, profile: str) -> list[str]:
-    """A node hears packets of a stranger, and works on; what it said."""
+    """Send truncated packets from a foreign sender to a node, which must keep working. Returns its log lines."""
     write_package(scratch, SOURCES)
     (scratch / "all.launch").write_text(f"<launch>{LAUNCH}</launch>\n", encoding="utf-8")
     os.environ["ROS_PACKAGE_PATH"] = str(scratch)
@@ -132,7 +135,7 @@ def hostile(tree: Path, scratch: Path, profile: str) -> list[str]:
 
 
 def ends(tree: Path, scratch: Path, profile: str) -> list[str]:
-    """The server of a call is ended; what the caller said."""
+    """End the server during a call. Returns the log lines of the caller."""
     write_package(scratch, ENDING)
     (scratch / "all.launch").write_text(f"<launch>{ENDING_LAUNCH}</launch>\n", encoding="utf-8")
     os.environ["ROS_PACKAGE_PATH"] = str(scratch)
@@ -147,7 +150,7 @@ def ends(tree: Path, scratch: Path, profile: str) -> list[str]:
 
 
 def spoken(lines: Iterable[str]) -> list[str]:
-    """What nodes logged, with their names and without the times, by node."""
+    """Return the log lines of the nodes, with their names and without times, grouped by node."""
     found = (NODE_LINE.match(line) for line in lines)
     return sorted((f"{each[1]} {each[2]}" for each in found if each), key=lambda line: line.split()[0])
 
@@ -163,7 +166,7 @@ FLIGHTS: Mapping[str, Callable[[Path, Path, str], list[str]]] = {
 
 
 def run(arguments: list[str]) -> None:
-    """Fly, and say what came of it."""
+    """Fly and print the results."""
     parser = argparse.ArgumentParser(prog="python -m dev.convert.real_flights", description=__doc__)
     parser.add_argument("tree", type=Path)
     parser.add_argument("names", nargs="+", choices=[*FLIGHTS])

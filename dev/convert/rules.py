@@ -1,4 +1,4 @@
-"""The table of rules in docs/how_to/convertor.md: `python -m dev.convert.rules` writes it anew."""
+"""The table of rules in docs/how_to/convertor.md: `python -m dev.convert.rules` rewrites it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ BEGIN, END = "<!-- rules: made by python -m dev.convert.rules -->", "<!-- end of
 
 
 def table() -> str:
-    """The rules as a table."""
+    """Return the rules as a table."""
     lines = ["| rule | host | pool | strict | what | why | what to do |", "|---|---|---|---|---|---|---|"]
     for rule in RULES.values():
         levels = " | ".join(str(rule.level(profile) or "") for profile in Profile)

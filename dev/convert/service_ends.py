@@ -1,4 +1,4 @@
-"""A small mission in C++ with a service that takes long, and a node that calls it."""
+"""A small mission in C++ with a slow service, and a node that calls it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Missions of one small package with nodes in C++, whose sources a test has as texts."""
+"""Missions of one small package with nodes in C++, whose sources a test gives as texts."""
 
 from __future__ import annotations
 
@@ -21,11 +21,14 @@ MANIFEST = f"""<package format="2"><name>{PACKAGE}</name><version>1.0.0</version
 
 
 def write_package(folder: Path, sources: Mapping[str, str]) -> Path:
-    """Write the package; its folder.
+    """Write the package.
 
     Args:
-        folder: for the package; it is to be in ROS_PACKAGE_PATH.
+        folder: folder for the package; it must be in ROS_PACKAGE_PATH.
         sources: texts of programs, by the names of their files, such as "talker.cpp" and "talker.py".
+
+    Returns:
+        The folder of the package.
     """
     package = folder / PACKAGE
     package.mkdir()
@@ -40,13 +43,13 @@ def write_package(folder: Path, sources: Mapping[str, str]) -> Path:
 
 
 def small_mission(folder: Path, sources: Mapping[str, str], launch: str, profile: str = "host") -> Mission:
-    """The mission of a launch file, not begun yet.
+    """Return the mission of a launch file, not started yet.
 
     Args:
-        folder: an empty one.
+        folder: an empty folder.
         sources: see `write_package`.
-        launch: what stands in the launch file.
-        profile: of the nodes in C++.
+        launch: content of the launch file.
+        profile: profile of the nodes in C++.
     """
     write_package(folder, sources)
     (folder / "startup.scr").write_text("!\n", encoding="utf-8")
@@ -60,11 +63,11 @@ def small_mission(folder: Path, sources: Mapping[str, str], launch: str, profile
 
 
 def node(name: str, program: str = "", inside: str = "") -> str:
-    """The tag of a node; its program is called as it is, if nothing else is said."""
+    """Return the tag of a node. Its program has the node's name unless `program` is given."""
     return f'<node pkg="{PACKAGE}" type="{program or name}" name="{name}" output="screen">{inside}</node>'
 
 
 def said_by(mission: Mission, name: str) -> list[str]:
-    """What a node has logged, without names and times."""
+    """Return the log lines of a node, without names and times."""
     lines = [line for line in mission.console.lines if line.startswith(f"[/{name}] [")]
     return [line.partition("]: ")[2].removesuffix("\x1b[0m") for line in lines]

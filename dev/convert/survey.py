@@ -1,12 +1,13 @@
 """How many public ROS nodes in C++ convert: `python -m dev.convert.survey SOURCES [--json FILE] [--missing FILE]`.
 
 survey.tsv lists nodes of public repositories by commit. SOURCES has a folder OWNER/NAME for each repository, with the
-sources at that commit; those of kind "messages", from which others take definitions, are in _messages/OWNER/NAME. All
-packages of a node's repository are seen, as in a catkin workspace. Each node is checked for the host; one that converts
-there is checked for pool and strict, too. `--report` writes the counts of a JSON file into docs/how_to/convertor.md.
+sources at that commit. Repositories of kind "messages", which only provide definitions, are in _messages/OWNER/NAME.
+All packages of a node's repository are visible, as in a catkin workspace. Each node is checked for the host. If it
+converts there, it is also checked for pool and strict. `--report` writes the counts of a JSON file into
+docs/how_to/convertor.md.
 
-The JSON file is written node by node, and a survey goes on with it: a verdict counts again as long as the check, the
-interface library and the definitions of messages are the same, bit by bit.
+The JSON file is written node by node, and a survey continues it: a verdict remains valid as long as the check, the
+interface library and the definitions of messages are bitwise the same.
 """
 
 from __future__ import annotations
@@ -52,13 +53,13 @@ class Node(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What the check says of a node.
+    """Verdict of the check on a node.
 
     Attributes:
-        repository, file, kind: of the node.
-        refused: by profile: the rules that refuse it; none where it converts.
-        blockers: what refuses it for the host: "rule thing".
-        code: digest of what checked it; see `code_digest`.
+        repository, file, kind: identify the node.
+        refused: the rules that refuse it, by profile; none if it converts.
+        blockers: the rules that refuse it for the host: "rule thing".
+        code: digest of the checking code; see `code_digest`.
     """
 
     repository: str
@@ -70,7 +71,7 @@ class Verdict(NamedTuple):
 
 
 def code_digest() -> str:
-    """A digest of all that verdicts depend on beside the nodes: the check, the interface library, the definitions."""
+    """Return a digest of all that affects verdicts beside the nodes: check, interface library, definitions."""
     root = Path(__file__).parents[2]
     digest = hashlib.sha256()
     for folder in CODE:
@@ -80,7 +81,7 @@ def code_digest() -> str:
 
 
 def listed() -> list[Node]:
-    """All nodes of the list."""
+    """Return all nodes of the list."""
     with LIST.open(encoding="utf-8") as stream:
         return [Node(**row) for row in csv.DictReader(stream, delimiter="\t")]
 
@@ -108,7 +109,7 @@ def verdict_of(node: Node, sources: Path) -> Verdict:
 
 
 def blocker_of(finding: RuleFinding) -> str:
-    """What stands in the way, in words that are the same for all nodes."""
+    """Return the blocking rule and its subject, in words that are the same for all nodes."""
     text = finding.message
     if finding.rule in ("ros-library", "boost-header", "include-unknown", "library-outside"):
         name = text.split()[0]
@@ -119,7 +120,7 @@ def blocker_of(finding: RuleFinding) -> str:
 
 
 def missing(verdicts: Iterable[Verdict]) -> Iterator[str]:
-    """What would free the most nodes, most first: how many it alone stands in the way of, how many it does at all."""
+    """Yield the blockers of most nodes, most first: number of nodes blocked by it alone, and in total."""
     alone: Counter[str] = Counter()
     among: Counter[str] = Counter()
     example: dict[str, str] = {}
@@ -137,7 +138,7 @@ def missing(verdicts: Iterable[Verdict]) -> Iterator[str]:
 
 
 def table(verdicts: list[Verdict]) -> str:
-    """The counts as a part of docs/how_to/convertor.md."""
+    """Return the counts as a part of docs/how_to/convertor.md."""
     total = len(verdicts)
     lines = [f"{total} nodes of {len({each.repository for each in verdicts})} public repositories, by commit:", ""]
     lines += ["| profile | convert | refused |", "|---|---|---|"]
@@ -165,14 +166,14 @@ def write_report(verdicts: list[Verdict]) -> None:
 
 
 def between(text: str, begin: str, end: str, part: str) -> str:
-    """A text with another part between two marks."""
+    """Return a text with another part between two marks."""
     before, _, rest = text.partition(begin)
     _, _, after = rest.partition(end)
     return f"{before}{begin}\n\n{part}\n\n{end}{after}"
 
 
 def read_verdicts(file: Path | None) -> list[Verdict]:
-    """The verdicts of a file; none when there is no such file."""
+    """Return the verdicts of a file, or none if the file does not exist."""
     if file is None or not file.is_file():
         return []
     return [Verdict(**each) for each in json.loads(file.read_text(encoding="utf-8"))]
@@ -185,7 +186,7 @@ def write_verdicts(file: Path | None, verdicts: Iterable[Verdict]) -> None:
 
 
 def main() -> None:
-    """Check all nodes, or those of some repositories."""
+    """Check all nodes, or the nodes of some repositories."""
     parser = argparse.ArgumentParser(prog="python -m dev.convert.survey", description=__doc__)
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")

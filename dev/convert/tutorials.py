@@ -3,7 +3,7 @@
     python -m dev.convert.tutorials SOURCES TREE [--report]
 
 SOURCES has a checkout of github.com/ros/ros_tutorials in ros/ros_tutorials, as `dev.convert.survey` wants it; TREE is
-a mission tree of cFS 7.0.0 (`dev.convert.mission_tree`). `--report` writes the table in docs/how_to/convertor.md anew.
+a mission tree of cFS 7.0.0 (`dev.convert.mission_tree`). `--report` rewrites the table in docs/how_to/convertor.md.
 """
 
 from __future__ import annotations
@@ -37,10 +37,10 @@ class Tutorial(NamedTuple):
     """How a node is flown.
 
     Attributes:
-        shows: patterns of what is printed when it does what it is for.
+        shows: patterns that a working node prints.
         beside: the other nodes that it needs, which start before it.
-        after: those that start after it.
-        args: of its command line.
+        after: nodes that start after it.
+        args: arguments of its command line.
     """
 
     shows: Sequence[str]
@@ -77,7 +77,7 @@ TUTORIALS: Mapping[str, Tutorial] = {
 
 
 class Verdict(NamedTuple):
-    """What became of a node: "flies", rules that refuse it, or what it did not show."""
+    """Result of a node: "flies", rules that refuse it, or the patterns that it did not print."""
 
     name: str
     here: str
@@ -85,7 +85,7 @@ class Verdict(NamedTuple):
 
 
 def refused(package: Path, scratch: Path) -> dict[str, str]:
-    """Rules that refuse nodes, by node.
+    """Return rules that refuse nodes, by node.
 
     Args:
         package: its folder.
@@ -99,20 +99,20 @@ def refused(package: Path, scratch: Path) -> dict[str, str]:
 
 
 def missing(name: str, text: str) -> list[str]:
-    """The patterns of a node that are not met by what was printed."""
+    """Return the patterns of a node that its output does not match."""
     wanted = (each.replace("{name}", name) for each in TUTORIALS[name].shows)
     return [each for each in wanted if not re.search(each, text)]
 
 
 def launch_file(names: Iterable[str], file: Path) -> Path:
-    """A launch file with nodes."""
+    """Return a launch file with nodes."""
     lines = (f'<node pkg="{PACKAGE}" type="{each}" name="{each}" args="{TUTORIALS[each].args}"/>' for each in names)
     file.write_text("\n".join(["<launch>", *lines, "</launch>", ""]), encoding="utf-8")
     return file
 
 
 def crew(name: str) -> list[str]:
-    """A node with those that it is flown with, in their order."""
+    """Return a node with those that it is flown with, in their order."""
     node = TUTORIALS[name]
     return [*node.beside, name, *node.after]
 
@@ -125,7 +125,7 @@ def on_cfepy(name: str, scratch: Path) -> str:
 
 
 def has_started(cfe: RealCfe, name: str) -> bool:
-    """Whether the event of a node's start is on the console."""
+    """Return whether the event of a node's start is on the console."""
     return f"/{name} started" in said(cfe)
 
 
@@ -133,7 +133,7 @@ def on_cfe(name: str, mission: MissionTree, apps: Mapping[str, str], folder: Pat
     """Fly a node on NASA's cFE."""
     first, *others = crew(name)
     with mission.booted(folder, [apps[first]], [CI_LAB]) as cfe:
-        for before, each in pairwise([first, *others]):  # each when the one before is there, as somebody would by hand
+        for before, each in pairwise([first, *others]):  # start each when the one before is up, as a user would by hand
             cfe.wait(partial(has_started, cfe, before), f"start of {before}", LIMIT_S)
             mission.start(cfe, apps[each])
         try:
@@ -170,7 +170,7 @@ def fly(sources: Path, tree: Path, scratch: Path) -> list[Verdict]:
 
 
 def table(found: Sequence[Verdict]) -> str:
-    """The table for the document."""
+    """Return the table for the document."""
     both = sum(each.here == each.there == FLIES for each in found)
     lines = [f"{both} of the {len(found)} nodes of {PACKAGE} fly on both:", ""]
     lines += ["| node | beside | cfepy | NASA's cFE 7.0.0 |", "|---|---|---|---|"]
@@ -181,7 +181,7 @@ def table(found: Sequence[Verdict]) -> str:
 
 
 def run(arguments: list[str]) -> None:
-    """Fly, and say what came of it."""
+    """Fly and print the results."""
     parser = argparse.ArgumentParser(prog="python -m dev.convert.tutorials", description=__doc__)
     parser.add_argument("sources", type=Path)
     parser.add_argument("tree", type=Path)

@@ -1,4 +1,4 @@
-"""Packages of twins: a launch file flies a node in C++, or its twin in Python with `suffix:=.py`; what both published.
+"""Packages of twins: a launch file flies a node in C++, or its twin in Python with `suffix:=.py`, for comparison.
 
 Each package of the folder twins has such a launch file, with a stimulus and the recorder of the package twin_tools.
 """
@@ -35,7 +35,7 @@ class Recorded(NamedTuple):
 
 
 class TwinFlight(NamedTuple):
-    """What is left of a flight: messages in the order in which they came, all lines of the console, the digest."""
+    """Results of a flight: messages in order of arrival, all lines of the console, the digest."""
 
     messages: list[Recorded]
     lines: list[str]
@@ -47,9 +47,9 @@ def fly(package: str, *, python: bool, tasks: str = "thread", seconds: float = S
 
     Args:
         package: its name.
-        python: whether the node in Python flies, in place of the one in C++.
+        python: fly the node in Python instead of the one in C++.
         tasks: "thread" or "greenlet".
-        seconds: of virtual time.
+        seconds: virtual time.
     """
     launch = TWINS / package / "launch/twin.launch"
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(TWINS)}):
@@ -65,10 +65,10 @@ def fly(package: str, *, python: bool, tasks: str = "thread", seconds: float = S
 
 
 def recorded(line: str, python: bool) -> Recorded:
-    """A line of the recorder; a publisher's numbers are as roscpp counts them.
+    """Parse a line of the recorder. Sequence numbers of a publisher count as in roscpp.
 
-    roscpp numbers the messages of a publisher from 0 in header.seq, and rospy from 1. That is so in ROS, too, and the
-    one difference that the bytes of both may have.
+    In header.seq, roscpp numbers the messages of a publisher from 0 and rospy from 1. ROS has the same difference. It
+    is the only one that the bytes of both may have.
     """
     _, _, time, topic, kind, text = [*line.split(" "), ""][:6]
     data = bytes.fromhex(text)

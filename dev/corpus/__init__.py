@@ -1,4 +1,4 @@
-"""Public ROS nodes, unmodified, on cfepy: what each is given and what it must do, and the program that tries it.
+"""Run public ROS nodes unmodified on cfepy: the inputs and expected results of each, and the program that runs them.
 
-Their sources are not here: `python -m dev.corpus fetch FOLDER` gets them from GitHub.
+The sources are not in this repository. `python -m dev.corpus fetch FOLDER` gets them from GitHub.
 """

@@ -1,4 +1,4 @@
-"""`python -m dev.corpus`: fetch the sources of public nodes, run them, report what came of it."""
+"""`python -m dev.corpus`: fetch the sources of public nodes, run them, report the results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from dev.corpus.verdict import Verdict, judge
 
 
 def main() -> int:
-    """Do what the command line says; the exit status."""
+    """Execute the command line. Returns the exit status."""
     arguments = _parser().parse_args()
     try:
         status: int = arguments.action(arguments, read_corpus())
@@ -55,7 +55,7 @@ def _fetch(arguments: argparse.Namespace, corpus: Corpus) -> int:
 
 
 def _run(arguments: argparse.Namespace, corpus: Corpus) -> int:
-    """Run scenarios, each in a process of its own, and say what came of them."""
+    """Run scenarios, each in its own process, and print the results."""
     verdicts = _verdicts(arguments, corpus)
     for verdict in verdicts:
         print(f"{'ok  ' if verdict.passed else 'FAIL'} {verdict.wall_s:5.2f} s  {verdict.id}  {verdict.reason}")
@@ -72,7 +72,7 @@ def _report(arguments: argparse.Namespace, corpus: Corpus) -> int:
 
 
 def _fly(arguments: argparse.Namespace, corpus: Corpus) -> int:
-    """Run scenarios in this process and show what the nodes print."""
+    """Run scenarios in this process and show the nodes' output."""
     sources = _sources(arguments)
     good = True
     for scenario in corpus.chosen(arguments.ids):
@@ -86,7 +86,7 @@ def _fly(arguments: argparse.Namespace, corpus: Corpus) -> int:
 
 
 def _beside(arguments: argparse.Namespace, corpus: Corpus) -> int:
-    """Run scenarios here and on the ROS 1 of this computer, and show what is not alike."""
+    """Run scenarios here and on this computer's ROS 1, and show the differences."""
     sources = _sources(arguments)
     alike = True
     for scenario in corpus.chosen(arguments.ids):

@@ -1,4 +1,4 @@
-"""Driving a node that nobody has read: the observer looks at the graph, and serves what it finds there.
+"""Drive an unknown node: the observer reads the graph and drives every topic and service that it finds.
 
 Every topic that the node subscribes to gets the same messages in each run, every service the same requests, and every
 topic that it publishes is recorded. It runs on ROS as well as on cfepy.
@@ -21,7 +21,7 @@ NAMED = {"frame_id": "odom", "child_frame_id": "base_link", "encoding": "rgb8"} 
 
 
 def filled(kind, index):
-    """A message, the same in each run but for times: the `index`th one of its kind."""
+    """Return the `index`th message of a type. It is the same in each run, except for times."""
     message = kind()
     for number, (name, type_name) in enumerate(zip(message.__slots__, message._slot_types, strict=True)):
         setattr(message, name, _value(name, type_name, index, number))
@@ -54,7 +54,7 @@ def _value(name, type_name, index, number):
 
 
 def _parsed(type_name):
-    """The base of a type, whether it is an array, and its length or None."""
+    """Return the base of a type, whether it is an array, and its length or None."""
     if not type_name.endswith("]"):
         return type_name, False, None
     base, _, length = type_name[:-1].partition("[")
@@ -149,7 +149,7 @@ class Drive:
             rospy.sleep(0.1)
 
     def _look(self):
-        """Take up what has come to the graph."""
+        """Handle new entries in the graph."""
         published, subscribed, offered = self._master.getSystemState()
         types = dict(self._master.getTopicTypes())
         for topic, nodes in published:

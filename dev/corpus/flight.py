@@ -1,4 +1,4 @@
-"""Flying one scenario: a mission of the node, its helpers and the observer, in a folder of its own."""
+"""Fly one scenario: a mission of the node, its helpers and the observer, in its own folder."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ from rospy_shim.types.config import NodeConfig, RosConfig
 
 NODE, OBSERVER = "NODE", "OBSERVER"
 STEP_S = 0.25
-STAND_INS = Path(__file__).with_name("stand_ins")  # what nodes import and their computers have installed
+STAND_INS = Path(__file__).with_name("stand_ins")  # packages that nodes expect on their computers
 BAGS = Path(__file__).parents[2] / "tests/data/bags"
-LONGEST_S = 60.0  # virtual time that a stimulus, or a node which ends by itself, may take
+LONGEST_S = 60.0  # limit in virtual time for a stimulus, or for a node that ends without being asked
 SHUTDOWN_S = 6.0  # from being asked to end until it counts as stuck
 _ENTRY = "CFE_APP, {file}, __main__, {app}, {priority}, 16384, 0x0, 0;\n"
-_PRIORITIES = {OBSERVER: 90}  # what it offers is there before a node asks for it; the others have 100
+_PRIORITIES = {OBSERVER: 90}  # so that its services exist before a node asks for them; the others have 100
 
 
 class Flight:
     """One scenario's run.
 
     Args:
-        scenario: what to fly.
-        sources: where the nodes are.
-        folder: an empty folder; scripts appear in it under short names, because a line of a startup script is short.
+        scenario: the scenario to fly.
+        sources: locates the nodes.
+        folder: an empty folder. Scripts appear in it under short names, because a line of a startup script is short.
         tasks: "thread" or "greenlet".
     """
 
@@ -61,7 +61,7 @@ class Flight:
             ended = dict(_graph(mission).ended)
         names = {
             app: end.name for app, end in _graph(mission).ended.items()
-        }  # also of those that the end of it all ended
+        }  # including nodes that only the end of the run stopped
         return self._outcome(ended, names, console.lines, ended_itself, time.perf_counter() - begun)
 
     # -- before ------------------------------------------------------------------------------------------------------
@@ -85,7 +85,7 @@ class Flight:
         return MissionSpec(scenario.id, folder, startup, None, "linux", RosConfig(nodes, {}, params))
 
     def _place(self, app: str, program: Program) -> str:
-        """Let the node's package appear in the mission's folder; the script's path there."""
+        """Place the node's package in the mission's folder. Returns the script's path there."""
         package, script = self._sources.script(program)
         link = app[0].lower() + app.strip(ascii_uppercase)
         (self._folder / link).symlink_to(package)
@@ -115,7 +115,7 @@ class Flight:
     # -- meanwhile ---------------------------------------------------------------------------------------------------
 
     def _watch(self, mission: Mission) -> bool:
-        """Run until the scenario is over; whether the node ended by itself before that."""
+        """Run until the scenario is over. Returns whether the node ended before that without being asked."""
         done = os.path.realpath(self._folder / "done")
         self._run_until(mission, lambda: mission.run_files is not None and mission.run_files.exists(done), LONGEST_S)
         if self._scenario.ends_itself:
@@ -154,7 +154,7 @@ class Flight:
 
 
 def _graph(mission: Mission) -> RosRuntime:
-    """The mission's ROS, which is there once its nodes are."""
+    """Return the mission's ROS, which is there once its nodes are."""
     assert mission.ros is not None
     return mission.ros
 
@@ -164,7 +164,7 @@ def _line(app: str, file: str) -> str:
 
 
 def _printed(lines: list[str], app: str, names: dict[str, str]) -> str:
-    """What a node printed; its lines are marked with its application's name, and with its own from init_node on."""
+    """Return a node's output. Its lines carry its application's name, and its own name from init_node on."""
     marks = [f"[{name}] " for name in {app, names.get(app, app)}]
     found = [line.partition("] ")[2] for line in lines if line.startswith(tuple(marks))]
     return "".join(f"{line}\n" for line in found)

@@ -1,6 +1,6 @@
-"""What must be alike in two runs of a node: everything that is not a time, a number of the host, or an order of chance.
+"""Compare two runs of a node: everything but times, numbers of the host, and nondeterministic order must be equal.
 
-A topic that is published again and again at a rate is the sequence of its different messages; times are left out, and
+A topic that is published repeatedly at a rate counts as the sequence of its different messages. Times are left out, and
 floats count to six digits.
 """
 
@@ -28,23 +28,23 @@ _FRAMES = re.compile(r"^Traceback \(most recent call last\):\n(?:[ \t].*\n|\n)*"
 
 
 def messages(found: Iterable[Any]) -> list[Any]:
-    """Messages of a topic without their times; equal ones in a row are one."""
+    """Return the messages of a topic without their times. Equal consecutive messages count once."""
     return [message for message, _ in groupby(plain(message) for message in found)]
 
 
 def lines(text: str) -> list[str]:
-    """What a node printed, without colours, times, addresses, folders and frames; equal lines in a row are one."""
+    """Return a node's output without colours, times, addresses, folders and frames. Equal lines in a row count once."""
     kept = (_without_times(line) for line in _FRAMES.sub("Traceback: ", text).splitlines())
     return [line for line, _ in groupby(line for line in kept if line.strip())]
 
 
 def digest(thing: Any) -> str:
-    """Eight digits that stand for it."""
+    """Return a digest of eight digits."""
     return hashlib.sha256(json.dumps(thing, sort_keys=True).encode()).hexdigest()[:8]
 
 
 def differences(one: Outcome, other: Outcome) -> dict[str, tuple[Any, Any]]:
-    """What is not alike, by what it is, with what both have."""
+    """Return the differences, by subject, with both values."""
     pairs: dict[str, tuple[Any, Any]] = {
         "status": (one.status, other.status),
         "ended itself": (one.ended_itself, other.ended_itself),
@@ -63,7 +63,7 @@ def differences(one: Outcome, other: Outcome) -> dict[str, tuple[Any, Any]]:
 
 
 def plain(value: Any) -> Any:
-    """Plain data without times."""
+    """Return plain data without times."""
     if isinstance(value, dict):
         if value.keys() == {"secs", "nsecs"}:
             return "time" if value["secs"] > 1_000_000 else value

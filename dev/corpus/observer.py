@@ -1,4 +1,4 @@
-"""The node beside the node that is tried: it records topics, and executes the stimulus with the names below.
+"""The observer node beside the tested node: it records topics, and executes the stimulus with the names below.
 
     every(hz, topic, type, message or function of a count, n)   publish regularly
     pub(topic, type, latch, queue_size), waitsub(topic)         publish by hand
@@ -8,8 +8,8 @@
     N, T, R                                                     counts, messages as plain data, remarks
     mc(type), sc(type), conv(value)                             classes by name; a message as plain data
 
-It is an ordinary node and would run on ROS as well. Usage: observer.py FOLDER, with its scenario.json in the folder;
-it writes done and result.json there, and ends when a file called end appears.
+It is an ordinary node and also runs on ROS. Usage: observer.py FOLDER, with its scenario.json in the folder.
+It writes done and result.json there, and ends when a file called end appears.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""Running scenarios side by side, each in a process of its own, with the process's start in its time."""
+"""Run scenarios in parallel, each in its own process. Its time includes the start of the process."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ LONGEST_S = 120
 
 
 def run_all(scenarios: Sequence[Scenario], sources: Sources, jobs: int, tasks: str) -> dict[str, Verdict]:
-    """Run scenarios, `jobs` at a time; verdicts by name."""
+    """Run scenarios, `jobs` at a time. Returns verdicts by name."""
     with ThreadPoolExecutor(jobs) as pool:
         verdicts = pool.map(lambda scenario: _run_apart(scenario, sources, tasks), scenarios)
         return {verdict.id: verdict for verdict in verdicts}
@@ -42,7 +42,7 @@ def _run_apart(scenario: Scenario, sources: Sources, tasks: str) -> Verdict:
 
 
 def main(name: str, sources: str, tasks: str) -> None:
-    """One scenario in this process; its outcome is the last line of the output."""
+    """Run one scenario in this process. The last line of the output is its result."""
     scenario = read_corpus().scenarios[name]
     with tempfile.TemporaryDirectory() as folder:
         print(json.dumps(asdict(Flight(scenario, Sources(Path(sources)), Path(folder), tasks).run())))

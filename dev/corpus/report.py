@@ -1,4 +1,4 @@
-"""docs/reference/generated/compatibility.md, the page about which public nodes run."""
+"""docs/reference/generated/compatibility.md, the page about the public nodes that run."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from dev.corpus.scenarios import Corpus
 from dev.corpus.sources import ENVIRONMENT
 from dev.corpus.verdict import Verdict
 
-DRIVE = "drive()"  # the stimulus of a node that nobody has read
+DRIVE = "drive()"  # the stimulus of an unknown node
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "compatibility.md"
 _HEAD = """# Compatibility
 
@@ -43,7 +43,7 @@ python -m dev.corpus run --sources ~/corpus --jobs 2
 
 
 def page(corpus: Corpus, verdicts: Sequence[Verdict]) -> str:
-    """The page's text."""
+    """Return the page's text."""
     passed = sum(verdict.passed for verdict in verdicts)
     driven = [scenario for scenario in corpus.scenarios.values() if scenario.stimulus == DRIVE]
     silent = sum(

@@ -1,7 +1,7 @@
-"""Flying one scenario on a real ROS 1 of this computer: the same node, the same observer, a master of its own.
+"""Fly one scenario on a real ROS 1 of this computer: the same node, the same observer, and its own master.
 
-It takes Debian's python3-rospy and python3-rosmaster. What the nodes import besides is found in the folders of
-CFEPY_ROS_PYTHONPATH, and libraries in those of LD_LIBRARY_PATH.
+It needs Debian's python3-rospy and python3-rosmaster. Other modules that the nodes need are searched in the folders of
+CFEPY_ROS_PYTHONPATH, and libraries in the folders of LD_LIBRARY_PATH.
 """
 
 from __future__ import annotations
@@ -27,15 +27,15 @@ from dev.host_ports import free_port
 PYTHON, MASTER = "/usr/bin/python3", "/usr/bin/rosmaster"
 PATH = "CFEPY_ROS_PYTHONPATH"
 HERE = Path(__file__).parent
-OF_HOST = "the rosdep view is empty"  # what a computer without rosdep's files says
+OF_HOST = "the rosdep view is empty"  # printed by a computer without rosdep's files
 
 
 class RosFlight:
     """One scenario's run on ROS.
 
     Args:
-        scenario: what to fly.
-        sources: where the nodes are.
+        scenario: the scenario to fly.
+        sources: locates the nodes.
         folder: an empty folder.
     """
 

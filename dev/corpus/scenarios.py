@@ -1,4 +1,4 @@
-"""The scenarios: a node of a public repository, what happens around it, and what must come of it (scenarios.json)."""
+"""The scenarios: a node of a public repository, its environment, and the expected results (scenarios.json)."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ class Scenario:
 
     Attributes:
         id: its name.
-        node: the node that is tried.
-        sha256: of its script; a script with another one is not the node that is meant.
+        node: the tested node.
+        sha256: digest of its script; a script with another digest is not the intended node.
         helpers: nodes that run beside it.
         needs: further repositories whose packages it imports.
-        namespace: the node's, "/" or deeper.
-        params: on the parameter server from the start, by full name.
-        keys: what is typed at the node's terminal; None leaves it without one.
-        observe: topics that are recorded, with their types.
+        namespace: namespace of the node, "/" or deeper.
+        params: initial parameters of the parameter server, by full name.
+        keys: input at the node's terminal; None runs it without a terminal.
+        observe: recorded topics with their types.
         stimulus: Python text that the observer executes; see `observer.py` for its names.
         seconds: virtual time that the scenario lasts, if the stimulus does not take longer.
-        ends_itself: whether the node is waited for after that; else it is asked to end.
+        ends_itself: wait until the node ends after that; otherwise it is asked to end.
         expect: Python expressions that must be true; see `verdict.py` for their names.
     """
 
@@ -68,7 +68,7 @@ class Corpus(NamedTuple):
     commits: Mapping[str, str]
 
     def chosen(self, ids: list[str]) -> list[Scenario]:
-        """The scenarios of these names, all when there are none.
+        """Return the scenarios of these names, or all if no names are given.
 
         Raises:
             UsageError: there is no scenario of that name.

@@ -1,7 +1,7 @@
-"""The repositories that the nodes come from: fetching them, each at its commit, and finding them again.
+"""The repositories of the nodes: fetch each at its commit, and locate them.
 
-A repository is a folder "owner+name" below the folder of sources. Large files of no use to a node, such as meshes and
-pictures, are left out.
+A repository is a folder "owner+name" below the folder of sources. Large files that a node does not need, such as meshes
+and pictures, are left out.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ class Sources:
         self.root = folder.absolute()
 
     def folder(self, repo: str) -> Path:
-        """Where a repository is."""
+        """Return where a repository is."""
         return self.root / repo.replace("/", "+")
 
     def script(self, program: Program) -> tuple[Path, str]:
-        """The folder of a program's package, or its repository when it is in none, and the script's path in it."""
+        """Return the folder of a program's package, or else its repository, and the script's path in it."""
         root = self.folder(program.repo)
         script = root / program.path
         inside = [folder for folder in script.parents if folder.is_relative_to(root)]
@@ -47,7 +47,7 @@ class Sources:
         return package, str(script.relative_to(package))
 
     def missing(self, scenario: Scenario) -> str:
-        """What a scenario lacks here, "" when it is complete."""
+        """Return which part of a scenario is missing here, or "" if it is complete."""
         lacking = [repo for repo in scenario.repos if not self.folder(repo).is_dir()]
         if lacking:
             return f"no sources of {', '.join(lacking)} in {self.root}; run `{FETCH}`"
@@ -62,15 +62,18 @@ class Sources:
         return ""
 
     def fetch(self, repo: str, commit: str, mirrors: Path | None = None) -> bool:
-        """Get a repository at a commit, unless it is there already; whether it had to be got.
+        """Fetch a repository at a commit, unless it is already present.
 
         Args:
             repo: "owner/name" on GitHub.
-            commit: its full name.
-            mirrors: a folder with bare repositories as owner+name/repo, to be used instead of GitHub.
+            commit: its full hash.
+            mirrors: a folder with bare repositories as owner+name/repo, to use instead of GitHub.
+
+        Returns:
+            Whether it had to be fetched.
 
         Raises:
-            UsageError: git could not get it.
+            UsageError: git could not fetch it.
         """
         target = self.folder(repo)
         if target.is_dir():
@@ -86,18 +89,18 @@ class Sources:
         return True
 
     def fetch_all(self, commits: Mapping[str, str], mirrors: Path | None = None) -> list[str]:
-        """Get all repositories that are not there yet; their names."""
+        """Fetch all repositories that are missing. Returns their names."""
         return [repo for repo, commit in commits.items() if self.fetch(repo, commit, mirrors)]
 
 
 def _download(url: str, commit: str, bare: Path) -> None:
-    """The files of one commit, without its history, and without what is too large to be a program."""
+    """Fetch the files of one commit, without its history and without files too large to be programs."""
     _git(bare, "init", "--quiet", "--bare", ".")
     _git(bare, "fetch", "--quiet", "--depth", "1", f"--filter=blob:limit={_LARGEST}", url, commit)
 
 
 def _files(bare: Path, commit: str) -> Iterator[tuple[str, bytes]]:
-    """Name and content of the files of a commit that a program may need."""
+    """Yield the name and content of the files of a commit that a program may need."""
     entries = _git(bare, "ls-tree", "-r", "-z", "--format=%(objecttype) %(objectname) %(path)", commit).decode()
     names = [entry.split(" ", 2)[1:] for entry in entries.split("\0") if entry.startswith("blob ")]
     wanted = [(blob, name) for blob, name in names if not name.lower().endswith(_LEFT_OUT)]

@@ -1,4 +1,4 @@
-"""What came of a scenario, and whether its expectations hold."""
+"""Result of a scenario, and whether its expectations hold."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from dev.corpus.scenarios import Scenario
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What a run left behind.
+    """Results of a run.
 
     Attributes:
         counts, messages, remarks, rates: the observer's N, T, R, and messages per second by topic.
-        status: the node's exit status, None when it had to be killed.
+        status: the node's exit status, None if it had to be killed.
         ended_itself: whether it ended before it was asked to.
-        out, helpers_out: what the node and its helpers printed.
+        out, helpers_out: output of the node and of its helpers.
         files: sizes of the files in the scenario's folder, as "@TMP/name".
-        wall_s: seconds of wall time that the run took.
+        wall_s: wall time of the run, s.
     """
 
     counts: Mapping[str, int] = field(default_factory=dict)
@@ -38,7 +38,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether a scenario did what it must; `reason` says what did not hold, "" when all did."""
+    """Whether all expectations of a scenario hold. `reason` names those that do not, or is ""."""
 
     id: str
     reason: str
@@ -53,9 +53,9 @@ class Verdict:
 def judge(scenario: Scenario, outcome: Outcome) -> Verdict:
     """Evaluate a scenario's expectations.
 
-    They see N, T, R, rate, rc, out, hout (of the helpers), `approx(a, b, tolerance)`, and rec with self_exit and files.
-    Of nodes that were driven, digests of what came on ROS stand there (`likeness.py`): of `like(topic)`, of `said`, of
-    `about(remark)`.
+    They can use N, T, R, rate, rc, out, hout (output of the helpers), `approx(a, b, tolerance)`, and rec with self_exit
+    and files. For driven nodes, they contain digests of the results on ROS (`likeness.py`): of `like(topic)`, of
+    `said`, of `about(remark)`.
     """
     names = {
         "N": outcome.counts,
@@ -80,7 +80,7 @@ def _holds(expression: str, names: dict[str, Any]) -> bool:
     try:
         return bool(eval(expression, dict(names)))
     except (LookupError, TypeError, ValueError, AttributeError):
-        return False  # what it looks at is not there
+        return False  # the expression uses a value that is missing
 
 
 def _approx(value: float, expected: float, tolerance: float = 1e-9) -> bool:
@@ -88,7 +88,7 @@ def _approx(value: float, expected: float, tolerance: float = 1e-9) -> bool:
 
 
 def _last_error(outcome: Outcome) -> list[str]:
-    """The line that tells most about a failure: the last one of a traceback, or what the stimulus ended with."""
+    """Return the main line of a failure: the last one of a traceback, or the error that ended the stimulus."""
     if "stimulus failed" in outcome.remarks:
         return [f"stimulus: {outcome.remarks['stimulus failed'].strip().splitlines()[-1]}"]
     lines = outcome.out.splitlines()

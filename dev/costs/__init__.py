@@ -1,1 +1,1 @@
-"""What each test costs: the table that says which tests the quick loop leaves out, and what measures for it."""
+"""The cost of each test: the table of tests that the quick loop leaves out, and the programs that measure it."""

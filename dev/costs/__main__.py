@@ -1,8 +1,8 @@
-"""`python -m dev.costs`: measures what each test costs, and writes `tests/costs.tsv`.
+"""`python -m dev.costs`: measures the CPU time of each test, and writes `tests/costs.tsv`.
 
-The quick loop has the tests that are not in that table. Tests that were dear the first time are run once more, and the
-lesser cost counts: whoever comes first fills caches for the others. With files or folders of tests, only those are
-measured, and lines of others are kept.
+The quick loop has the tests that are not in that table. Tests that were too expensive the first time are run once more,
+and the lower cost counts, because the first test fills caches for the others. With files or folders of tests, only
+those are measured, and lines of others are kept.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from dev.costs.table import DEAR_S, PATH, ROOT, SLOW_S, Table, file_of
 def run(folder: Path, words: Sequence[str]) -> None:
     """Run tests, in this environment and with the meter."""
     command = [sys.executable, "-m", "pytest", "-p", "dev.costs.meter", *words]
-    subprocess.run(command, cwd=ROOT, env=os.environ | {FOLDER: str(folder)}, check=False)  # failures are no costs
+    subprocess.run(command, cwd=ROOT, env=os.environ | {FOLDER: str(folder)}, check=False)  # failures do not matter
 
 
 def dear(costs: dict[str, float]) -> list[str]:
-    """The files with tests that the quick loop would leave out."""
+    """Return the files with tests that the quick loop would leave out."""
     return sorted({file_of(test) for test, cost in costs.items() if cost >= DEAR_S})
 
 
 def main() -> None:
-    """Measure, tell what is too dear, and write the table."""
+    """Measure, list the tests that are too expensive, and write the table."""
     parser = argparse.ArgumentParser(prog="python -m dev.costs", description=__doc__)
     parser.add_argument("paths", nargs="*", metavar="PATH", help="files or folders of tests in place of all of them")
     parser.add_argument("--slow", action="store_true", help="measure the slow tests, once, and write no table")

@@ -1,9 +1,8 @@
-"""A plugin of pytest that measures what each test costs: `-p dev.costs.meter`, in all processes of pytest-xdist.
+"""A plugin of pytest that measures the cost of each test: `-p dev.costs.meter`, in all processes of pytest-xdist.
 
-A cost is the CPU time of set-up, call and teardown, of this process and of those that it started and waited for:
-other than time on a clock on the wall, it counts nothing of other programs, though a busy computer adds to it. What a
-fixture of a module or of the whole session costs is shared by all its users, since chance decides which of them is
-the first.
+A cost is the CPU time of set-up, call and teardown, in this process and in the child processes that it waited for.
+Unlike wall time, it excludes other programs, although a busy computer increases it. All users of a module or session
+fixture share its cost, because the order of tests decides which of them is the first.
 """
 
 from __future__ import annotations
@@ -22,7 +21,7 @@ FOLDER = "CFEPY_COSTS"
 
 
 def cpu_time() -> float:
-    """The CPU time of this process and of the children that it waited for, in seconds."""
+    """Return the CPU time of this process and of the children that it waited for, in seconds."""
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + children.ru_utime + children.ru_stime  # os.times counts in steps of 10 ms
 
@@ -62,7 +61,7 @@ class Meter:
 
 
 def uses(item: pytest.Item, fixture: pytest.FixtureDef[object], scope: pytest.Item | pytest.Collector) -> bool:
-    """Whether a test gets the fixture that was made for a module, class, package or session."""
+    """Return whether a test gets the fixture that was made for a module, class, package or session."""
     return fixture.argname in getattr(item, "fixturenames", ()) and scope in item.listchain()
 
 
@@ -73,7 +72,10 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 def measured(folder: Path) -> dict[str, float]:
-    """CPU time in seconds of each test, by its id; of several runs the least, since only the first fills caches."""
+    """Return the CPU time in seconds of each test, by id.
+
+    Of several runs the minimum counts, since only the first fills caches.
+    """
     parts: dict[str, dict[str, float]] = {}
     for tests, part, cost in rows(folder):
         for test in tests:
@@ -83,7 +85,7 @@ def measured(folder: Path) -> dict[str, float]:
 
 
 def rows(folder: Path) -> Iterator[tuple[list[str], str, float]]:
-    """What the meters wrote: tests, the part of their cost (a fixture, or "" for the test itself), and the cost."""
+    """Yield the measurements: tests, the part of their cost (a fixture, or "" for the test itself), and the cost."""
     for path in sorted(folder.glob("*.jsonl")):
         for line in path.read_text(encoding="utf-8").splitlines():
             tests, part, cost = json.loads(line)

@@ -1,7 +1,8 @@
-"""The table of costs, `tests/costs.tsv`: which tests the quick loop leaves out, and which of them are slow ones.
+"""The table of costs, `tests/costs.tsv`: the tests that the quick loop leaves out, and the slow ones among them.
 
-A line is a cost in milliseconds and what has it: a case of a test, a test with most of its cases, of which the dearest
-counts, or a file none of whose tests is quick. What is in no line is quick, or was not measured yet.
+A line is a cost in milliseconds and its subject: a case of a test, a test, or a file. A test stands for most of its
+cases, and the most expensive case counts. A file stands there if none of its tests is quick. Tests without a line are
+quick, or were not measured yet.
 """
 
 from __future__ import annotations
@@ -19,12 +20,12 @@ SLOW_S = 0.2  # of CPU time: such a test is a slow one
 
 
 def file_of(test: str) -> str:
-    """The file of a test, relative to the root of the checkout."""
+    """Return the file of a test, relative to the root of the checkout."""
     return test.partition("::")[0]
 
 
 def function_of(test: str) -> str:
-    """A test without its case."""
+    """Return a test without its case."""
     return test.partition("[")[0]
 
 
@@ -37,21 +38,21 @@ class Table:
 
     @classmethod
     def read(cls, path: Path = PATH) -> Table:
-        """The table of a file."""
+        """Return the table of a file."""
         rows = (line.split("\t") for line in path.read_text(encoding="utf-8").splitlines())
         return cls({name: int(cost) / 1000 for cost, name in rows})
 
     def write(self, path: Path = PATH) -> None:
-        """Keep the table, sorted by what costs, such that a change of one test is a change of one line."""
+        """Write the table, sorted by subject so that a change of one test changes one line."""
         rows = (f"{math.ceil(cost * 1000)}\t{name}\n" for name, cost in sorted(self.costs.items()))
         path.write_text("".join(rows), encoding="utf-8")
 
     def __contains__(self, test: object) -> bool:
-        """Whether a test is a dear one, by its id (or a whole file, by its path)."""
+        """Return whether a test is a dear one, by its id (or a whole file, by its path)."""
         return isinstance(test, str) and not self.costs.keys().isdisjoint((test, function_of(test), file_of(test)))
 
     def is_slow(self, test: str) -> bool:
-        """Return whether a test, by its id, needs so much CPU time that it is left to the slow tests."""
+        """Return whether a test, given by its id, needs so much CPU time that it counts as slow."""
         return any(self.costs.get(name, 0.0) >= SLOW_S for name in (test, function_of(test), file_of(test)))
 
     @functools.cached_property
@@ -60,7 +61,7 @@ class Table:
         return frozenset(file_of(name) for name, cost in self.costs.items() if cost >= SLOW_S)
 
     def merged(self, measured: Mapping[str, float]) -> Table:
-        """This table, with other lines for the files that were measured.
+        """Return this table with new lines for the measured files.
 
         Args:
             measured: CPU time in seconds of each test that was run, by its id.
@@ -71,9 +72,9 @@ class Table:
 
 
 def lines(measured: Mapping[str, float]) -> Iterator[tuple[str, float]]:
-    """Yield the lines for tests: as few as say the same, with the highest cost of the tests that a line stands for.
+    """Yield as few lines as possible for tests, each with the highest cost of its tests.
 
-    No line stands for slow tests and for others.
+    A line never covers both slow tests and others.
     """
     for file, tests in grouped(measured, file_of):
         if all(cost >= DEAR_S for cost in tests.values()) and _are_alike(tests.values()):
@@ -97,12 +98,12 @@ def _lines_of(function: str, cases: Mapping[str, float]) -> Iterator[tuple[str, 
 
 
 def _are_alike(costs: Collection[float]) -> bool:
-    """Return whether all tests are slow ones, or none is."""
+    """Return whether all tests are slow, or none is."""
     return min(costs) >= SLOW_S or max(costs) < SLOW_S
 
 
 def grouped(tests: Mapping[str, float], name_of: Callable[[str], str]) -> Iterable[tuple[str, dict[str, float]]]:
-    """Tests by what they belong to."""
+    """Group tests by their containing test or file."""
     groups: dict[str, dict[str, float]] = {}
     for test, cost in tests.items():
         groups.setdefault(name_of(test), {})[test] = cost

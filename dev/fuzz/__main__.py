@@ -14,11 +14,11 @@ from dev.fuzz.kinds import KINDS
 from dev.fuzz.runs import Failed, failures
 
 PATIENCE_S = 5.0
-MEMORY = 500 << 20  # bytes, besides what the interpreter has when it begins
+MEMORY = 500 << 20  # bytes, in addition to the interpreter's memory at the start
 
 
 def main() -> int:
-    """Do what the command line says; the exit status is 1 when a case failed."""
+    """Execute the command line. Returns exit status 1 if a case failed."""
     parser = argparse.ArgumentParser(prog="python -m dev.fuzz", description=__doc__)
     parser.add_argument("kinds", nargs="*", metavar="KIND", help=f"all when none is given: {', '.join(KINDS)}")
     parser.add_argument("--count", type=int, default=10_000)
@@ -28,14 +28,14 @@ def main() -> int:
     chosen = parser.parse_args()
     failed = 0
     for name in chosen.kinds or KINDS:
-        KINDS[name].samples()  # a mission may be flown for one, outside the limits
+        KINDS[name].samples()  # before the limits apply, because this may fly a mission
         _limit_memory()
         failed += _do(name, chosen)
     return 1 if failed else 0
 
 
 def _do(name: str, chosen: argparse.Namespace) -> int:
-    """All cases of a kind; how many failed."""
+    """Run all cases of a kind. Returns the number of failures."""
     begun, seen = time.monotonic(), Counter[str]()
     with TemporaryDirectory() as folder:
         for each in failures(name, chosen.count, chosen.seed, Path(folder), PATIENCE_S):
@@ -52,14 +52,14 @@ def _do(name: str, chosen: argparse.Namespace) -> int:
 
 
 def _cause(failed: Failed) -> str:
-    """Where it happened, and what; failures of one cause are counted together."""
+    """Return the location and the error of a failure. Failures of one cause are counted together."""
     lines = failed.what.strip().split("\n")
     places = [line.strip() for line in lines if line.startswith('  File "')]
     return f"{places[-1] if places else ''} {lines[-1].partition(':')[0]}"
 
 
 def _limit_memory() -> None:
-    """From now on the process gets so much more memory and not more; a case that wants it fails."""
+    """Limit the memory that this process may allocate from now on. A case that needs more fails."""
     pages = int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[0])
     limit = pages * resource.getpagesize() + MEMORY
     resource.setrlimit(resource.RLIMIT_AS, (limit, resource.RLIM_INFINITY))

@@ -1,7 +1,7 @@
 """`python -m dev.fuzz.bit_flips FORMAT ... --count 10000 --seed N`: recordings with a bit that has flipped.
 
-Each is read and recovered as `cfepy bag recover` does it. Only cfepy's own error may come of it, and all messages that
-end before the bit must be left: of a file that is packed, those of chunks that end before it.
+Each is read and recovered as `cfepy bag recover` does it. Only cfepy's own error may result, and all messages that
+end before the bit must be kept. In a compressed file, these are the messages of chunks that end before it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from dev.fuzz.recordings import FORMATS, placed_messages, read, written
 
 @dataclass
 class Flips:
-    """What came of them: recordings of which nothing is left, messages that are left and lost, and failures."""
+    """Totals: recordings without any recovered message, messages recovered and lost, and failures."""
 
     count: int
     messages: int = 0
@@ -66,7 +66,7 @@ def flips_of(file: Path, folder: Path, count: int, seed: int) -> Flips:
 
 
 def main() -> int:
-    """Do what the command line says; the exit status is 1 when a case failed."""
+    """Execute the command line. Returns exit status 1 if a case failed."""
     names = {f"{kind}{suffix}": (suffix, kind) for suffix, kind in FORMATS}
     parser = argparse.ArgumentParser(prog="python -m dev.fuzz.bit_flips", description=__doc__)
     parser.add_argument("formats", nargs="*", metavar="FORMAT", help=f"all if none is given: {', '.join(names)}")

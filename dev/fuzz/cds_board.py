@@ -1,4 +1,4 @@
-"""The PSP as the Critical Data Store sees it, with bytes that outlive it."""
+"""The part of the PSP that the Critical Data Store uses, with memory that survives it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ENTRIES = 8
 
 
 class Board:
-    """The PSP as the CDS sees it; `boot` is a processor reset."""
+    """The part of the PSP that the CDS uses. `boot` is a processor reset."""
 
     def __init__(self, size: int = SIZE, entries: int = ENTRIES) -> None:
         self.memory = bytearray(size)

@@ -18,7 +18,7 @@ _WORD = re.compile(rb"[\w./$-]+")
 
 
 def damaged(samples: Sequence[bytes], random: Random) -> bytes:
-    """One of the samples, damaged in one to four ways; now and then as it is, or noise."""
+    """Return one of the samples, damaged in one to four ways. Occasionally returns it unchanged, or noise."""
     found = bytearray(random.choice(samples))
     if random.random() < 0.02:
         return random.randbytes(random.randrange(300))

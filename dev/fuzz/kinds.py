@@ -1,4 +1,4 @@
-"""The kinds of inputs: samples of each, and what reads one as the commands do."""
+"""The kinds of inputs: samples of each, and a reader that reads as the commands do."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ void BUG_Main(void) { CFE_ES_WriteToSysLog("%d", (int)strlen("text")); OS_TaskDe
 
 
 class Kind(NamedTuple):
-    """A kind of inputs: `samples` of it, and what reads one that was written to a file of the name `file`."""
+    """A kind of inputs: its `samples`, and the reader of an input that was written to a file named `file`."""
 
     name: str
     samples: Callable[[], list[bytes]]
@@ -86,18 +86,18 @@ class Kind(NamedTuple):
 
 @cache
 def spec() -> MissionSpec:
-    """A mission with nodes and applications."""
+    """Return a mission with nodes and applications."""
     return read_mission("capture")
 
 
 @cache
 def dictionary() -> Dictionary:
-    """What the ground knows of it."""
+    """Return the ground's dictionary of the mission."""
     return dictionary_of(spec())
 
 
 def files(*patterns: str) -> Callable[[], list[bytes]]:
-    """Samples that lie in the repository; large ones are left out."""
+    """Return samples from the repository. Large files are left out."""
 
     def found() -> list[bytes]:
         paths = sorted({path for pattern in patterns for path in ROOT.glob(pattern)})
@@ -107,11 +107,11 @@ def files(*patterns: str) -> Callable[[], list[bytes]]:
 
 
 def texts(*found: str) -> Callable[[], list[bytes]]:
-    """Samples that are written here."""
+    """Return samples written in this module."""
     return lambda: [text.encode() for text in found]
 
 
-# -- what reads them ---------------------------------------------------------------------------------------------------
+# -- readers -----------------------------------------------------------------------------------------------------------
 
 
 def startup(data: bytes, path: Path) -> None:
@@ -122,7 +122,7 @@ def startup(data: bytes, path: Path) -> None:
 
 @cache
 def shared_objects() -> list[bytes]:
-    """Compiled applications; none where there is no compiler."""
+    """Return compiled applications, or none without a compiler."""
     if which(compiler()[0]) is None:
         return [b"\x7fELF, but not more"]
     with TemporaryDirectory() as folder:
@@ -143,7 +143,7 @@ def shared_object(data: bytes, path: Path) -> None:
 
 
 def mission_file(data: bytes, path: Path) -> None:
-    """A mission file with all its sections; the first mistake is an error, and all are kept."""
+    """Read a mission file with all its sections. The first mistake is raised, and all are collected."""
     mistakes = Mistakes(keep=True)
     read_demands(read_mission_file(path, mistakes).demands, mistakes)
     read_demands(read_mission_file(path, Mistakes()).demands, Mistakes())
@@ -170,7 +170,7 @@ def parameters(data: bytes, path: Path) -> None:
 
 
 def expression(data: bytes, path: Path) -> None:
-    """An expression of a launch file; what Python itself raises of one is told as its error."""
+    """Evaluate an expression of a launch file. Exceptions of Python itself become cfepy's error."""
     with suppress(ExpressionError, SyntaxError, ArithmeticError, TypeError, ValueError, LookupError, NameError):
         plain_text(value_of(data.decode("utf-8", "replace"), {"x": 3, "s": "a,b"}))
 
@@ -204,7 +204,7 @@ TYPES = ("std_msgs/String", "sensor_msgs/JointState", "tf2_msgs/TFMessage", "dia
 
 
 def message(data: bytes, path: Path) -> None:
-    """Bytes of a message; the first one says of which type."""
+    """Read the bytes of a message. The first byte selects the type."""
     from rospy_shim.types.genpy import DeserializationError
 
     made = shipped().message_class(TYPES[data[0] % len(TYPES)] if data else TYPES[0])()
@@ -244,7 +244,7 @@ def bag(data: bytes, path: Path) -> None:
 
 
 def recording(data: bytes, path: Path) -> None:
-    """An MCAP file with all its messages, and what is left of it."""
+    """Read an MCAP file with all its messages, and recover it."""
     summary_of(str(path))
     bag(data, path)
 
@@ -299,7 +299,7 @@ def board(data: bytes, path: Path) -> None:
 
 
 def words(data: bytes, path: Path) -> None:
-    """Words of `cfepy cmd`: the first one says which command."""
+    """Parse words of `cfepy cmd`. The first word names the command."""
     commands = list(dictionary().commands.values())
     given = data.decode("utf-8", "replace").split("\n")
     packet_of(commands[len(given[0]) % len(commands)], given[1:])
@@ -318,18 +318,18 @@ def paths(data: bytes, path: Path) -> None:
     made = shipped().message_class("sensor_msgs/JointState")()
     made.position = [1.0, 2.0]
     for line in data.decode("utf-8", "replace").split("\n"):
-        with suppress(LookupError):  # which the commands tell
+        with suppress(LookupError):  # the commands report this
             value_at(made, steps_of(line))
 
 
 def breaks(data: bytes, path: Path) -> None:
-    """What `--break` takes."""
+    """Parse the value of `--break`."""
     breakpoints(data.decode("utf-8", "replace").split("\n"), spec(), lambda *_: None)
 
 
 def junit(data: bytes, path: Path) -> None:
     """Results that a test program wrote."""
-    with suppress(ValueError):  # which the command tells
+    with suppress(ValueError):  # the command reports this
         read_test_results(path, "suite")
 
 
@@ -385,8 +385,8 @@ def python_source(data: bytes, path: Path) -> None:
 
 
 def output_list(data: bytes, path: Path) -> None:
-    """The list of what `cfepy convert` wrote the last time."""
-    with suppress(OSError):  # which the command tells, such as a name that is too long
+    """Read the list of files that `cfepy convert` wrote the last time."""
+    with suppress(OSError):  # the command reports this, such as a name that is too long
         write_files(path.parent, {"a/b": b"1"}, force=True)
 
 
@@ -402,7 +402,7 @@ def names(data: bytes, path: Path) -> None:
 
 
 def yaml_file(data: bytes, path: Path) -> None:
-    """Any file in YAML whose values know their lines."""
+    """Read any YAML file with line numbers of its values."""
     load(path).plain()
 
 
@@ -413,7 +413,7 @@ def _words(*given: str) -> Any:
 
 
 def cds_image(data: bytes, path: Path) -> None:
-    """The memory of the Critical Data Store after a processor reset: what is found in it is used."""
+    """Use the memory of the Critical Data Store after a processor reset, with everything found in it."""
     board = Board()
     board.memory[:] = data[: len(board.memory)].ljust(len(board.memory), b"\0")
     store = board.boot()
@@ -430,14 +430,14 @@ def cds_image(data: bytes, path: Path) -> None:
 
 
 def journals() -> list[bytes]:
-    """The journal of a short run, with files of its mission."""
+    """Return the journal of a short run, with files of its mission."""
     from dev.fuzz.sample_journal import sample
 
     return [sample()]
 
 
 def cds_images() -> list[bytes]:
-    """Memory with blocks in it."""
+    """Return images of CDS memory with blocks."""
     board = Board()
     for size, name in ((10, "APP.One"), (200, "APP.Two"), (33, "TBL.Three")):
         handle = board.cds.register(size, name, name.startswith("TBL"))[0]
@@ -447,7 +447,7 @@ def cds_images() -> list[bytes]:
 
 
 def packets() -> list[bytes]:
-    """Telemetry packets."""
+    """Return telemetry packets."""
     return [
         bytes.fromhex(text)
         for text in _hex_in(json.loads((DATA / "golden_telemetry.json").read_text(encoding="utf-8")))
@@ -455,7 +455,7 @@ def packets() -> list[bytes]:
 
 
 def messages() -> list[bytes]:
-    """Messages of some types, with something in them."""
+    """Return messages of some types, with something in them."""
     found = []
     for number, name in enumerate(TYPES):
         buffer = io.BytesIO()
@@ -607,7 +607,7 @@ LOCK = "topics:\n  /joint_states: 0x0910\n  /phase: 0x0912\nservices:\n  /reset:
 
 @cache
 def table_texts() -> list[bytes]:
-    """Table files in YAML."""
+    """Return table files in YAML."""
     find = table_types(None, []).get
     sources = sorted([*DATA.glob("*.tbl"), *(ROOT / "missions").glob("*/*.tbl")])
     return [table_yaml.write(document(take_apart(path.read_bytes(), find, path.name))).encode() for path in sources]

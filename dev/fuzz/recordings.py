@@ -1,4 +1,4 @@
-"""Recordings to damage: the same messages in each format and compression, and where they are in the file."""
+"""Recordings to damage: the same messages in each format and compression, and their positions in the file."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Message = tuple[str, bytes, int]
 
 @cache
 def written(folder: Path, suffix: str, kind: str) -> Path:
-    """A recording in five chunks or so: COUNT messages on each of two topics."""
+    """Return a recording in five chunks or so: COUNT messages on each of two topics."""
     bag = folder / "made.bag"
     about = message_class("std_msgs/String")
     header = {"type": "std_msgs/String", "md5sum": about._md5sum, "message_definition": about._full_text}
@@ -43,7 +43,7 @@ def written(folder: Path, suffix: str, kind: str) -> Path:
 
 
 def converted(source: Path, target: Path, kind: str) -> Path:
-    """Another recording of it, with small chunks, so that damage meets some of them and not all."""
+    """Convert a recording with small chunks, so that damage affects some of them and not all. Returns the new file."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("cfepy.ground.recording.CHUNK_BYTES", 6000)
         patch.setattr("cfepy.ground.mcap_writer.CHUNK_BYTES", 6000)
@@ -52,13 +52,13 @@ def converted(source: Path, target: Path, kind: str) -> Path:
 
 
 def read(file: Path) -> list[Message]:
-    """The messages, by time."""
+    """Return the messages, by time."""
     with BagReader(str(file)) as reader:
         return [(each.topic, each.data, each.stamp_ns or 0) for each in reader.messages()]
 
 
 def ends(file: Path) -> list[int]:
-    """Where the messages of a file end that is not packed."""
+    """Return where the messages of a file end that is not packed."""
     whole, at, found = file.read_bytes(), 0, []
     for message in read(file):
         at = whole.index(message[1], at) + len(message[1])
@@ -74,7 +74,7 @@ class PlacedChunk(NamedTuple):
 
 
 def placed_chunks(file: Path) -> list[PlacedChunk]:
-    """The chunks of a recording, as the libraries rosbags and mcap know them."""
+    """Return the chunks of a recording, as the libraries rosbags and mcap know them."""
     data, counts = file.read_bytes(), []
     if file.suffix == ".mcap":
         with file.open("rb") as stream:
@@ -92,7 +92,7 @@ def placed_chunks(file: Path) -> list[PlacedChunk]:
 
 
 def placed_messages(file: Path) -> list[tuple[int, Message]]:
-    """The messages of a recording, each with the byte at which it ends, or its chunk if that is packed."""
+    """Return the messages of a recording, each with the end position of its bytes or of its compressed chunk."""
     said, chunks = read(file), placed_chunks(file)
     if file.name.startswith("none."):
         return list(zip(ends(file), said, strict=True))

@@ -1,4 +1,4 @@
-"""Doing cases of a kind: what each ends with, and what it must not end with."""
+"""Run cases of a kind, and find those that end with an unexpected error."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ class Failed(NamedTuple):
 
 
 class HangError(BaseException):
-    """A case took too long; nothing that catches exceptions catches it."""
+    """A case took too long. Handlers for Exception do not catch it."""
 
 
 def failures(name: str, count: int, seed: int, folder: Path, patience_s: float = 0) -> Iterator[Failed]:
-    """The cases that fail.
+    """Yield the cases that fail.
 
     Args:
-        name: of the kind.
+        name: name of the kind.
         count: how many cases.
-        seed: of all of them.
-        folder: for their files.
-        patience_s: time of the CPU that each may take, and much longer to wait for something; 0 for any.
+        seed: seed of all cases.
+        folder: folder for their files.
+        patience_s: limit of CPU time for each case, s, with a much longer limit for waiting; 0 for no limit.
     """
     kind = KINDS[name]
     samples = kind.samples()

@@ -1,4 +1,4 @@
-"""The journal of a short run with files, folders and paths that a node asked for, made once."""
+"""The journal of a short run in which a node uses files, folders and paths. It is made once."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ HELPER = """
 
 
 def paths(folder: Path) -> str:
-    """Write a mission: its node says where it is, reads and writes beside it, and dies in a module of its own."""
+    """Write a mission whose node prints its location, reads and writes files beside it, and fails in its own module."""
     (folder / "data.txt").write_text("from disk", encoding="utf-8")
     (folder / "paths.py").write_text(dedent(PATHS), encoding="utf-8")
     (folder / "helper.py").write_text(dedent(HELPER), encoding="utf-8")
@@ -42,7 +42,7 @@ def paths(folder: Path) -> str:
 
 @cache
 def sample() -> bytes:
-    """Its bytes."""
+    """Return its bytes."""
     with TemporaryDirectory() as folder:
         path = Path(folder, "run.cfepy")
         record(RunPlan((paths(Path(folder)),), seconds=1, schedule=Schedule.parse("random:3")), path)
@@ -50,7 +50,7 @@ def sample() -> bytes:
 
 
 def with_frames(path: Path, change: object) -> None:
-    """Write a journal whose frames were changed: `change` gets kind and body, and may change the body."""
+    """Write a journal with changed frames. `change` gets the kind and the body of each, and may change the body."""
     path.write_bytes(sample())
     frames = list(read_frames(path))
     writer = FrameWriter(path)

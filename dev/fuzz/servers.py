@@ -1,7 +1,7 @@
 """A run whose servers get damaged input over real sockets: TCPROS, the slave and master API, rosbridge, Foxglove.
 
-A case is a connection. After each the run has to go on: no node ends, nothing is printed as an error of cfepy's own,
-and no server keeps anything of the connection.
+A case is a connection. After each case the run must continue: no node ends, cfepy prints no error of its own,
+and no server keeps data of the connection.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ LOOPBACK = "127.0.0.1"
 PIECE_NS = 2_000_000
 PIECES = 4  # of the run, while a connection is there
 MOST_PIECES = 2_000  # until nothing of a connection is left
-MOST_CASES = 2_000  # of one run: what a run writes down grows with each message
+MOST_CASES = 2_000  # of one run: its records grow with each message
 TALKER = """
 import rospy
 from std_msgs.msg import String, UInt8MultiArray
@@ -133,7 +133,7 @@ _runs: list[ServersRun] = []
 
 
 def the_run() -> ServersRun:
-    """The run that is there, or a new one in place of one that is used up."""
+    """Return the current run, or a new one if it is used up."""
     if _runs and _runs[0].is_used_up:
         _runs.pop().close()
     if not _runs:
@@ -143,7 +143,7 @@ def the_run() -> ServersRun:
 
 @atexit.register
 def end_runs() -> None:
-    """End what is there."""
+    """End the runs that are active."""
     while _runs:
         _runs.pop().close()
 
@@ -175,11 +175,11 @@ def _drain(peer: socket.socket) -> None:
         pass
 
 
-# -- what is sent ------------------------------------------------------------------------------------------------------
+# -- inputs ------------------------------------------------------------------------------------------------------------
 
 
 def tcpros(data: bytes, path: Path) -> None:
-    """A connection header and what comes behind it, at the port of a node."""
+    """Send a connection header and further bytes to the port of a node."""
     run = the_run()
     port = int(run.host.service_uri("/talker").rpartition(":")[2])
     half = len(data) // 2
@@ -211,7 +211,7 @@ def rosbridge(data: bytes, path: Path) -> None:
 
 
 def foxglove(data: bytes, path: Path) -> None:
-    """Messages, one a line; those that do not begin with a bracket are binary."""
+    """Send messages, one per line. Those that do not begin with a bracket are binary."""
     run = the_run()
     lines = [_text(each) if each[:1] in (b"{", b"[") else _frame(2, each) for each in data.split(b"\n")]
     run.send(run.foxglove.place.port, _handshake("Sec-WebSocket-Protocol: foxglove.websocket.v1\r\n"), *lines)
@@ -243,7 +243,7 @@ def _text(data: bytes) -> bytes:
 
 
 def _frame(opcode: int, data: bytes) -> bytes:
-    """A frame of a client, whose mask is 0 (RFC 6455, 5.2)."""
+    """Return a client's frame with mask 0 (RFC 6455, 5.2)."""
     size = len(data)
     if size < 126:
         head = bytes([0x80 | opcode, 0x80 | size])
@@ -258,7 +258,7 @@ def _frame(opcode: int, data: bytes) -> bytes:
 
 
 def tcpros_samples() -> list[bytes]:
-    """Subscribers, callers and probes."""
+    """Return subscribers, callers and probes."""
     string = {"type": "std_msgs/String", "md5sum": "992ce8a1687cec8c8bd883ec73ca41d1", "callerid": "/x"}
     call = {"service": "/switch", "md5sum": "*", "callerid": "/x", "persistent": "1"}
     return [
@@ -282,7 +282,7 @@ NOBODY = "http://127.0.0.1:1/"
 
 
 def master_samples() -> list[bytes]:
-    """Requests to the master."""
+    """Return requests to the master."""
     value = {"p": 1, "q": [1.5, True, b"\0\1", {"r": "text"}]}
     calls = [{"methodName": "getPid", "params": ["/x"]}, {"methodName": "deleteParam", "params": ["/x", "/p"]}]
     return [
@@ -305,7 +305,7 @@ def master_samples() -> list[bytes]:
 
 
 def slave_samples() -> list[bytes]:
-    """Requests to a node."""
+    """Return requests to a node."""
     return [
         _request("requestTopic", "/x", "/chatter", [["TCPROS"]]),
         _request("publisherUpdate", "/master", "/orders", [NOBODY]),
@@ -320,7 +320,7 @@ def slave_samples() -> list[bytes]:
 
 
 def http_samples() -> list[bytes]:
-    """Requests with their heads."""
+    """Return requests with their heads."""
     return [_posted(each) for each in (*master_samples()[:3], slave_samples()[0])] + [
         _posted(b"").replace(b"HTTP/1.1", b"HTTP/1.0") + _posted(master_samples()[1]),
         _posted(master_samples()[0]).replace(b"Content-Type", b"Expect: 100-continue\r\nContent-Type"),
@@ -350,7 +350,7 @@ ROSBRIDGE = b"""{"op": "advertise", "topic": "/orders", "type": "std_msgs/String
 
 
 def rosbridge_samples() -> list[bytes]:
-    """Ops of clients."""
+    """Return ops of clients."""
     lines = ROSBRIDGE.split(b"\n")
     return [b"\n".join(lines[at : at + 3]) for at in range(0, len(lines), 2)]
 
@@ -374,13 +374,13 @@ FOXGLOVE = b"""{"op": "subscribe", "subscriptions": [{"id": 0, "channelId": 1}, 
 
 
 def foxglove_samples() -> list[bytes]:
-    """Messages of viewers."""
+    """Return messages of viewers."""
     lines = FOXGLOVE.split(b"\n")
     return [b"\n".join(lines[at : at + 3]) for at in range(0, len(lines), 2)]
 
 
 def websocket_samples() -> list[bytes]:
-    """Handshakes, and frames behind them."""
+    """Return handshakes, and frames behind them."""
     foxglove = _handshake("Sec-WebSocket-Protocol: foxglove.sdk.v1\r\n")
     parts = b'\x01\x83\0\0\0\0{"o' + b'\x80\x8c\0\0\0\0p": "nothing"}'
     return [

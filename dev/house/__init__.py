@@ -1,6 +1,6 @@
-"""The house measured: what imports what, which floors there are, and the figures and pictures that follow from it.
+"""Measure the architecture: which module imports which, the floors (layers), and the figures and pictures of both.
 
-What belongs here reads the source text of a checkout and runs none of it, so that two versions can be compared:
+The modules here read the source text of a checkout without running it, so that you can compare two versions:
 `python -m dev.house` prints the figures of this tree, `python -m dev.house FOLDER` those of another.
-`tests/test_layers.py` holds the rules with the same functions.
+`tests/test_layers.py` checks the rules with the same functions.
 """

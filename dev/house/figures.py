@@ -1,4 +1,4 @@
-"""The figures of the house: how large its rooms are, what crosses their walls, which names stand for two things."""
+"""Figures of the architecture: sizes of packages, dependencies between them, and names that stand for two things."""
 
 from __future__ import annotations
 
@@ -39,12 +39,12 @@ class Room(NamedTuple):
 
 
 def of_cfepy(tree: Tree) -> list[Module]:
-    """The modules of cfepy itself."""
+    """Return the modules of cfepy itself."""
     return [module for name, module in tree.modules.items() if name.partition(".")[0] == "cfepy"]
 
 
 def rooms(tree: Tree) -> list[Room]:
-    """Packages by name; the modules beside them are one room."""
+    """Return the packages by name. The modules beside them count as one package."""
     found: dict[str, list[Module]] = {}
     for module in tree.modules.values():
         is_inside = module.room in tree.modules and tree.modules[module.room].is_package and module.room != "cfepy"
@@ -57,7 +57,7 @@ def rooms(tree: Tree) -> list[Room]:
 
 
 def faces(tree: Tree) -> Face:
-    """How many pairs of modules of cfepy meet past the face of a package, and how many through it."""
+    """Return how many pairs of modules of cfepy meet past the face of a package, and how many through it."""
     past = through = 0
     for module in of_cfepy(tree):
         for name in tree.arrows(module):
@@ -72,7 +72,7 @@ def faces(tree: Tree) -> Face:
 
 
 def past_faces(tree: Tree) -> Counter[str]:
-    """Modules that are imported past the face of their package, with the number of those that do."""
+    """Count the modules imported directly instead of from their package, by number of importers."""
     found: Counter[str] = Counter()
     for module in of_cfepy(tree):
         for name in (each for each in tree.arrows(module) if each.startswith("cfepy.")):
@@ -84,7 +84,7 @@ def past_faces(tree: Tree) -> Counter[str]:
 
 
 def users(tree: Tree) -> dict[str, set[str]]:
-    """Each module with those that import it."""
+    """Return each module with those that import it."""
     found: dict[str, set[str]] = {name: set() for name in tree.modules}
     for module in tree.modules.values():
         for name in tree.arrows(module):
@@ -93,9 +93,9 @@ def users(tree: Tree) -> dict[str, set[str]]:
 
 
 def with_one_user(tree: Tree) -> list[Module]:
-    """Modules of cfepy that exactly one other imports, one of their own package.
+    """Return the modules of cfepy that exactly one other imports, a module of the same package.
 
-    Packages do not count as modules, and a module that is run as a program belongs to nobody else.
+    Packages do not count as modules, and modules that run as programs are excluded.
     """
     imported = users(tree)
     found = []
@@ -108,7 +108,7 @@ def with_one_user(tree: Tree) -> list[Module]:
 
 
 def circles(tree: Tree, for_types: bool = False) -> list[list[str]]:
-    """Groups of modules that import each other in a circle, largest first.
+    """Return groups of modules that import each other in a circle, largest first.
 
     Those that exist for type checkers alone are left out, unless they are asked for: then they are all there is.
     """
@@ -154,7 +154,7 @@ def _strongly_connected(arrows: dict[str, list[str]]) -> Iterator[list[str]]:
 
 
 def by_name(tree: Tree) -> list[tuple[str, str]]:
-    """Arrows that are hidden in a string: modules of cfepy that load one of another package by its name."""
+    """Return dependencies hidden in a string: modules of cfepy that load a module of another package by its name."""
     return sorted(
         (module.name, each.name)
         for module in of_cfepy(tree)
@@ -164,7 +164,7 @@ def by_name(tree: Tree) -> list[tuple[str, str]]:
 
 
 def names_twice(tree: Tree) -> dict[str, list[str]]:
-    """Public classes at the top of modules that have the same name, with the modules."""
+    """Return public classes at the top of modules that have the same name, with the modules."""
     found: dict[str, list[str]] = {}
     for module in tree.modules.values():
         for name in module.classes:
@@ -173,10 +173,10 @@ def names_twice(tree: Tree) -> dict[str, list[str]]:
 
 
 def modules_named_twice(tree: Tree) -> dict[str, list[str]]:
-    """Names that stand for two modules or packages, with where they are.
+    """Return names that stand for two modules or packages, with their locations.
 
-    Left out are `FREE_NAMES`, and three patterns that say what is meant by where they stand: the module of a command,
-    which has its name; the parts of the API in C, which are those of the packages; a package and its central module.
+    Excluded are `FREE_NAMES`, and three patterns whose location makes the meaning clear: the module of a command,
+    which has its name; the parts of the API in C, which are named like the packages; a package and its central module.
     """
     found: dict[str, list[str]] = {}
     for name, module in tree.modules.items():
@@ -191,12 +191,12 @@ def modules_named_twice(tree: Tree) -> dict[str, list[str]]:
 
 
 def class_names(tree: Tree) -> int:
-    """How many names of public classes there are."""
+    """Return how many names of public classes there are."""
     return len({name for module in tree.modules.values() for name in module.classes})
 
 
 def most_complex(tree: Tree, count: int = 10) -> list[tuple[int, str]]:
-    """The functions of highest complexity, with where they are."""
+    """Return the functions of highest complexity, with where they are."""
     found = [
         (function.complexity, f"{module.where}:{function.name}")
         for module in tree.modules.values()
@@ -206,7 +206,7 @@ def most_complex(tree: Tree, count: int = 10) -> list[tuple[int, str]]:
 
 
 def offered(tree: Tree) -> list[str]:
-    """What `import cfepy` offers: `__all__`, or else the names that its module binds."""
+    """Return the names that `import cfepy` offers: `__all__`, or else the names that its module binds."""
     names: list[str] = []
     for node in tree.modules["cfepy"].tree.body:
         if not isinstance(node, ast.Assign | ast.AnnAssign) or node.value is None:
@@ -220,7 +220,7 @@ def offered(tree: Tree) -> list[str]:
 
 
 def entries(tree: Tree) -> list[str]:
-    """The modules and packages right below `cfepy/`."""
+    """Return the modules and packages right below `cfepy/`."""
     return sorted({name.split(".")[1] for name in tree.modules if name.startswith("cfepy.")})
 
 
@@ -231,7 +231,7 @@ ABOUT_IMPORTS = re.compile(
 
 
 def sentences_about_imports(tree: Tree) -> list[str]:
-    """Modules whose docstring says what they import; the rule of the floors says it, and is tested."""
+    """Return the modules whose docstring lists imports, which the rule of the floors already covers."""
     return [
         module.name
         for module in tree.modules.values()
@@ -240,13 +240,13 @@ def sentences_about_imports(tree: Tree) -> list[str]:
 
 
 def table(rows: Iterable[tuple[object, ...]], *titles: str) -> str:
-    """A table in Markdown."""
+    """Return a table in Markdown."""
     lines = [titles, *(("---",) * len(titles),), *rows]
     return "".join(f"| {' | '.join(str(cell) for cell in line)} |\n" for line in lines)
 
 
 def report(tree: Tree) -> str:
-    """All figures as Markdown."""
+    """Return all figures as Markdown."""
     modules = of_cfepy(tree)
     lines = sum(module.lines for module in modules)
     head = sum(module.head for module in modules)

@@ -1,7 +1,7 @@
-"""The floors of the house, lowest first, and what breaks their order.
+"""The floors (layers) of the house, lowest first, and the violations of their order.
 
-A package imports only from floors below its own. Packages on one floor are peers and do not import each other, but for
-the modules at the bottom, which are one room.
+A package imports only from floors below its own. Packages on one floor are peers and do not import each other, except
+for the modules at the bottom, which count as one package.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("testing",),
     ("cli", "__main__"),
     ("extra", "c", "convert", "exploration", "reports", "debugger", "viewers", "ros_host"),
-    ("__init__",),  # the face of the whole: what a user of the library imports
+    ("__init__",),  # the public API of the library
 )
 LEVEL = {part: level for level, floor in enumerate(FLOORS) for part in floor}
 GROUND_FLOOR = 0
@@ -64,7 +64,7 @@ class Arrow(NamedTuple):
 
 
 def allowed(source: str, target: str) -> bool:
-    """Whether a part may import another."""
+    """Return whether a part may import another."""
     if source == target or (source, target) in PEERS_THAT_MEET:
         return True
     top = LEVEL[APPS_STAND_ON] if source == "apps" else LEVEL[source]
@@ -74,7 +74,7 @@ def allowed(source: str, target: str) -> bool:
 
 
 def wrong_arrows(tree: Tree) -> Iterator[Arrow]:
-    """Imports that go up or to a peer."""
+    """Yield imports that go up or to a peer."""
     for module in tree.modules.values():
         for name, imports in tree.arrows(module).items():
             if not allowed(module.part, tree.modules[name].part):
@@ -82,5 +82,5 @@ def wrong_arrows(tree: Tree) -> Iterator[Arrow]:
 
 
 def homeless(tree: Tree) -> list[str]:
-    """Parts that have no place on a floor."""
+    """Return parts that have no place on a floor."""
     return sorted({module.part for module in tree.modules.values()} - set(LEVEL))

@@ -1,8 +1,8 @@
 """The pictures of docs/explanation/design.md: the floors of the house, and the way of a message through it.
 
-They are drawn from the tree: floors from `floors.py`, what a package is for from the first sentence of its docstring,
-numbers from its imports. The stations of the message name functions, which have to be there. The same tree gives the
-same bytes. Colours follow what the reader's screen prefers, light or dark.
+They are drawn from the tree: the floors from `floors.py`, the purpose of a package from the first sentence of its
+docstring, the numbers from its imports. The stations of the message name functions, which must exist. The same tree
+gives the same bytes. Colours follow the reader's preference, light or dark.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MESSAGE = Path("docs/pictures/message.svg")
 WIDTH = 960
 MARGIN = 16
 GAP = 8
-NUMBERS = 92  # room at the right for what crosses from floor to floor
+NUMBERS = 92  # room at the right for the numbers of imports between floors
 LINE = 14
 LETTER = 6.0  # average width of a letter of small text
 
@@ -56,7 +56,7 @@ KINDS |= dict.fromkeys(FLOORS[0], "base")
 
 
 class Station(NamedTuple):
-    """Where a message comes by: what happens, in which function of which module, and whose it is."""
+    """A step of a message's way: the event, the function and module that perform it, and the kind of package."""
 
     text: str
     module: str
@@ -102,7 +102,7 @@ WAY = (
 
 
 def house(tree: Tree) -> str:
-    """The floors with their rooms, and how many imports go down through each ceiling."""
+    """Return the floors with their rooms, and how many imports go down through each ceiling."""
     rows: list[str] = []
     y = MARGIN
     crossing = _crossings(tree)
@@ -126,7 +126,7 @@ def house(tree: Tree) -> str:
 
 
 def message(tree: Tree) -> str:
-    """The way of a message from a node's publisher to a subscriber's callback."""
+    """Return the way of a message from a node's publisher to a subscriber's callback."""
     rows: list[str] = []
     y = MARGIN
     for index, station in enumerate(WAY):
@@ -145,7 +145,7 @@ def message(tree: Tree) -> str:
 
 
 def draw(tree: Tree) -> dict[Path, str]:
-    """All pictures, by their path from the root of the tree."""
+    """Return all pictures, by their path from the root of the tree."""
     return {HOUSE: house(tree), MESSAGE: message(tree)}
 
 
@@ -160,7 +160,7 @@ def _crossings(tree: Tree) -> list[int]:
 
 
 def _row(rows: list[str], tree: Tree, parts: list[str], y: float) -> int:
-    """Draw the rooms of a floor side by side, and tell the height of the row."""
+    """Draw the packages of a floor side by side. Returns the height of the row."""
     width = (WIDTH - 2 * MARGIN - NUMBERS - GAP * len(parts)) / len(parts)
     texts = [textwrap.wrap(_purpose(tree, part), _letters(width - 16)) for part in parts]
     height = LINE * (1 + max(map(len, texts))) + 16
@@ -198,7 +198,7 @@ def _text(x: float, y: float, text: str, kind: str = "") -> str:
 
 
 def _arrow(x: float, start: float, end: float, count: str = "") -> str:
-    """An arrow down, with a number beside it."""
+    """Draw an arrow down, with a number beside it."""
     at = _number(x)
     shaft = f'<path class="arrow" d="M{at} {_number(start)}V{_number(end - 5)}"/>'
     tip = f'<path class="head" d="M{_number(x - 4)} {_number(end - 6)}h8l-4 6z"/>'

@@ -1,8 +1,8 @@
 """The source text of a checkout as modules: imports, classes and functions, found without running anything.
 
-All imports count: those at the top, those inside functions, those for type checkers only, and those by a name that is
-given to `import_module` or `__import__`. Templates of `cfepy new` are no modules. What runs as code of ROS nodes
-(`NODE_CODE`) is kept apart, since other rules hold for it.
+All imports count: those at the top, those inside functions, those for type checkers only, and those by a name given to
+`import_module` or `__import__`. Templates of `cfepy new` are not modules. Code of ROS nodes (`NODE_CODE`) is kept
+apart, because other rules hold for it.
 """
 
 from __future__ import annotations
@@ -82,12 +82,12 @@ class Module:
 
     @property
     def offers(self) -> bool:
-        """Whether it is a package that says what it offers."""
+        """Whether it is a package that defines its public names."""
         return self.is_package and "__all__" in self.text
 
     @property
     def package(self) -> str:
-        """The package it is in, itself if it is one."""
+        """The package that contains it, or itself if it is a package."""
         return self.name if self.is_package else self.name.rpartition(".")[0]
 
     @property
@@ -113,7 +113,7 @@ class Module:
         return [name for name in found if not name.startswith("_")]
 
     def functions(self) -> Iterator[Function]:
-        """All functions with their complexity; one that is inside another counts for both."""
+        """Yield all functions with their complexity. A nested function also counts for the enclosing one."""
         yield from _functions(self.tree.body, "")
 
 
@@ -142,7 +142,10 @@ class Tree:
         return found
 
     def arrows(self, module: Module) -> dict[str, list[Import]]:
-        """What a module imports of the tree, by module; `cfepy.__version__` is of no module."""
+        """Return the imports of a module within the tree, by imported module.
+
+        `cfepy.__version__` belongs to no module.
+        """
         found: dict[str, list[Import]] = {}
         for each in module.imports:
             if each.module in self.modules and each.module != module.name and each.name != "cfepy.__version__":
@@ -152,12 +155,12 @@ class Tree:
 
 @functools.cache
 def the_tree(root: Path = ROOT) -> Tree:
-    """The tree of a checkout, read once in a process."""
+    """Return the tree of a checkout, read once in a process."""
     return Tree(root)
 
 
 class _Imports:
-    """Writes down what a module imports."""
+    """Collects the imports of a module."""
 
     def __init__(self, modules: Collection[str], module: Module) -> None:
         self._modules = modules
@@ -171,7 +174,7 @@ class _Imports:
         }
 
     def read(self) -> None:
-        """All of them."""
+        """Read all of them."""
         self._statements(self._module.tree.body, "at once")
         if any(name in self._module.text for name in IMPORTERS):
             self._names()
@@ -201,7 +204,7 @@ class _Imports:
             self._add(f"{base}.{alias.name}", node.lineno, when)
 
     def _names(self) -> None:
-        """Names that are given to `import_module`, and tables of names from which one is taken."""
+        """Read names that are given to `import_module`, and tables from which one name is taken."""
         nodes = list(ast.walk(self._module.tree))
         calls = [node for node in nodes if isinstance(node, ast.Call) and node.args and _called(node) in IMPORTERS]
         for call in calls:
@@ -218,7 +221,7 @@ class _Imports:
                 self._add(node.value, node.lineno, "by name")
 
     def _text(self, node: ast.expr) -> str | None:
-        """A text that can be read off: a constant, a named one, or one put together from such."""
+        """Return a text that can be read off: a constant, a named one, or one put together from such."""
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
             return node.value
         if isinstance(node, ast.Name):

@@ -1,1 +1,1 @@
-"""Programs that write pages and pictures of the documentation anew."""
+"""Programs that generate pages and pictures of the documentation."""

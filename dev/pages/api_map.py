@@ -2,10 +2,10 @@
 
     python -m dev.pages.api_map
 
-NASA's names are in tests/data/api, one file for each module; api_names.py knows what they are called here. What differs
-and what is absent is read from the tables of docs/reference/differences.md: a name in a row differs as the row says,
-or is absent for its reason. So nothing is said twice, and a name that is nowhere is missing. What compiled applications
-can call is read from the declarations of `cfepy.extra.c.api`, for which the engine is built.
+NASA's names are in tests/data/api, one file for each module; api_names.py maps them to the names here. Different and
+absent names are read from the tables of docs/reference/differences.md: a name in a row differs as the row describes, or
+is absent for its reason. So nothing is written twice, and a name without an entry is missing. The names that compiled
+applications can call are read from the declarations of `cfepy.extra.c.api`, for which the engine is built.
 """
 
 from __future__ import annotations
@@ -66,12 +66,12 @@ class Difference(NamedTuple):
     reason: str
 
     def mentions(self, name: str) -> bool:
-        """Whether the row is about a name."""
+        """Return whether the row is about a name."""
         return any(fnmatchcase(name, pattern) for pattern in self.names)
 
 
 class Entry(NamedTuple):
-    """One function: NASA's header and name, the name here, whether an object stands behind that; what C finds."""
+    """One function: NASA's header and name, the name here, whether an object with it exists, and the entry for C."""
 
     header: str
     name: str
@@ -101,7 +101,7 @@ class Entry(NamedTuple):
 
 
 def listed(module: str) -> Iterator[tuple[str, str, bool]]:
-    """(header, name, whether the header has it inside) of all that a module's headers declare, each once."""
+    """Yield (header, name, whether it is inline) for each declaration of a module's headers, once each."""
     header, seen = "", set[str]()
     for line in (LISTS / f"api_{module}.txt").read_text(encoding="utf-8").splitlines():
         if line.startswith("#"):
@@ -112,7 +112,7 @@ def listed(module: str) -> Iterator[tuple[str, str, bool]]:
 
 
 def differences() -> list[Difference]:
-    """The rows of docs/reference/differences.md that mention names."""
+    """Return the rows of docs/reference/differences.md that mention names."""
     found, section = [], ""
     for line in DIFFERENCES.read_text(encoding="utf-8").splitlines():
         if line.startswith("## "):
@@ -123,7 +123,7 @@ def differences() -> list[Difference]:
 
 
 def resolve(dotted: str, cfe: Any) -> Any:
-    """The object behind a Python name of the map; None when there is none."""
+    """Return the object behind a Python name of the map, or None if there is none."""
     first, *rest = dotted.split(".")
     found = cfe
     if first == "cfepy":
@@ -137,7 +137,7 @@ def resolve(dotted: str, cfe: Any) -> Any:
 
 
 def entries(module: str, cfe: Any) -> list[Entry]:
-    """All that a module's headers declare, as it stands here."""
+    """Return all that a module's headers declare, as it stands here."""
     rows, functions = differences(), function_names()
     return [
         Entry(
@@ -153,7 +153,7 @@ def entries(module: str, cfe: Any) -> list[Entry]:
 
 
 def _in_c(name: str, is_inside: bool, functions: set[str]) -> str:
-    """What a compiled application finds under a name."""
+    """Return the entry of a name for compiled applications."""
     if name in functions:
         return CALL
     if is_inside:
@@ -162,7 +162,7 @@ def _in_c(name: str, is_inside: bool, functions: set[str]) -> str:
 
 
 def booted() -> Mission:
-    """A mission of core services alone, after its boot."""
+    """Return a mission of core services alone, after its boot."""
     with TemporaryDirectory() as folder:
         Path(folder, "startup.scr").write_text("! nothing\n", encoding="utf-8")
         mission = Mission(folder, console=Console(quiet=True))
@@ -171,7 +171,7 @@ def booted() -> Mission:
 
 
 def page(cfe: Any) -> str:
-    """The text of docs/reference/generated/api_map.md."""
+    """Return the text of docs/reference/generated/api_map.md."""
     sections = {TITLES.get(module, module): entries(module, cfe) for module in MODULES}
     lines = [HEAD, "| module | names | same | differ | absent | called in C |", "|---|---|---|---|---|---|"]
     lines += [f"| [{title}](#{_anchor(title)}) | {_counts(rows)} |" for title, rows in sections.items()]
@@ -195,7 +195,7 @@ def _counts(rows: list[Entry]) -> str:
 
 
 def main() -> None:
-    """Write the page, and tell what is missing."""
+    """Write the page, and print the missing names."""
     argparse.ArgumentParser(prog="python -m dev.pages.api_map", description=__doc__).parse_args()
     with booted() as mission:
         PAGE.write_text(page(mission.cfe), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""What the public names of NASA's headers are called here: a rule, and the names that it does not fit.
+"""Names here for the public names of NASA's headers: a rule, and the exceptions from it.
 
 CFE_SB_CreatePipe is `cfe.sb.create_pipe`: an area for the prefix, the rest in snake case. Imports nothing of cfepy.
 """
@@ -68,13 +68,14 @@ ELSEWHERE = {
 
 
 def snake(name: str) -> str:
-    """A name of NASA's, without its prefix, in snake case: "GetCDSBlockIDByName" is "get_cds_block_id_by_name"."""
+    """Return a name of NASA's, without its prefix, in snake case: "GetCDSBlockIDByName" is
+    "get_cds_block_id_by_name"."""
     words = re.sub(r"(?<=[A-Za-z])(?=[A-Z][a-z])|(?<=[a-z])(?=[A-Z])", "_", name)
     return re.sub("_+", "_", words).lower()
 
 
 def python_name(name: str) -> str:
-    """The Python name of a function or macro of NASA's headers."""
+    """Return the Python name of a function or macro of NASA's headers."""
     prefix = max((prefix for prefix in AREAS if name.startswith(prefix)), key=len, default="")
     area = AREAS.get(prefix, "cfe")
     return ELSEWHERE.get(name) or f"{area}.{snake(name.removeprefix(prefix))}"

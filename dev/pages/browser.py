@@ -1,7 +1,6 @@
 """A real browser for pictures and tests: headless Chromium, driven by the DevTools protocol over a pipe.
 
-It needs nothing but the standard library, and keeps what the page logs, what goes wrong in it and what it asks the
-network for.
+It needs only the standard library. It records the page's log, its errors and its network requests.
 """
 
 from __future__ import annotations
@@ -36,7 +35,7 @@ FIRST_FREE = 10  # descriptors below are for the browser's end of the pipes, whi
 
 
 def find_browser() -> str | None:
-    """The browser's command, None where there is none."""
+    """Return the browser's command, or None if no browser is installed."""
     return next((path for path in map(shutil.which, COMMANDS) if path is not None), None)
 
 
@@ -44,11 +43,11 @@ class Browser:
     """One browser with one page; use as a context manager.
 
     Args:
-        folder: an empty one, for its profile.
+        folder: an empty folder for its profile.
 
     Attributes:
-        errors: what was logged as an error or thrown.
-        requests: URLs that the page asked for, after its own.
+        errors: errors that were logged or thrown.
+        requests: URLs that the page requested after its own.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -71,7 +70,7 @@ class Browser:
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
             preexec_fn=take_descriptors,
-            close_fds=False,  # all others of Python are closed by themselves; these two need not be open here
+            close_fds=False,  # Python marks all other descriptors to be closed; these two must stay open
         )
         os.close(theirs_in)
         os.close(theirs_out)
@@ -132,7 +131,7 @@ class Browser:
             self.requests.append(about["request"]["url"])
 
     def open(self, page: Path) -> float:
-        """Load a file and wait until it has loaded; how long that took, in s, as the page itself measures it."""
+        """Load a file and wait until it has loaded. Returns the load time in s, as the page measures it."""
         self.call("Page.navigate", url=page.as_uri())
         wait = "new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))"
         self.evaluate(wait)
@@ -142,7 +141,7 @@ class Browser:
         return float(took_ms) / 1000
 
     def evaluate(self, expression: str) -> Any:
-        """The value of an expression of JavaScript, or of what it promises."""
+        """Return the value of a JavaScript expression, or of the promise that it returns."""
         answer = self.call("Runtime.evaluate", expression=expression, awaitPromise=True, returnByValue=True)
         assert "exceptionDetails" not in answer, answer["exceptionDetails"]
         return answer["result"].get("value")
@@ -160,12 +159,12 @@ class Browser:
         self.call("Emulation.setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": scheme}])
 
     def screenshot(self, file: Path) -> None:
-        """What the window shows, as a PNG file."""
+        """Save a screenshot of the window as a PNG file."""
         file.write_bytes(base64.b64decode(self.call("Page.captureScreenshot")["data"]))
 
 
 def _high_pipe() -> tuple[int, int]:
-    """A pipe whose ends are out of the way of 3 and 4."""
+    """Return a pipe whose descriptors do not collide with 3 and 4."""
     ends = os.pipe()
     high = [fcntl.fcntl(each, fcntl.F_DUPFD_CLOEXEC, FIRST_FREE) for each in ends]
     for each in ends:

@@ -1,4 +1,4 @@
-"""A picture of the console as it shows on a terminal: `save_console(path)` flies a mission in it and writes an SVG."""
+"""A picture of the console on a terminal: `save_console(path)` flies a mission in it and writes an SVG."""
 
 from __future__ import annotations
 
@@ -33,15 +33,15 @@ async def say(screen: ConsoleScreen, pilot: Pilot[None], lines: Sequence[str]) -
 
 
 def in_a_console(words: Sequence[str], use: Use, size: tuple[int, int] = (120, 36)) -> Opening:
-    """Open a console on a terminal that nobody sees, use it, and end the session.
+    """Open a console on an invisible terminal, use it, and end the session.
 
     Args:
-        words: of the command line, after `cfepy console`.
-        use: what is done with it when the mission stands at its beginning.
+        words: arguments of the command line, after `cfepy console`.
+        use: function that uses the console when the mission stands at its beginning.
         size: columns and rows.
 
     Returns:
-        What opened it, which knows how it ended.
+        The object that opened it, which has the result of the session.
     """
 
     async def go() -> None:
@@ -63,12 +63,12 @@ def in_a_console(words: Sequence[str], use: Use, size: tuple[int, int] = (120, 3
 def save_console(
     path: Path, mission: str = "lab", lines: Sequence[str] = LINES, size: tuple[int, int] = (120, 36)
 ) -> None:
-    """Write what the console shows as SVG.
+    """Write a picture of the console as SVG.
 
     Args:
-        path: of the file.
-        mission: what is flown.
-        lines: what is typed.
+        path: path of the file.
+        mission: the mission to fly.
+        lines: lines to type.
         size: columns and rows of the terminal.
     """
 

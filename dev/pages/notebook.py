@@ -1,7 +1,6 @@
 """docs/tutorials/library.ipynb: executed anew, with its outputs written down, by `python -m dev.pages.notebook`.
 
-The outputs are there for those who read it where nothing runs, such as on GitHub. A test executes it as well, and
-compares the texts.
+The outputs serve readers who cannot execute it, such as on GitHub. A test executes it as well, and compares the texts.
 """
 
 from __future__ import annotations
@@ -13,7 +12,7 @@ from pathlib import Path
 from typing import Any
 
 FILE = Path(__file__).parents[2] / "docs" / "tutorials" / "library.ipynb"
-LONGEST_S = 600  # for a cell, on a busy machine: kills what hangs
+LONGEST_S = 600  # for a cell, on a busy machine: kills a cell that hangs
 VARIES = (
     (re.compile(r"[\d.]+ x real time"), "N x real time"),
     (re.compile(r"\b[0-9a-f]{32}\b"), "TRACE"),  # another one under another version of Python
@@ -21,7 +20,7 @@ VARIES = (
 
 
 def executed(folder: str) -> Any:
-    """The notebook after a new kernel has executed it, in an empty folder."""
+    """Return the notebook after a new kernel has executed it, in an empty folder."""
     import nbformat
     from nbclient import NotebookClient
     from traitlets.config import Config
@@ -35,15 +34,15 @@ def executed(folder: str) -> Any:
 
 
 def kernel_sockets(folder: str) -> dict[str, str]:
-    """Give the options of jupyter's KernelManager by which a kernel listens in a folder, not at TCP ports.
+    """Return the options of jupyter's KernelManager that make a kernel listen in a folder instead of TCP ports.
 
-    A port that was free when the manager chose it may be another program's when the kernel takes it.
+    Another program may take a port between the manager's choice and the kernel's start.
     """
     return {"transport": "ipc", "ip": f"{folder}/kernel"}
 
 
 def texts(notebook: Any) -> list[str]:
-    """What each cell has shown as text, without what another run of it may show otherwise."""
+    """Return the texts that each cell shows, without parts that may differ in another run."""
     shown = []
     for cell in notebook.cells:
         for output in cell.get("outputs", ()):

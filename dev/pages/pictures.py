@@ -1,6 +1,6 @@
 """The pictures of the documentation, made by the commands that they show: `python -m dev.pages.pictures`.
 
-They need the extras `dev` and a browser (Debian's package `chromium`), in which pages are looked at.
+They need the extras `dev` and a browser (Debian's package `chromium`), which renders the pages.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def curves() -> None:
 
 
 def graph() -> None:
-    """`cfepy graph`: who talks to whom in `capture`."""
+    """Draw `cfepy graph` of `capture`: which nodes talk to each other."""
     main(["graph", "capture", "--svg", str(FOLDER / "graph.svg")])
 
 
@@ -51,7 +51,7 @@ def _look_at(browser: Browser, page: Path, size: tuple[int, int], file: Path) ->
 
 
 def make_all() -> None:
-    """All of them."""
+    """Make all pictures."""
     FOLDER.mkdir(exist_ok=True)
     curves()
     graph()

@@ -1,6 +1,6 @@
 """Write docs/reference/generated/python_api_reference.md from the docstrings of the names that `import cfepy` offers.
 
-`python -m dev.pages.python_api` writes it anew; a test fails when it is stale.
+`python -m dev.pages.python_api` rewrites it; a test fails when it is out of date.
 """
 
 from __future__ import annotations
@@ -22,21 +22,21 @@ What `import cfepy` offers, made of the docstrings by `python -m dev.pages.pytho
 [python_api.md](../../how_to/python_api.md). Times are virtual and in seconds, unless a name ends with `_ns`.
 """
 SECTIONS = ("Args", "Attributes", "Returns", "Raises")
-FOREIGN = (tuple, dict, list, Exception, object)  # whose methods are Python's
+FOREIGN = (tuple, dict, list, Exception, object)  # whose methods Python defines
 
 
 def functions() -> list[str]:
-    """Names of the functions that it offers, sorted."""
+    """Return the names of the functions that it offers, sorted."""
     return [name for name in sorted(cfepy.__all__) if inspect.isfunction(getattr(cfepy, name))]
 
 
 def classes() -> list[str]:
-    """Names of the classes, sorted."""
+    """Return the names of the classes, sorted."""
     return [name for name in sorted(cfepy.__all__) if inspect.isclass(getattr(cfepy, name))]
 
 
 def members(kind: type) -> list[tuple[str, Any]]:
-    """Public methods, properties and class methods, those of bases too, in alphabetical order."""
+    """Return public methods, properties and class methods, including those of bases, in alphabetical order."""
     found = {}
     for name in dir(kind):
         value = inspect.getattr_static(kind, name)
@@ -52,7 +52,7 @@ def _is_ours(kind: type, name: str) -> bool:
 
 
 def page() -> str:
-    """The page."""
+    """Return the page."""
     parts = [HEAD, "## Functions\n"]
     parts += [_function(f"cfepy.{name}", getattr(cfepy, name), 3) for name in functions()]
     parts.append("## Classes\n")
@@ -75,7 +75,7 @@ def _function(name: str, function: Any, level: int) -> str:
 
 
 def signature(function: Any) -> str:
-    """Its arguments, without `self` and without the modules of types."""
+    """Return its arguments, without `self` and without the modules of types."""
     arguments = [each for each in inspect.signature(function).parameters.values() if each.name not in ("self", "cls")]
     parts, is_starred = [], False
     for each in arguments:
@@ -95,7 +95,7 @@ def _first(thing: Any) -> str:
 
 
 def text_of(thing: Any) -> str:
-    """A docstring as Markdown: its sections become lists, and what is indented in it code."""
+    """Return a docstring as Markdown: its sections become lists, and indented parts become code."""
     text = inspect.cleandoc(thing.__doc__ or "")
     return "\n\n".join(filter(None, (_block(block) for block in text.split("\n\n"))))
 

@@ -2,9 +2,8 @@
 
     python -m dev.pages.requirements
 
-The ids are in tests/data/requirement_ids.txt. Which test is evidence for which is read from the tests' sources: a
-test's name says its first id, its decorator `covers` all of them. An id without a test has a reason in
-`not_covered.py`.
+The ids are in tests/data/requirement_ids.txt. The tests' sources name the ids that they cover: a test's name has its
+first id, its decorator `covers` all of them. An id without a test has a reason in `not_covered.py`.
 """
 
 from __future__ import annotations
@@ -42,7 +41,7 @@ anew; a test fails when it is stale.
 
 
 def ids() -> list[str]:
-    """All ids, in the order of NASA's lists."""
+    """Return all ids, in the order of NASA's lists."""
     return IDS.read_text(encoding="utf-8").split()
 
 
@@ -70,12 +69,12 @@ def _ids_of(test: ast.FunctionDef) -> list[str]:
 
 
 def prefix(requirement: str) -> str:
-    """The service that an id belongs to: "cES" of "cES1000"."""
+    """Return the service that an id belongs to: "cES" of "cES1000"."""
     return requirement.rstrip("0123456789.")
 
 
 def page() -> str:
-    """The text of docs/reference/generated/requirements.md."""
+    """Return the text of docs/reference/generated/requirements.md."""
     tests, lines = evidence(), [HEAD, "| part | ids | with tests | |", "|---|---|---|---|"]
     parts = [(name, list(group)) for name, group in groupby(ids(), prefix)]
     for name, members in [*parts, ("all", ids())]:

@@ -1,4 +1,4 @@
-"""The segments of NASA's functional tests, and which of them have a test here.
+"""The segments of NASA's functional tests, and those that have a test here.
 
 tests/data/functional_segments.txt has a line for each: "es_cds: Test CDS Name" is the segment of that name in
 es_cds_test.c; the test for it is test_es_cds.py::test_cds_name.
@@ -15,7 +15,7 @@ LIST = HERE.parent / "data" / "functional_segments.txt"
 
 
 def segments() -> list[str]:
-    """All segments, as in the list."""
+    """Return all segments, as in the list."""
     return LIST.read_text(encoding="utf-8").splitlines()
 
 
@@ -28,7 +28,7 @@ def test_of(segment: str) -> str:
 
 
 def missing() -> list[str]:
-    """The segments without a test."""
+    """Return the segments without a test."""
     present = {
         f"{file.name}::{node.name}"
         for file in HERE.glob("test_*.py")

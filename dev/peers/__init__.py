@@ -1,4 +1,4 @@
-"""Public test files of ROS packages, unmodified, on cfepy: which there are, how many pass on ROS, and how many here.
+"""Run public test files of ROS packages unmodified on cfepy: list of files, and counts of passes on ROS and here.
 
-Their sources are not here: `python -m dev.peers fetch FOLDER` gets them from GitHub.
+The sources are not in this repository. `python -m dev.peers fetch FOLDER` gets them from GitHub.
 """

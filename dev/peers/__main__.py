@@ -1,4 +1,4 @@
-"""`python -m dev.peers`: fetch public test files of ROS packages, run them, report what came of it."""
+"""`python -m dev.peers`: fetch public test files of ROS packages, run them, report the results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ ENVIRONMENT = "CFEPY_PEERS_SOURCES"
 
 
 def main() -> int:
-    """Do what the command line says; the exit status."""
+    """Execute the command line. Returns the exit status."""
     arguments = _parser().parse_args()
     try:
         status: int = arguments.action(arguments, read_peers())
@@ -53,7 +53,7 @@ def _fetch(arguments: argparse.Namespace, peers: Peers) -> int:
 
 
 def _run(arguments: argparse.Namespace, peers: Peers) -> int:
-    """Run test files and say what came of them."""
+    """Run test files and print the results."""
     verdicts = _verdicts(arguments, peers)
     good = sum(verdict.good for verdict in verdicts)
     print(f"{good} of {len(verdicts)} files pass as on ROS; {sum(each.passed for each in verdicts)} tests passed")

@@ -1,6 +1,6 @@
-"""Runs one file of tests as nose and pytest would, in a node, and writes what came of each test as JSON.
+"""Run one file of tests as nose and pytest would, in a node, and write the result of each test as JSON.
 
-Its arguments are the file and where the results go. Tests are methods `test*` of classes derived from
+Its arguments are the test file and the path of the results. Tests are methods `test*` of classes derived from
 `unittest.TestCase` or called `Test*`, and functions `test*`.
 """
 
@@ -17,7 +17,7 @@ from types import ModuleType
 
 
 def import_file(path: str) -> ModuleType:
-    """Import a file as part of the packages that it lies in, whose folder is then the first that is searched."""
+    """Import a file as part of its enclosing packages, whose folder is then searched first."""
     folder, name = os.path.split(os.path.splitext(path)[0])
     while os.path.isfile(os.path.join(folder, "__init__.py")):
         folder, package = os.path.split(folder)
@@ -27,7 +27,7 @@ def import_file(path: str) -> ModuleType:
 
 
 def tests_of(module: ModuleType) -> unittest.TestSuite:
-    """All tests of a module, each class in the order of its names, plain functions last."""
+    """Return all tests of a module, each class in the order of its names, plain functions last."""
     suite = unittest.TestSuite()
     for name, value in list(vars(module).items()):
         if inspect.isclass(value) and issubclass(value, unittest.TestCase):
@@ -41,14 +41,14 @@ def tests_of(module: ModuleType) -> unittest.TestSuite:
 
 
 def plain(kind: type, method: str) -> unittest.FunctionTestCase:
-    """A method of a class that is not derived from TestCase, on an object of its own."""
+    """Return a method of a class that is not derived from TestCase, on an object of its own."""
     holder = kind()
     set_up, tear_down = (getattr(holder, name, None) for name in ("setup_method", "teardown_method"))
     return unittest.FunctionTestCase(getattr(holder, method), set_up, tear_down, f"{kind.__name__}.{method}")
 
 
 class Results(unittest.TestResult):
-    """What came of each test, by name: "passed", "skipped", or what went wrong."""
+    """Result of each test, by name: "passed", "skipped", or the error."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -59,7 +59,7 @@ class Results(unittest.TestResult):
         self.said[name_of(test)] = "passed"
 
     def addError(self, test: unittest.TestCase, err: object) -> None:
-        """See unittest; an error of a class's or module's own set-up has no test."""
+        """See unittest. An error in the set-up of a class or module belongs to no test."""
         self.said[name_of(test)] = text_of(err)
 
     addFailure = addError
@@ -72,7 +72,7 @@ class Results(unittest.TestResult):
         self.said[name_of(test)] = "skipped"
 
     def addExpectedFailure(self, test: unittest.TestCase, err: object) -> None:
-        """See unittest; counted as tools count it, as a test that did not run."""
+        """See unittest. Counts as a test that did not run, as other tools count it."""
         self.said[name_of(test)] = "skipped"
 
     def addUnexpectedSuccess(self, test: unittest.TestCase) -> None:
@@ -80,14 +80,14 @@ class Results(unittest.TestResult):
 
 
 def name_of(test: unittest.TestCase) -> str:
-    """The name of a test without its module's."""
+    """Return the name of a test without its module's."""
     if isinstance(test, unittest.FunctionTestCase):
         return test.shortDescription() or test.id()
     return ".".join(test.id().split(".")[-2:])
 
 
 def text_of(error: object) -> str:
-    """An error with its traceback."""
+    """Return an error with its traceback."""
     return "".join(traceback.format_exception(*error))  # type: ignore[misc]
 
 

@@ -1,4 +1,4 @@
-"""Running test files, each in a process of its own: `cfepy node` for Python files, `cfepy rostest` for launch files."""
+"""Run test files, each in its own process: `cfepy node` for Python files, `cfepy rostest` for launch files."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PASSED, SKIPPED = "passed", "skipped"
 
 
 class Verdict(NamedTuple):
-    """What came of a test file: of each test what it said, and why there is nothing when there is nothing."""
+    """Results of a test file: the result of each test, and the reason if there are no results."""
 
     peer: Peer
     said: dict[str, str]
@@ -39,19 +39,19 @@ class Verdict(NamedTuple):
 
     @property
     def failing(self) -> dict[str, str]:
-        """The tests that did not pass, nor were skipped, with what they said."""
+        """Return the tests that neither passed nor were skipped, with their errors."""
         return {name: said for name, said in self.said.items() if said not in (PASSED, SKIPPED)}
 
     @property
     def good(self) -> bool:
-        """Whether as many passed as must; without a count of ROS's, all but those that are not counted."""
+        """Whether enough tests passed. Without a count from ROS, all must pass except those that are not counted."""
         if self.peer.passed is not None:
             return self.peer.enough(self.passed)
         return not self.reason and self.failing.keys() <= self.peer.aside.keys()
 
 
 def run(peer: Peer, sources: Sources) -> Verdict:
-    """Run a test file and say what came of it."""
+    """Run a test file. Returns its results."""
     missing = [repo for repo in peer.repos if not sources.folder(repo).is_dir()]
     if missing:
         return Verdict(peer, {}, f"no sources of {', '.join(missing)}", 0.0)
@@ -64,7 +64,7 @@ def run(peer: Peer, sources: Sources) -> Verdict:
 def _run(peer: Peer, sources: Sources, folder: Path) -> tuple[dict[str, str], str]:
     file, results = _place(peer, sources, folder), folder / "results"
     if peer.kind == UNIT:
-        saved = folder / "saved"  # what nodes write is the run's own
+        saved = folder / "saved"  # files that nodes write belong to the run
         command = ["node", "--for", str(VIRTUAL_S), "--save-files", str(saved), str(DRIVER), str(file), str(results)]
         results = saved / os.path.realpath(results).lstrip("/")
     else:
@@ -91,7 +91,10 @@ def _run(peer: Peer, sources: Sources, folder: Path) -> tuple[dict[str, str], st
 
 
 def _place(peer: Peer, sources: Sources, folder: Path) -> Path:
-    """The file to run; the tests of what cfepy brings along are copied away from the code that they came with."""
+    """Return the file to run.
+
+    Tests of libraries that cfepy brings along are copied away from the code that they came with.
+    """
     file = sources.folder(peer.repo) / peer.path
     if peer.packages or peer.kind != UNIT:
         return file
@@ -101,7 +104,7 @@ def _place(peer: Peer, sources: Sources, folder: Path) -> Path:
 
 
 def _top(file: Path) -> Path:
-    """The uppermost folder of the Python packages that a file lies in; its own when it is in none."""
+    """Return the topmost folder of the Python packages that contain a file, or the file's folder if none does."""
     folder = file.parent
     while (folder.parent / "__init__.py").is_file():
         folder = folder.parent

@@ -1,4 +1,4 @@
-"""The test files: where each comes from, how it is run, and what came of it on ROS (peers.json)."""
+"""The test files: their origin, how to run them, and their results on ROS (peers.json)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cfepy.status import UsageError
 
 FILE = Path(__file__).with_name("peers.json")
 UNIT, ROSTEST = "unit", "rostest"
-SHARE = 0.95  # of what passes on ROS that must pass here
+SHARE = 0.95  # of the tests that pass on ROS, the share that must pass here
 _NOTHING: Mapping[str, str] = {}
 
 
@@ -25,11 +25,11 @@ class Peer:
         repo: its repository, "owner/name" on GitHub.
         path: the file in it.
         kind: UNIT, a Python file with tests, or ROSTEST, a launch file with tests.
-        tests, passed: how many it has on ROS, and how many of them pass there; None when that is not known.
-        packages: folders "owner/name:path" whose packages it sees; a library in one of them takes the place of
-            cfepy's. Empty for the tests of a library that cfepy brings along itself.
-        aside: tests that are not counted, and why, by their names; they look into what cfepy does otherwise.
-        note: what the reader of the results should know.
+        tests, passed: how many tests it has on ROS, and how many of them pass there; None if that is not known.
+        packages: folders "owner/name:path" whose packages it can use; a library in one of them replaces cfepy's. Empty
+            for the tests of a library that cfepy brings along itself.
+        aside: tests that are not counted, with the reasons, by name; they depend on intended differences of cfepy.
+        note: a remark for the reader of the results.
     """
 
     name: str
@@ -48,19 +48,19 @@ class Peer:
         return tuple(dict.fromkeys([self.repo, *(each.partition(":")[0] for each in self.packages)]))
 
     def enough(self, passed: int) -> bool:
-        """Whether that many are as many as pass on ROS, but for a twentieth and for those that are not counted."""
+        """Return whether enough tests passed: 95 % of those that pass on ROS, without those that are not counted."""
         return passed >= ((self.passed or 0) - len(self.aside)) * SHARE
 
 
 class Peers(NamedTuple):
-    """All test files by name, the commit of each repository, and what is left out, with the reason."""
+    """All test files by name, the commit of each repository, and the excluded files with the reasons."""
 
     files: Mapping[str, Peer]
     commits: Mapping[str, str]
     left_out: tuple[tuple[str, str], ...] = ()
 
     def chosen(self, names: list[str]) -> list[Peer]:
-        """The files of these names, or whose names begin so; all when there are none.
+        """Return the files with these names or prefixes, or all if none are given.
 
         Raises:
             UsageError: the file does not exist.

@@ -1,4 +1,4 @@
-"""Showing what came of test files: a line each, and docs/reference/generated/peer_tests.md."""
+"""Report results of test files: one line each, and docs/reference/generated/peer_tests.md."""
 
 from __future__ import annotations
 
@@ -41,14 +41,14 @@ _LEFT_OUT = """
 
 
 def row(verdict: Verdict) -> str:
-    """A line of text."""
+    """Return a line of text."""
     peer = verdict.peer
     counts = f"{_or_unknown(peer.passed):>3} on ROS {verdict.passed:3} here"
     return f"{'ok  ' if verdict.good else 'FAIL'} {counts} {verdict.wall_s:5.1f} s  {peer.name}  {_reason(verdict)}"
 
 
 def page(peers: Peers, verdicts: Sequence[Verdict]) -> str:
-    """The page's text."""
+    """Return the page's text."""
     known = [verdict for verdict in verdicts if verdict.peer.passed is not None]
     good = sum(verdict.good for verdict in known)
     head = _HEAD.format(total=len(verdicts), known=len(known), good=good)
@@ -75,7 +75,7 @@ def _or_unknown(count: int | None) -> str:
 
 
 def _reason(verdict: Verdict) -> str:
-    """What did not pass, with its reason where there is one, and what else there is to say."""
+    """Return the failed tests, with their reasons where known, and further remarks."""
     peer = verdict.peer
     names = [f"{name}: {peer.aside[name]}" if name in peer.aside else name for name in verdict.failing]
     return "; ".join(filter(None, [verdict.reason, *names, peer.note]))

@@ -1,14 +1,14 @@
 """`python -m dev.quality report`: measure how soon the planted bugs are found, and write planted_bugs.md.
 
-`python -m dev.quality programs` does the same with the programs that others try (benchmarks_exploration.md). Both pages
-are in docs/reference/generated.
+`python -m dev.quality programs` does the same with programs known from other tools (benchmarks_exploration.md). Both
+pages are in docs/reference/generated.
 
-`python -m dev.quality edits` tells how many of their shrunk schedules still fail after small edits
+`python -m dev.quality edits` prints how many of their shrunk schedules still fail after small edits
 (docs/how_to/explore_schedules.md).
 
 `python -m dev.quality mended` flies the mended forms under many schedules, in search of false alarms (both pages).
 
-`python -m dev.quality stories` writes down the cause that is told of each of them (`stories.txt`).
+`python -m dev.quality stories` writes down the reported cause of each of them (`stories.txt`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""The planted bugs: small missions, each with one mistake of timing, and what is known of each.
+"""The planted bugs: small missions with one timing mistake each, and the known facts about each mistake.
 
-A folder in tests/quality/missions has a mission as its authors wrote it; `fix.yaml` in it says, for each file, which
-texts to replace in order to mend it.
+A folder in tests/quality/missions has a mission as its authors wrote it. Its `fix.yaml` lists, for each file, the texts
+to replace in order to mend it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from cfepy.pilot.plan import RunPlan
 from cfepy.schedules import Schedule
 
 MISSIONS = Path(__file__).parents[2] / "tests/quality/missions"
-SECONDS = 1.3  # virtual; all of them have done their work by then
+SECONDS = 1.3  # virtual; all missions have finished their work by then
 ROS, CFE, BOTH = "ROS", "cFE", "both"
 
 
@@ -29,11 +29,11 @@ class Bug:
     """A mission with a mistake.
 
     Attributes:
-        name: of its folder.
+        name: name of its folder.
         world: whose code has the mistake: ROS nodes', cFE applications', or both together.
         text: the mistake.
-        kinds: the kinds of failure that it shows as.
-        preemptions: so many at most are left by shrinking; more than 3 only where several tasks have to come together.
+        kinds: the kinds of failure that it can cause.
+        preemptions: how many remain at most after shrinking; more than 3 only if several tasks must meet.
     """
 
     name: str
@@ -51,10 +51,10 @@ class Bug:
         """Write the mission without its mistake.
 
         Args:
-            target: a folder, in which the mission's is made.
+            target: a folder in which the mission's folder is made.
 
         Raises:
-            ValueError: a text to replace is not there exactly once.
+            ValueError: a text to replace does not occur exactly once.
         """
         fixed = target / self.name
         shutil.copytree(self.folder, fixed, ignore=shutil.ignore_patterns("__pycache__", "fix.yaml"))
@@ -108,7 +108,7 @@ BUGS = (
 
 @functools.cache
 def reference_trial(folder: Path, tasks: str = "greenlet") -> Trial:
-    """The trial that exploring a mission makes, its results held against those of fifo."""
+    """Return the trial that exploring a mission makes. Its results are compared with those of fifo."""
     if tasks != "greenlet":
         trial = reference_trial(folder)
         return replace(trial, plan=replace(trial.plan, tasks=tasks))
@@ -119,5 +119,5 @@ def reference_trial(folder: Path, tasks: str = "greenlet") -> Trial:
 
 
 def by_name(name: str) -> Bug:
-    """The bug of a name."""
+    """Return the bug with a name."""
     return next(bug for bug in BUGS if bug.name == name)

@@ -1,7 +1,7 @@
-"""How long a shrunk schedule lasts: the planted bugs after small edits, one at a time, under the schedule of before.
+"""How long a shrunk schedule lasts: the planted bugs after small edits, one at a time, under the earlier schedule.
 
-A schedule of moves says what its switches are about, one of decisions their numbers; an edit adds decisions. Whether
-the bug still shows is counted for both.
+A schedule of moves names the task and the call of each switch; one of decisions uses their numbers, and an edit adds
+decisions. For both, the program counts whether the bug still shows.
 """
 
 from __future__ import annotations
@@ -42,9 +42,9 @@ class Edit(NamedTuple):
     """One small change of a mission.
 
     Attributes:
-        kind: what it is, for the table.
-        text: which one.
-        make: does it, in a copy of the mission's folder.
+        kind: its kind, for the table.
+        text: a description of the change.
+        make: performs it in a copy of the mission's folder.
     """
 
     kind: str
@@ -53,7 +53,7 @@ class Edit(NamedTuple):
 
 
 def edits_of(folder: Path) -> Iterator[Edit]:
-    """All that are tried with a mission.
+    """Yield all that are tried with a mission.
 
     Args:
         folder: of the mission.
@@ -107,7 +107,7 @@ def _is_node(text: str) -> bool:
 
 
 def _logs(text: str) -> Iterator[tuple[int, str]]:
-    """Before which line a log call goes, and the call, for each function that can log."""
+    """Yield the line before which to insert a log call, and the call, for each function that can log."""
     for function in ast.walk(ast.parse(text)):
         if not isinstance(function, ast.FunctionDef) or function.name == "__init__":
             continue
@@ -120,7 +120,7 @@ def _logs(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _boot(text: str, in_node: str, in_app: str) -> tuple[int, str]:
-    """Behind `init_node`, or at the start of an application: before which line what goes."""
+    """Return the line before which to insert a text, and the text: after `init_node`, or at an application's start."""
     tree = ast.parse(text)
     if _is_node(text):
         calls = (each for each in ast.walk(tree) if isinstance(each, ast.Expr) and "init_node(" in ast.unparse(each))
@@ -153,7 +153,7 @@ def lasting(bug: Bug, schedule: Schedule) -> Iterator[Lasting]:
             edit.make(copy)
             trial = reference_trial(copy)
             if trial.run(Schedule()).failed:
-                continue  # the edit is a mistake itself: a rate in a mission whose clock jumps back
+                continue  # this edit would be a mistake itself: a rate in a mission whose clock jumps back
             yield Lasting(edit, _shows(bug, trial, schedule), _shows(bug, trial, numbers))
 
 
@@ -167,7 +167,7 @@ def measure(names: Sequence[str]) -> None:
     """Print the table.
 
     Args:
-        names: of the bugs; all of them when empty.
+        names: names of the bugs; all of them if empty.
     """
     edits, moves, numbers = Counter[str](), Counter[str](), Counter[str]()
     shrunk = load()

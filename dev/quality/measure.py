@@ -1,8 +1,8 @@
-"""How many schedules a policy needs to find a bug: the median over trials with seeds of their own.
+"""How many schedules a policy needs to find a bug: the median over trials with different seeds.
 
-The trials of a bug take turns, a schedule each, until more than half of them have found it: then the median is known,
-and nobody has flown a schedule more than it takes. When too many were flown before that, all that can be said is that
-the median is larger than what each trial has tried.
+The trials of a bug take turns, one schedule each, until more than half of them have found it. Then the median is known,
+and no trial has flown more schedules than that. If the limit of schedules is reached before, the result is only that
+the median is larger than the number that each trial has tried.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from cfepy.schedules.schedule import Schedule
 
 TRIALS = 25
 LONGEST = 2000  # schedules of one trial
-SHOWN = 50  # schedules after which somebody who has a failure looks at it
+SHOWN = 50  # schedules after which a user with a failure looks at it
 MOST = 3000  # schedules of all trials together
 
 POLICIES = {
@@ -36,13 +36,13 @@ POLICIES = {
 
 @dataclass(frozen=True, slots=True)
 class Median:
-    """What was measured.
+    """A measurement.
 
     Attributes:
-        schedules: the median, or what each trial has tried in vain.
+        schedules: the median, or how many schedules each trial has tried without success.
         found: whether it is the median.
-        trials: how many there were; a systematic search has no seeds, so one is all.
-        exhausted: there are no more schedules for this policy.
+        trials: how many there were; a systematic search has no seeds, so one is enough.
+        exhausted: the policy has no further schedules.
     """
 
     schedules: int
@@ -54,16 +54,16 @@ class Median:
         return str(self.schedules) if self.found else f"> {self.schedules}"
 
     def could_go_on(self, most: int) -> bool:
-        """Whether it is worth measuring again with so many schedules."""
+        """Return whether it is worth measuring again with so many schedules."""
         return not (self.found or self.exhausted) and self.schedules < longest(most, self.trials)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         return asdict(self)
 
 
 def longest(most: int, trials: int) -> int:
-    """Schedules of each trial, if there may be so many of all."""
+    """Return the limit of schedules of each trial, given the limit of all trials together."""
     return min(LONGEST, most // trials)
 
 
@@ -78,7 +78,7 @@ class Hunt:
         self.exhausted = False
 
     def step(self) -> Verdict | None:
-        """Fly one more schedule; its verdict, or None when there are no more."""
+        """Fly one more schedule. Returns its verdict, or None if there are no more."""
         schedule = self._search.next()
         if schedule is None:
             self.exhausted = True
@@ -92,10 +92,10 @@ class Hunt:
 
 
 def hunts(trial: Trial, policy: str, count: int) -> list[Hunt]:
-    """Trials of a policy whose seeds have nothing in common.
+    """Return trials of a policy whose seeds do not overlap.
 
     Args:
-        trial: of the bug's mission; the options of its schedule are those of all.
+        trial: trial of the bug's mission; all use its schedule's options.
         policy: one of POLICIES.
         count: how many.
     """
@@ -112,10 +112,10 @@ def median(trial: Trial, policy: str, trials: int = TRIALS, most: int = MOST) ->
     """Measure one policy on one bug.
 
     Args:
-        trial: of the bug's mission.
+        trial: trial of the bug's mission.
         policy: one of POLICIES.
         trials: how many; a systematic search has one.
-        most: schedules of all trials together, from which on it is given up.
+        most: limit of schedules of all trials together.
     """
     count = 1 if policy.startswith("dfs") else trials
     running = hunts(trial, policy, count)
@@ -133,12 +133,12 @@ def median(trial: Trial, policy: str, trials: int = TRIALS, most: int = MOST) ->
 
 
 def find(trial: Trial, policy: str, most: int = LONGEST) -> Verdict | None:
-    """The first verdict of a policy that shows a failure; None when so many schedules show none.
+    """Return a policy's first verdict that shows a failure, or None if there is none within the limit.
 
     Args:
-        trial: of a mission.
+        trial: trial of a mission.
         policy: one of POLICIES.
-        most: schedules.
+        most: limit of schedules.
     """
     (hunt,) = hunts(trial, policy, 1)
     for _ in range(most):
@@ -163,5 +163,5 @@ def simplest(trial: Trial, policy: str) -> list[Verdict]:
 
 
 def as_deviations(verdict: Verdict) -> Schedule:
-    """A schedule that gives the same run by what it does otherwise than fifo."""
+    """Return a schedule that gives the same run by its deviations from fifo."""
     return verdict.schedule.at(dict(verdict.deviations))

@@ -1,8 +1,8 @@
-"""False alarms: the mended form of every mission under many schedules of the default policy, none of which may fail.
+"""False alarms: the mended form of every mission under many schedules of the default policy. None of them may fail.
 
-What was flown is kept in `measured_mended.json` piece by piece, so that a campaign of days goes on where it was ended.
-A piece begins with a seed of its own and is what `cfepy explore --first-seed` flies from there. Schedules differ from
-shortly before applications and nodes begin, so that each is a forked process.
+The results are kept in `measured_mended.json` piece by piece, so that a campaign of days can be interrupted and
+continued. Each piece begins with its own seed and equals the runs of `cfepy explore --first-seed` from there. Schedules
+differ from shortly before applications and nodes begin, so that each is a forked process.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from dev.quality.programs import PROGRAMS, Program, program_trial
 MEASURED = Path(__file__).parent / "measured_mended.json"
 MOST = 20_000
 FROM = ":from=545ms"  # applications of the startup script begin at 550 ms
-PIECE = 600  # schedules; a multiple of how many kinds of them take turns
+PIECE = 600  # schedules; a multiple of the number of schedule kinds that take turns
 
 Measured = dict[str, dict[str, list[str] | int]]
 """By mission: `flown`, how many schedules, and `failed`, those that did, with what failed."""
@@ -36,18 +36,18 @@ MISSIONS: tuple[Bug, ...] = (*BUGS, *PROGRAMS)
 
 
 def load() -> Measured:
-    """What has been flown so far."""
+    """Return the results so far."""
     measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     return measured
 
 
 def measure(names: list[str], jobs: int, most: int) -> None:
-    """Fly what is missing, a piece of each mission by turns.
+    """Fly the missing pieces, one of each mission in turn.
 
     Args:
-        names: of the missions; all of them when empty.
-        jobs: processes.
-        most: schedules of each mission.
+        names: names of the missions; all of them if empty.
+        jobs: number of processes.
+        most: limit of schedules of each mission.
     """
     measured = load()
     wanted = [each.name for each in MISSIONS if not names or each.name in names]
@@ -62,7 +62,7 @@ def measure(names: list[str], jobs: int, most: int) -> None:
 
 
 def pieces(measured: Measured, names: list[str], most: int) -> list[tuple[str, int]]:
-    """What is to be flown: missions and first seeds, the earlier seeds of all missions first."""
+    """Return the missing pieces: missions and first seeds, the earlier seeds of all missions first."""
     return sorted(
         ((name, first) for name in names for first in range(flown_of(measured.get(name, {})), most, PIECE)),
         key=lambda piece: piece[1],
@@ -70,14 +70,14 @@ def pieces(measured: Measured, names: list[str], most: int) -> list[tuple[str, i
 
 
 def flown_of(known: dict[str, list[str] | int]) -> int:
-    """How many schedules of a mission were flown."""
+    """Return how many schedules of a mission were flown."""
     flown = known.get("flown", 0)
     assert isinstance(flown, int)
     return flown
 
 
 def failed_of(known: dict[str, list[str] | int]) -> list[str]:
-    """Those of them that failed."""
+    """Return the failed ones."""
     failed = known.get("failed", [])
     assert isinstance(failed, list)
     return failed
@@ -96,13 +96,13 @@ def _piece(piece: tuple[str, int]) -> tuple[str, int, list[str]]:
 
 
 def verdicts(mission: Bug, folder: Path, count: int, first_seed: int = 0) -> Iterator[Verdict]:
-    """Those of schedules of the default policy on the mended form of a mission.
+    """Yield verdicts of schedules of the default policy on the mended form of a mission.
 
     Args:
-        mission: it.
-        folder: in which the mended form is made.
+        mission: the mission.
+        folder: folder in which the mended form is made.
         count: how many.
-        first_seed: of the first schedule.
+        first_seed: seed of the first schedule.
     """
     trial, options = mended_trial(mission, folder)
     judge = ForkingJudge(trial)
@@ -121,7 +121,8 @@ def verdicts(mission: Bug, folder: Path, count: int, first_seed: int = 0) -> Ite
 
 
 def mended_trial(mission: Bug, folder: Path) -> tuple[Trial, Schedule]:
-    """The trial of a mended form, in which nobody may wait for ever, and the schedule whose options all have."""
+    """Return the trial of a mended form, in which no task may wait forever, and the schedule with the common
+    options."""
     fixed = mission.write_fixed(folder)
     if isinstance(mission, Program):
         return program_trial(mission, fixed), Schedule.parse(mission.options + FROM)
@@ -130,10 +131,10 @@ def mended_trial(mission: Bug, folder: Path) -> tuple[Trial, Schedule]:
 
 
 def sentence(names: list[str]) -> str:
-    """What the pages say of it.
+    """Return the sentence for the pages.
 
     Args:
-        names: of the missions of a page.
+        names: names of the missions of a page.
     """
     measured = load()
     flown = [flown_of(measured.get(name, {})) for name in names]

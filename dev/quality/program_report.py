@@ -1,4 +1,4 @@
-"""The table of further programs: what was measured of each, kept in a file, and the page made of it."""
+"""The table of further programs: the measurements of each, kept in a file, and the page made from it."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ Measured = dict[str, dict[str, Any]]
 
 
 def load() -> Measured:
-    """What has been measured so far."""
+    """Return the measurements so far."""
     measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     return measured
 
 
 def measure(names: list[str]) -> None:
-    """Measure what is missing, one after the other, then write the page.
+    """Measure the missing programs one by one, then write the page.
 
     Args:
-        names: of the programs; all of them when empty.
+        names: names of the programs; all of them if empty.
     """
     measured = load()
     wanted = [program for program in PROGRAMS if not names or program.name in names]
@@ -66,11 +66,11 @@ def _measured(column: str, program: Program) -> Any:
 
 
 def first_failing(program: Program, most: int) -> int | None:
-    """Which schedule of the default policy, counted from 1, is the first that shows the mistake; None for none.
+    """Return the number, from 1, of the first schedule of the default policy that shows the mistake, or None.
 
     Args:
-        program: it.
-        most: schedules.
+        program: the program.
+        most: limit of schedules.
     """
     (hunt,) = hunts(program_trial(program), DEFAULT, 1)
     for number in range(1, most + 1):
@@ -83,27 +83,27 @@ def first_failing(program: Program, most: int) -> int | None:
 
 
 def tells_race(program: Program) -> bool:
-    """Whether one run under fifo with `--races` tells of a data race."""
+    """Return whether one run under fifo with `--races` reports a data race."""
     trial = program_trial(program)
     failures = replace(trial, plan=replace(trial.plan, races=True)).run(Schedule()).failures
     return any(failure.kind == verdict.RACE for failure in failures)
 
 
-# -- what it comes to ------------------------------------------------------------------------------------------------
+# -- evaluation ------------------------------------------------------------------------------------------------------
 
 
 def complete(measured: Measured) -> bool:
-    """Whether every cell has been measured."""
+    """Return whether every cell has been measured."""
     return all(set(measured.get(program.name, {})) == {FOUND, MEDIAN, RACES} for program in PROGRAMS)
 
 
 def missed(measured: Measured) -> list[Program]:
-    """Programs whose mistake none of the first SCHEDULES shows."""
+    """Return the programs whose mistake none of the first SCHEDULES shows."""
     return [program for program in PROGRAMS if (measured[program.name][FOUND] or MOST) > SCHEDULES]
 
 
 def page(measured: Measured) -> str:
-    """The page of documentation."""
+    """Return the page of documentation."""
     heads = ["program", "in", "written after", "shows as", "needs", "first", "median", "`--races`", "published"]
     lines = ["|".join(["", *heads, ""]), "|".join(["", *["---"] * len(heads), ""])]
     lines += [_row(measured[program.name], program) for program in PROGRAMS]

@@ -1,6 +1,6 @@
-"""More planted bugs: the programs by which others try their searches of schedules, written anew, and further races.
+"""More planted bugs: programs that benchmark other schedule searches, rewritten here, and further races.
 
-They are measured with the default policy alone, as one flies `cfepy explore` first, and stand in a page of their own.
+They are measured with the default policy alone, as a first `cfepy explore` uses it, and have their own page.
 """
 
 from __future__ import annotations
@@ -49,13 +49,13 @@ MAPLE = {
 
 @dataclass(frozen=True, slots=True)
 class Program(Bug):
-    """A mission with a mistake that others know.
+    """A mission with a mistake known from other benchmarks.
 
     Attributes:
-        origin: who tries what with a program of this kind, and its name there; empty for one of our own.
-        options: of all schedules, as behind a schedule's kind: `at` with options.
-        hangs: it fails whoever goes first, under fifo, too.
-        bound: how many preemptions the original needs, as SCTBench's authors found; empty where they do not say.
+        origin: the tool or benchmark that uses such a program, and its name there; empty for a program of ours.
+        options: options of all schedules, as written after a schedule's kind: `at` with options.
+        hangs: it fails under every schedule, including fifo.
+        bound: how many preemptions the original needs, according to SCTBench's authors; empty if unknown.
     """
 
     origin: str = ""
@@ -65,13 +65,13 @@ class Program(Bug):
 
     @property
     def published(self) -> str:
-        """What is known of the original; empty where nothing is."""
+        """Return the known facts about the original, or an empty text."""
         runs = MAPLE.get(self.name, 0)
         maple = f"Maple {runs}" if runs > 0 else f"Maple > {-runs}" if runs else ""
         return ", ".join(each for each in (maple, self.bound) if each)
 
     def asked(self) -> str:
-        """What `cfepy explore` is given, besides the mission and `--for`."""
+        """Return the arguments of `cfepy explore`, in addition to the mission and `--for`."""
         options = Schedule.parse(self.options)
         words = [f"--points {options.points}"] if options.points else []
         words += ["--any-priority"] if options.any_priority else []
@@ -127,8 +127,7 @@ PROGRAMS = (
         "safe_stack",
         ROS,
         "a stack without locks, of depth 5",
-        RAISED
-        + STUCK,  # a cell that has two owners, or a chain that leads nowhere, at which those who pop try for ever
+        RAISED + STUCK,  # a cell with two owners, or a chain that ends nowhere; tasks that pop it retry forever
         origin="SCTBench: safestack",
         options=POINTS,
         bound="5 preemptions",
@@ -175,12 +174,12 @@ PROGRAMS = (
 
 @functools.cache
 def program_trial(program: Program, folder: Path | None = None, tasks: str = "greenlet") -> Trial:
-    """The trial that exploring a program makes, in which nobody may wait for ever.
+    """Return the trial that exploring a program makes, in which no task may wait forever.
 
     Args:
-        program: it.
-        folder: of a mended form; None for the program's own.
-        tasks: what tasks run on.
+        program: the program.
+        folder: folder of a mended form; None for the program's own.
+        tasks: kind of tasks.
     """
     own = folder or program.folder
     faults = own / "faults.yaml"

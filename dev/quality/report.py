@@ -1,6 +1,6 @@
-"""The table of planted bugs: what was measured, kept in a file from which a later run goes on, and the page made of it.
+"""The table of planted bugs: the measurements, kept in a file that a later run continues, and the page made from it.
 
-`measured.json` is written after every cell, so a run that is interrupted has lost at most two of them.
+`measured.json` is written after every cell, so an interrupted run loses at most two of them.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ Measured = dict[str, dict[str, dict[str, Any]]]
 
 
 def load() -> Measured:
-    """What has been measured so far."""
+    """Return the measurements so far."""
     measured: Measured = json.loads(MEASURED.read_text(encoding="utf-8")) if MEASURED.is_file() else {}
     return measured
 
@@ -54,12 +54,12 @@ def save(measured: Measured) -> None:
 
 
 def measure(names: list[str], jobs: int, most: int) -> None:
-    """Measure what is missing, then write the page if nothing is.
+    """Measure the missing cells, then write the page if none is missing.
 
     Args:
-        names: of the bugs; all of them when empty.
-        jobs: processes.
-        most: schedules for one cell of the table.
+        names: names of the bugs; all of them if empty.
+        jobs: number of processes.
+        most: limit of schedules for one cell of the table.
     """
     measured = load()
     with multiprocessing.get_context("spawn").Pool(jobs) as pool:
@@ -92,14 +92,14 @@ def _missing(measured: Measured, names: list[str], most: int) -> Iterator[tuple[
 
 
 def _missing_shrinks(measured: Measured, names: list[str]) -> Iterator[tuple[str, str]]:
-    """Bugs whose schedules are to be shrunk, each with the default policy, or else the one that finds one first."""
+    """Yield the bugs whose schedules are to be shrunk, each with the default policy or the first one to find it."""
     for name, columns in measured.items():
         if (not names or name in names) and SHRUNK not in columns:
             yield name, shown_by(measured, name)
 
 
 def shown_by(measured: Measured, name: str) -> str:
-    """The policy whose schedules are to be shrunk."""
+    """Return the policy whose schedules are to be shrunk."""
     return DEFAULT if Median(**measured[name][DEFAULT]).found else best(measured, name)[0]
 
 
@@ -120,32 +120,35 @@ def _text(column: str, found: dict[str, Any]) -> str:
     return str(Shrunk(**found).preemptions) if column == SHRUNK else str(Median(**found))
 
 
-# -- what it comes to ------------------------------------------------------------------------------------------------
+# -- evaluation ------------------------------------------------------------------------------------------------------
 
 
 def complete(measured: Measured) -> bool:
-    """Whether every cell has been measured."""
+    """Return whether every cell has been measured."""
     return all(bug.name in measured and set(measured[bug.name]) == {*POLICIES, SHRUNK} for bug in BUGS)
 
 
 def medians(measured: Measured, name: str) -> dict[str, Median]:
-    """What was measured of a bug, by policy."""
+    """Return the measurements of a bug, by policy."""
     return {policy: Median(**found) for policy, found in measured[name].items() if policy != SHRUNK}
 
 
 def best(measured: Measured, name: str) -> tuple[str, Median]:
-    """The policy that finds a bug first, and how soon."""
+    """Return the policy that finds a bug first, and how soon."""
     return min(medians(measured, name).items(), key=lambda each: (not each[1].found, each[1].schedules))
 
 
 def median_of_default(measured: Measured) -> float:
-    """Over all bugs, the median of what the default policy needs; what it did not find counts as the longest."""
+    """Return the median, over all bugs, of the schedules that the default policy needs.
+
+    A bug not found counts as the longest.
+    """
     found = [medians(measured, bug.name)[DEFAULT] for bug in BUGS]
     return statistics.median(each.schedules if each.found else LONGEST for each in found)
 
 
 def page(measured: Measured) -> str:
-    """The page of documentation."""
+    """Return the page of documentation."""
     heads = ["bug", "in", "shows as", *(HEADINGS.get(each, each) for each in POLICIES), "preemptions"]
     lines = ["|".join(["", *heads, ""]), "|".join(["", *["---"] * len(heads), ""])]
     lines += [_row(measured, bug) for bug in BUGS]

@@ -1,4 +1,4 @@
-"""What shrinking leaves of a schedule that shows a bug."""
+"""The result of shrinking a schedule that shows a bug."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class Shrunk:
     """The shortest schedule that was found.
 
     Attributes:
-        preemptions: how often a task that could have gone on loses the processor.
-        others: how often another than the first of the waiting tasks goes on.
-        probes: runs that it took.
-        schedule: itself.
+        preemptions: how often a runnable task loses the processor.
+        others: how often a task other than the first waiting one continues.
+        probes: number of runs that it took.
+        schedule: the schedule.
     """
 
     preemptions: int
@@ -31,7 +31,7 @@ class Shrunk:
         return f"{self.preemptions} + {self.others}" if self.others else str(self.preemptions)
 
     def to_dict(self) -> dict[str, Any]:
-        """Plain data."""
+        """Return plain data."""
         return asdict(self)
 
 

@@ -1,6 +1,6 @@
-"""The sentence of cause that is told of each planted bug, under a schedule of few preemptions that shows it.
+"""The reported cause of each planted bug, under a schedule of few preemptions that shows it.
 
-`stories.txt` has them as they were read and found true; `python -m dev.quality stories` writes it anew.
+`stories.txt` has the sentences after review; `python -m dev.quality stories` rewrites it.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ NOTHING = "-"
 
 
 class Story(NamedTuple):
-    """What is told of a bug: the schedule, and the sentence; empty where nothing is said."""
+    """The reported cause of a bug: the schedule, and the sentence; empty if there is none."""
 
     schedule: str
     cause: str
 
 
 def read() -> dict[str, Story]:
-    """The stories by the names of the bugs."""
+    """Return the stories by the names of the bugs."""
     lines = [line for line in STORIES.read_text(encoding="utf-8").splitlines() if line]
     found = {}
     for head, cause in zip(lines[::2], lines[1::2], strict=True):
@@ -40,7 +40,7 @@ def read() -> dict[str, Story]:
 
 
 def told(bug: Bug, schedule: str) -> Told | None:
-    """What is told of a run; None when it does not show the bug."""
+    """Return the reported cause of a run, or None if the run does not show the bug."""
     trial, parsed = reference_trial(bug.folder), Schedule.parse(schedule)
     policy = MoveNotingPolicy(parsed.policy() or Policy())
     verdict = trial.fly(parsed, policy=policy).verdict
@@ -49,7 +49,7 @@ def told(bug: Bug, schedule: str) -> Told | None:
 
 
 def by_moves(bug: Bug, schedule: str) -> str:
-    """The same schedule with its moves by name, which other versions of Python make as well."""
+    """Return the same schedule with its moves by name, which other versions of Python make as well."""
     parsed = Schedule.parse(schedule)
     policy = MoveNotingPolicy(parsed.policy() or Policy())
     reference_trial(bug.folder).fly(parsed, policy=policy)

@@ -1,1 +1,1 @@
-"""Programs that put on record what real ROS does."""
+"""Programs that record the behaviour of real ROS."""

@@ -1,6 +1,6 @@
-"""What a client of rosbridge sends in the tests that compare with rosbridge_suite, and how answers are compared.
+"""Requests of a rosbridge client in the tests that compare with rosbridge_suite, and the comparison of answers.
 
-`python -m dev.record.rosbridge` lets the real one answer.
+`python -m dev.record.rosbridge` sends them to the real server.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ COMPRESSED = ("png", "cbor")
 
 
 def topic_of(kind: str) -> str:
-    """The part of a topic's name that is made of a type."""
+    """Return the part of a topic's name that is made of a type."""
     return kind.partition("/")[2].lower()
 
 
@@ -126,7 +126,7 @@ def _rosapi() -> list[Op]:
 
 
 def steps() -> list[list[Op]]:
-    """What is sent; of each step the answers are awaited before the next one."""
+    """Return the steps. The answers of each step are awaited before the next one is sent."""
     last = {"op": "subscribe", "topic": "/t/out/string", "type": "std_msgs/String"}
     text = {"op": "publish", "topic": "/t/in/string", "msg": {"data": "again"}}
     leave = {"op": "unsubscribe", "topic": last["topic"]}
@@ -190,7 +190,7 @@ LOGGERS = ("get_loggers", "set_logger_level")  # services that every node has
 
 
 def comparable(answer: Op) -> Op:
-    """An answer without what is of one run alone: other nodes' names, times, the order of what has none, filters."""
+    """Return an answer without the parts of a single run: other nodes' names, times, arbitrary orders, filters."""
     if answer.get("op") == "service_response":
         return {**answer, "values": _values(answer["service"].partition("#")[0], answer["values"])}
     if answer.get("op") == "png":
@@ -202,7 +202,7 @@ def comparable(answer: Op) -> Op:
 
 def _values(service: str, values: Any) -> Any:
     if not isinstance(values, dict):
-        return values.partition("Unable to")[0]  # what follows are paths
+        return values.partition("Unable to")[0]  # the rest are paths
     if service == "/rosapi/get_time":
         return {"time": sorted(values["time"])}
     if service == "/rosapi/topics":

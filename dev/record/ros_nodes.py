@@ -1,6 +1,6 @@
-"""Runs the node scenarios on a real ROS 1 master and writes down what they print.
+"""Runs the node scenarios on a real ROS 1 master and writes down their output.
 
-Needs a running roscore and rospy in this interpreter: `python3 -m dev.record.ros_nodes`. Scenarios and results live
+Needs a running roscore and rospy in this interpreter: `python3 -m dev.record.ros_nodes`. Scenarios and results are
 together in tests/data/nodes_on_ros.json; a test compares cfepy's output of the same scenarios with them.
 """
 
@@ -36,7 +36,7 @@ def run(scenario: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Run all scenarios, and write down what their nodes print."""
+    """Run all scenarios and write down their nodes' output."""
     argparse.ArgumentParser(prog="python -m dev.record.ros_nodes", description=__doc__).parse_args()
     record = json.loads(RECORD.read_text(encoding="utf-8"))
     for scenario in record["scenarios"]:

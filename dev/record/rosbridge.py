@@ -1,6 +1,6 @@
-"""`python -m dev.record.rosbridge PORT FILE`: lets the real rosbridge_suite answer, and puts it on record.
+"""`python -m dev.record.rosbridge PORT FILE`: sends requests to the real rosbridge_suite, and records its answers.
 
-It needs a ROS 1 master, tests/ros_nodes/rosbridge_peer.py as a node, and of rosbridge_suite (branch ros1)
+It needs a ROS 1 master, tests/ros_nodes/rosbridge_peer.py as a node, and two programs of rosbridge_suite (branch ros1):
 rosbridge_websocket at PORT of this computer, and rosapi_node under the name rosapi.
 """
 

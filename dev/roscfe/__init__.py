@@ -1,1 +1,1 @@
-"""Programs about the interface library: probes beside roscpp, messages to C++ and back."""
+"""Programs for the interface library: probes beside roscpp, messages to C++ and back."""

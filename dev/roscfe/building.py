@@ -1,4 +1,4 @@
-"""Programs in C++ against the interface library: compiled here, for this computer or for another one."""
+"""Compile programs in C++ against the interface library, for this computer or for another one."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ needs_cpp = pytest.mark.skipif(shutil.which(CPP[0]) is None, reason="there is no
 
 
 class Target(NamedTuple):
-    """A kind of computer: how programs are compiled for it, and what runs them here."""
+    """A kind of computer: how to compile programs for it, and how to run them here."""
 
     compiler: tuple[str, ...]
     runner: tuple[str, ...] = ()
@@ -49,7 +49,7 @@ TARGETS = {"here": HERE, "powerpc": POWERPC, "arm": ARM, "mips": MIPS}
 
 
 def target_named(name: str) -> Target:
-    """A kind of computer for a test, which is skipped where its compiler or its emulator is not there."""
+    """Return a kind of computer for a test, which is skipped where its compiler or its emulator is not there."""
     lacking = TARGETS[name].lacking
     if lacking is not None:
         pytest.skip(f"there is no {lacking} (Debian: qemu-user, g++-arm-linux-gnueabihf, ...)")
@@ -65,16 +65,16 @@ def compile_program(
     include: Sequence[str] = INCLUDE,
     libraries: Sequence[str] = (),
 ) -> Path:
-    """Compile C++ files, one after the other, and link them.
+    """Compile C++ files one by one, and link them.
 
     Args:
-        made: the program.
+        made: the resulting program.
         sources: the files.
-        flags: more of them, such as include paths and -O1.
-        target: what it is for.
+        flags: further compiler flags, such as include paths and -O1.
+        target: the target computer.
         base: language and warnings.
-        include: where headers are; nothing for roscpp's own.
-        libraries: what is linked.
+        include: folders of headers; empty for roscpp's own.
+        libraries: libraries to link.
     """
     objects = compile_objects(made, sources, *flags, target=target, base=base, include=include)
     return link_program(made, objects, *flags, *libraries, target=target)
@@ -88,8 +88,7 @@ def compile_objects(
     base: Sequence[str] = FLIGHT_FLAGS,
     include: Sequence[str] = INCLUDE,
 ) -> list[Path]:
-    """Compile C++ files, one after the other, to object files that are called after them and `made`; see
-    `compile_program`."""
+    """Compile C++ files one by one to object files, named after them and `made`; see `compile_program`."""
     objects = []
     for source in sources:
         objects.append(made.with_name(f"{source.stem}.{made.name}.o"))
@@ -98,13 +97,13 @@ def compile_objects(
 
 
 def link_program(made: Path, objects: Iterable[Path], *flags: str, target: Target = HERE) -> Path:
-    """Link object files; flags are the linker's, and libraries."""
+    """Link object files. Flags are the linker's, including libraries."""
     _run([*target.compiler, *map(str, objects), *flags, "-o", str(made)])
     return made
 
 
 def complaints(folder: Path, text: str, *flags: str, base: Sequence[str] = FLIGHT_FLAGS) -> str:
-    """What the compiler says of a text; nothing when it is content."""
+    """Return the compiler's messages about a text, or nothing if it compiles."""
     source = folder / "text.cpp"
     source.write_text(text, encoding="utf-8")
     command = [*CPP, *base, *INCLUDE, *flags, "-fsyntax-only", str(source)]

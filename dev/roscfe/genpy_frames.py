@@ -1,8 +1,8 @@
-"""Run by a Python that has real ROS's genpy: the program of `roundtrip.h`, with genpy in place of C++.
+"""The program of `roundtrip.h` with genpy in place of C++. A Python that has real ROS's genpy runs it.
 
     python3 genpy_frames.py TYPE TEXT < frames > answers
 
-TYPE is the message's full name, TEXT a file with its definition and those of all types in it.
+TYPE is the message's full name, TEXT a file with its definition and the definitions of all types in it.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
-"""Small nodes of roscpp, the folder tests/roscfe/probes: what each prints on cfepy, and with Debian's roscpp beside it.
+"""Small nodes of roscpp (folder tests/roscfe/probes): their output on cfepy, compared with Debian's roscpp.
 
 `python -m dev.roscfe.probing [NAME...] [--record]` flies probes and runs them with the roscpp of this computer
-(libroscpp-dev, python3-roscore; python3-rospy for probes with a partner), and shows how what they print differs.
-`--record` keeps what roscpp's printed in probes/NAME.txt, which the tests compare with.
+(libroscpp-dev, python3-roscore; python3-rospy for probes with a partner), and shows how their output differs.
+`--record` writes roscpp's output into probes/NAME.txt, which the tests compare with.
 """
 
 from __future__ import annotations
@@ -56,11 +56,11 @@ MANIFEST = """<package format="2"><name>probes</name><version>1.0.0</version><de
 
 
 def fly(name: str, folder: Path) -> list[str]:
-    """What a probe prints on cfepy.
+    """Return the output of a probe on cfepy.
 
     Args:
-        name: of the probe.
-        folder: an empty one.
+        name: name of the probe.
+        folder: an empty folder.
     """
     package = folder / "probes"
     package.mkdir()
@@ -84,12 +84,12 @@ def fly(name: str, folder: Path) -> list[str]:
 
 
 def probe_first(lines: Iterable[str]) -> list[str]:
-    """The lines of a probe, then those of its partner, which may come at any time between them."""
+    """Return the lines of a probe, then its partner's, which may arrive at any time between them."""
     return sorted(lines, key=lambda line: line.startswith(PARTNER))
 
 
 def marked(lines: Iterable[str]) -> Iterator[str]:
-    """The lines that count, from the mark on."""
+    """Yield the lines that count, from the mark on."""
     for line in lines:
         before, mark, rest = line.partition(MARK)
         if mark and not before.startswith("EVS"):  # warnings are events, too
@@ -101,10 +101,10 @@ def marked(lines: Iterable[str]) -> Iterator[str]:
 
 @contextmanager
 def master(folder: Path) -> Iterator[dict[str, str]]:
-    """A master of ROS on a port of its own while the block runs; the environment of its nodes.
+    """Run a ROS master on its own port while the block runs. Yields the environment of its nodes.
 
     Args:
-        folder: for the logs of ROS.
+        folder: folder for the logs of ROS.
     """
     port = free_port()
     environ = {
@@ -130,12 +130,12 @@ def master(folder: Path) -> Iterator[dict[str, str]]:
 
 
 def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[str]:
-    """What a probe prints with Debian's roscpp.
+    """Return the output of a probe with Debian's roscpp.
 
     Args:
-        name: of the probe.
-        folder: for the program.
-        environ: of `master`.
+        name: name of the probe.
+        folder: folder for the program.
+        environ: environment from `master`.
     """
     made = folder / name
     libraries = (*MORE_LIBRARIES.get(name, ()), *LIBRARIES)

@@ -1,4 +1,4 @@
-"""Random messages of any type, as genpy's objects, no longer than the capacities of the strict profile allow."""
+"""Random messages of any type, as genpy's objects, within the capacities of the strict profile."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FEW = 2  # items of an array of messages
 
 
 def all_types() -> list[str]:
-    """All messages that come with cfepy, requests and responses of services among them."""
+    """Return all messages that come with cfepy, requests and responses of services among them."""
     found = []
     for package in LIBRARY.packages():
         found += [f"{package}/{name}" for name in LIBRARY.names(package) or ()]
@@ -30,7 +30,7 @@ def all_types() -> list[str]:
 
 
 def capacities() -> Capacities:
-    """A capacity for each array of messages."""
+    """Return a capacity for each array of messages."""
     fields = {
         f"{name}.{each.name}": FEW
         for name in all_types()
@@ -55,7 +55,7 @@ class Source:
         self._library = library
 
     def message(self, full_name: str) -> Any:
-        """A message with random values in all of its fields."""
+        """Return a message with random values in all of its fields."""
         made = self._library.message_class(full_name)()
         for each in self._library.spec(full_name).fields:
             setattr(made, each.attribute, self._value(full_name, each))

@@ -2,9 +2,9 @@
 
     python -m dev.roscfe.roundtrip --messages 10000 --types 250 --profile host strict --genpy
 
-Each type is a run of one generated program, which knows them all. With `--genpy` real genpy reads and writes the same
-messages beside it (Debian's python3-genpy); without, the bytes are those of cfepy's own codec, which is compared with
-genpy elsewhere.
+Each type is a run of one generated program, which knows them all. With `--genpy`, real genpy reads and writes the same
+messages beside it (Debian's python3-genpy). Without it, the bytes come from cfepy's own codec, which other tests
+compare with genpy.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ int main(int count, char **arguments)
 
 
 class Answer(NamedTuple):
-    """What the program says of a frame."""
+    """Answer of the program to a frame."""
 
     good: bool
     allocated: int
@@ -86,14 +86,14 @@ class Answer(NamedTuple):
 
 
 class Reader:
-    """What decodes frames and encodes them again, in a process of its own for each type."""
+    """Decodes frames and encodes them again, in a separate process for each type."""
 
     def command(self, full_name: str) -> Sequence[str]:
-        """What is run for a type."""
+        """Return the command for a type."""
         raise NotImplementedError
 
     def answers(self, full_name: str, frames: Sequence[bytes]) -> list[Answer]:
-        """What it makes of frames."""
+        """Return the answers to frames."""
         given = b"".join(struct.pack("<I", len(frame)) + frame for frame in frames)
         done = subprocess.run(self.command(full_name), input=given, capture_output=True, check=False)
         assert done.returncode == 0, f"{full_name}: {done.stderr.decode(errors='replace')[:3000]}"
@@ -102,7 +102,7 @@ class Reader:
         return answers
 
     def differing(self, full_name: str, frames: Sequence[bytes]) -> list[tuple[bytes, Answer]]:
-        """Frames that do not come back as they were, and what came."""
+        """Return the frames that come back changed, with their answers."""
         answers = zip(frames, self.answers(full_name, frames), strict=True)
         return [(frame, answer) for frame, answer in answers if not answer.good or answer.octets != frame]
 
@@ -126,13 +126,13 @@ class Program(Reader):
     """The program, compiled for some types in one profile.
 
     Args:
-        folder: where it is made.
+        folder: folder in which it is made.
         types: full names of messages.
-        profile: what they are made of.
-        flags: of the compiler.
-        target: what it runs on.
+        profile: profile of the messages.
+        flags: flags of the compiler.
+        target: the target computer.
         longest: capacities for the strict profile.
-        roscpp: against the headers that Debian has of ROS, not against ours.
+        roscpp: use Debian's headers of ROS instead of cfepy's.
     """
 
     def __init__(
@@ -167,14 +167,14 @@ class Program(Reader):
 
 
 def frames_of(full_name: str, count: int, seed: int = 0) -> list[bytes]:
-    """The bytes of random messages, the first of them empty."""
+    """Return the bytes of random messages, the first of them empty."""
     source = Source(hash_of(full_name) + seed, capacities())
     empty = LIBRARY.message_class(full_name)()._pack()
     return [empty, *(source.message(full_name)._pack() for _ in range(count - 1))]
 
 
 def hash_of(text: str) -> int:
-    """A number that a text has in each run."""
+    """Return a number that a text has in each run."""
     return int.from_bytes(text.encode()[-8:], "big")
 
 
@@ -195,7 +195,7 @@ def _answers(octets: bytes) -> Iterator[Answer]:
 
 
 def main(arguments: list[str]) -> int:
-    """Send messages of all types through the programs, and say how many came back changed."""
+    """Send messages of all types through the programs, and print how many came back changed."""
     parser = argparse.ArgumentParser(prog="python -m dev.roscfe.roundtrip", description=main.__doc__)
     parser.add_argument("--messages", type=int, default=200, metavar="N", help="of each type (default: 200)")
     parser.add_argument("--types", type=int, metavar="N", help="so many types, from the whole list (default: all)")

@@ -1,4 +1,4 @@
-"""Fly random ground commands in cfepy and in NASA's cFE, and tell what differs.
+"""Fly random ground commands in cfepy and in NASA's cFE, and report the differences.
 
 Usage: CFEPY_REAL_CFE=FOLDER python -m dev.twin [--seed N] [--count COMMANDS] [--flight STEPS]
 """

@@ -1,7 +1,7 @@
 """Random ground commands for NASA's flight applications, made from their structure; `apps_flight` flies them.
 
-Each step of commands is followed by what wakes the application up, where it needs that, and by the question for its
-housekeeping. Addresses of memory are left out: on Linux NASA's PSP takes every address, and dies of a wrong one.
+After each step of commands come the application's wakeup, if it needs one, and its housekeeping request. Memory
+addresses are left out: on Linux NASA's PSP accepts every address, and a wrong one crashes it.
 """
 
 from __future__ import annotations
@@ -47,8 +47,8 @@ class AppsCommander:
     """Makes the steps of a flight.
 
     Args:
-        seed: of the flight.
-        names: of the applications that are commanded; all of them if empty.
+        seed: seed of the flight.
+        names: names of the commanded applications; all of them if empty.
     """
 
     def __init__(self, seed: int, names: Iterable[str] = ()) -> None:
@@ -60,7 +60,7 @@ class AppsCommander:
         self._transfers = 0
 
     def steps(self) -> Iterator[Step]:
-        """Steps without an end; the first ones have every command once, as it should be."""
+        """Yield steps without end. The first ones contain every command once, with valid arguments."""
         while True:
             if self._fresh:
                 app, command = self._fresh.pop()
@@ -77,7 +77,7 @@ class AppsCommander:
             yield from self.after(app)
 
     def after(self, app: FlightApp) -> Iterator[Step]:
-        """What follows commands: what wakes it up, and the question for housekeeping."""
+        """Yield the packets that follow commands: the wakeup and the housekeeping request."""
         wake = self.wakeup(app)
         question = bytes(msg.command(app.housekeeping_mid, 0))
         if app is HS:  # it looks at commands, and at questions, when it is woken up
@@ -89,7 +89,7 @@ class AppsCommander:
         yield Step(app.name, (question,), PLAIN)
 
     def wakeup(self, app: FlightApp) -> bytes:
-        """What a scheduler sends to an application; empty where there is nothing."""
+        """Return a scheduler's wakeup packet for an application, or b"" if it needs none."""
         if not app.wakeup_mid:
             return b""
         random, payload = self._random, b""
@@ -101,14 +101,14 @@ class AppsCommander:
         return bytes(msg.command(app.wakeup_mid, 0, payload))
 
     def _uplink(self) -> Iterator[Step]:
-        """A file on its way up to CF, and wake-ups between its PDUs."""
+        """Yield a file on its way up to CF, and wake-ups between its PDUs."""
         self._transfers += 1
         for pdu in cfdp_pdus.transfer(self._random, self._transfers):
             yield Step(CF.name, (bytes(msg.command(PDUS_UP, 0, pdu)),), PLAIN)
             yield Step(CF.name, (self.wakeup(CF),), PLAIN)
 
     def _charge(self) -> bytes:
-        """What LC watches, DS stores and HK copies: POWER's housekeeping, with little charge or much."""
+        """Return the packet that LC watches, DS stores and HK copies: POWER's housekeeping, with low or high charge."""
         random = self._random
         payload = struct.pack("<HBB", random.choice((0, 39, 40, 41, 100, 0xFFFF)), random.randrange(2), 0)
         return bytes(msg.telemetry(POWER_HK, payload))
@@ -124,7 +124,7 @@ class AppsCommander:
         return bytes(msg.command(app.commands_mid, command.code, payload))
 
     def _damaged(self, packet: bytes) -> bytes:
-        """A payload of another length, or a code that nobody has."""
+        """Return the packet with another payload length, or with an unknown function code."""
         random = self._random
         if random.random() < 0.5:
             size = max(8, len(packet) + random.choice((-8, -2, -1, 1, 2, 8, 100)))

@@ -1,4 +1,4 @@
-"""What is compared of the files of NASA's flight applications: all but times, and orders that the host gives."""
+"""Compared content of the files of NASA's flight applications: everything except times and host-dependent orders."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ FM_SIZE, FM_CHANGED = slice(64, 68), slice(68, 72)
 
 
 def of_file(path: str, data: bytes, of_packet: Callable[[bytes], bytes | None]) -> bytes:
-    """What is compared of a file.
+    """Return the compared content of a file.
 
     Args:
-        path: where it is. A list that lists itself tells how far it was when its turn came.
+        path: where it is. A list that lists itself shows how far it was when its turn came.
         data: its content.
-        of_packet: what is compared of a packet, which DS stored; None for one that is left out.
+        of_packet: returns the compared content of a packet that DS stored, or None to leave it out.
     """
     if len(data) < HEADER_SIZE or int.from_bytes(data[:4], "big") != CONTENT_ID:
         return data

@@ -1,4 +1,4 @@
-"""Fly random commands of NASA's flight applications in cfepy and in NASA's cFE, and tell what differs.
+"""Fly random commands of NASA's flight applications in cfepy and in NASA's cFE, and report the differences.
 
 Usage: CFEPY_REAL_CFE=FOLDER python -m dev.twin.apps_flight [--seed N] [--count COMMANDS] [--apps LC SC ...]
 
@@ -55,7 +55,7 @@ FILES = (b"/cf/cf_def_config.tbl", b"/ram/a.dat"), (b"/cf/sc_rts001.tbl", b"/ram
 MASKED = {
     # events that HS counted, processor time in use, and how often tasks ran
     0x8AD: [range(28, 36), range(44, 180)],
-    # checksums of the computer's own code, and how far CS is with all that it checks, of which that code is most
+    # checksums of the computer's own code, and CS's progress, which mostly covers that code
     0x8A4: [range(40, 56), range(76, 80)],
     0x88B: [range(28, 32)],  # when a file was changed
     0x88C: [range(92 + 68 + entry * 76, 92 + 72 + entry * 76) for entry in range(20)],  # the same of files in a folder
@@ -72,7 +72,7 @@ EVENT_MONITOR = b"on HS_EVENT_PIPE,app HS"
 
 
 def of_packet(packet: bytes) -> bytes | None:
-    """What is compared of a packet; None for one that is left out."""
+    """Return the compared content of a packet, or None to leave it out."""
     packet = _without_time(packet)
     told = masks.of_packet(packet)
     msg_id = int.from_bytes(packet[:2], "big")
@@ -91,7 +91,7 @@ def of_packet(packet: bytes) -> bytes | None:
 
 
 def differences(ours: Observed, theirs: Observed) -> list[str]:
-    """What is not the same in two observations of a step, a line each."""
+    """Return the differences between two observations of a step, one line each."""
     mine, real_ones = ([told for told in map(of_packet, each.packets) if told is not None] for each in (ours, theirs))
     found = []
     for told in [*real_ones]:
@@ -109,7 +109,7 @@ def differences(ours: Observed, theirs: Observed) -> list[str]:
 
 
 def _without_times(observed: Observed) -> Observed:
-    """Names of files without the time in them."""
+    """Return the names of files without the time in them."""
     files = {_without_time(path.encode()).decode(): data for path, data in observed.files.items()}
     return observed._replace(files=files)
 
@@ -123,23 +123,23 @@ def _of_file(path: str, ours: bytes, theirs: bytes) -> str:
 
 
 def tables() -> dict[str, bytes]:
-    """Tables of missions/cfs in place of NASA's, which have hardly anything in them, by virtual path.
+    """Return tables of missions/cfs that replace NASA's, which are nearly empty, by virtual path.
 
-    FM looks at a disk only: what it says of a folder counts the entry `..`, which cfepy does not list.
+    FM looks at a disk only: its figures of a folder count the entry `..`, which cfepy does not list.
     """
     given = [each for each in TABLES.glob("*.tbl") if each.name.startswith(("lc_", "sc_", "ds_", "cf_", "hk_", "fm_"))]
     return {f"/cf/{each.name}": each.read_bytes() for each in given}
 
 
 def command(app: FlightApp, code: int, payload: bytes = b"") -> Step:
-    """A step of one command."""
+    """Return a step of one command."""
     return Step(app.name, (bytes(msg.command(app.commands_mid, code, payload)),), PLAIN)
 
 
 def preparation() -> list[Step]:
-    """What counted the boot begins anew; no flywheel event is counted by applications that listen to events.
+    """Return steps that reset counters of the boot, and hide flywheel events from applications that count events.
 
-    DS begins with new files, since the boot has not as many events in both.
+    DS begins with new files, because the two boots have different numbers of events.
     """
     quiet = Step("EVS", (evs.DISABLE_APP_EVENTS.packet(AppName="CFE_TIME"),), PLAIN)
     resets = [command(app, RESET_CODE, bytes(4 if app is CF else 0)) for app in FLIGHT_APPS]
@@ -178,12 +178,12 @@ class RealApps(Real):
 def simulated(
     built: Path, more: Mapping[str, bytes] | None = None, steps: Sequence[Step] = ()
 ) -> AbstractContextManager[Simulated]:
-    """The mission in cfepy, prepared.
+    """Return the prepared mission in cfepy.
 
     Args:
         built: the folder of NASA's executable.
-        more: files that replace others, by virtual path.
-        steps: what it flies first, behind the preparation.
+        more: replacement files, by virtual path.
+        steps: steps to fly first, after the preparation.
     """
     flown = [f"{app.name.lower()}.so" for app in FLIGHT_APPS]
     files = {
@@ -200,7 +200,7 @@ def simulated(
 def real(
     built: Path, more: Mapping[str, bytes] | None = None, steps: Sequence[Step] = ()
 ) -> AbstractContextManager[Real]:
-    """The same in NASA's cFE."""
+    """Return the same in NASA's cFE."""
     heard = ",".join(map(hex, TELEMETRY_HEARD))
     link = compiled_app(built.parents[2], LINK_APP, f"-DMORE_WATCHED={heard},")
     files = {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link, **(more or {})}

@@ -1,4 +1,4 @@
-"""PDUs of CFDP (CCSDS 727.0-B-5) by hand, right ones and wrong ones, as the ground may send them to CF."""
+"""Hand-made PDUs of CFDP (CCSDS 727.0-B-5), valid and invalid, as the ground may send them to CF."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ MODULAR = 0
 
 
 def pdu(body: bytes, number: int, *, is_data: bool = False, acknowledged: bool = False, to: int = CRAFT) -> bytes:
-    """A PDU to the receiver of a file, with ids of one byte."""
+    """Return a PDU to the receiver of a file, with ids of one byte."""
     flags = 0x20 | 0x10 * is_data | 0x04 * (not acknowledged)
     return struct.pack(">BHBBBB", flags, len(body), 0, GROUND, number & 0xFF, to) + body
 
@@ -27,7 +27,7 @@ def checksum(data: bytes) -> int:
 
 
 def transfer(random: Random, number: int) -> Iterator[bytes]:
-    """The PDUs of a small file's way up, of which one may be wrong, missing, twice or too short."""
+    """Yield the PDUs of a small file's uplink. One of them may be wrong, missing, repeated or too short."""
     acknowledged = random.random() < 0.5
     data = random.randbytes(random.choice((0, 1, 7, 100, 700)))
     source, target = b"up.dat", random.choice((b"/ram/up.dat", b"/ram/up2.dat", b"/nowhere/up.dat", b"", b"/ram"))

@@ -1,8 +1,8 @@
-"""Random ground commands from a seed: sequences that go on from what was done before, single commands, damaged packets.
+"""Random ground commands from a seed: sequences that build on each other, single commands, damaged packets.
 
-A step is what goes up at once, to one service, and is answered before the next. What would cut the link itself is left
-out: resets, the end of CI_LAB, TO_LAB or SCH_LAB, their routes, other addresses for telemetry, tones from the ground.
-`lives` makes such steps.
+A step goes up at once, to one service, and is answered before the next. Commands that would cut the link itself are
+left out: resets, the end of CI_LAB, TO_LAB or SCH_LAB, their routes, other addresses for telemetry, tones from the
+ground. `lives` makes such steps.
 """
 
 from __future__ import annotations
@@ -84,7 +84,7 @@ TONES = (0x1810, 0x1811, 0x1860, 0x1862)
 
 
 class Step(NamedTuple):
-    """What goes up at once, to which service, and how long its effects take."""
+    """Packets that go up at once, the service that gets them, and how long their effects take."""
 
     service: str
     packets: tuple[bytes, ...]
@@ -101,7 +101,7 @@ def pace_of(packet: bytes) -> str:
 
 
 def is_safe(packet: bytes) -> bool:
-    """Whether a datagram leaves the link, and the clock behind it, as they are."""
+    """Return whether a datagram leaves the link and its clock intact."""
     msg_id, code = int.from_bytes(packet[:2], "big"), packet[6] & 0x7F if len(packet) > 6 else 0
     if msg_id in TONES or (msg_id == to_lab.packets.CMD_MID and code in (2, 4, 5, 6)):
         return False
@@ -137,7 +137,10 @@ def _go_together(one: Step, other: Step) -> bool:
 
 
 def _cuts_a_route(packet: bytes) -> bool:
-    """Whether SB may get no more commands after this one; which of those that went up with it still come is chance."""
+    """Return whether SB may get no commands after this one.
+
+    Chance decides which commands of the same step still arrive.
+    """
     is_command = len(packet) > 6 and int.from_bytes(packet[:2], "big") == sb.CMD_MID
     return is_command and packet[6] & 0x7F == sb.DISABLE_ROUTE.code
 
@@ -191,13 +194,13 @@ class Commander:
         packets: list[bytes] = []
         count = self._random.choice((1, 2, 3, 3))
         if damaged and service == "EVS":
-            count = 1  # an event of CI_LAB about the next packet would race with what EVS is told about events
+            count = 1  # an event of CI_LAB about the next packet would race with EVS's command about events
         while len(packets) < count:
             packet = self._any(service)
             if damaged:
                 packet = self._damage(packet)
             if packets and _asks_housekeeping(packets[-1]):
-                packets.pop()  # its answer would race with CI_LAB, which goes on with the next packet
+                packets.pop()  # its answer would race with CI_LAB, which continues with the next packet
             if is_safe(packet):
                 packets.append(packet)
         alone = next((packet for packet in packets if pace_of(packet) != PLAIN or _cuts_a_route(packet)), None)
@@ -257,11 +260,11 @@ class Commander:
         random, data = self._random, bytearray(packet)
         for _ in range(random.choice((1, 1, 2))):
             kind = random.randrange(7)
-            if kind == 0:  # a payload of another length, and a header that says so
+            if kind == 0:  # a payload of another length, with a matching header
                 size = max(8, len(data) + random.choice((-8, -2, -1, 1, 2, 8, 100)))
                 data = (data + random.randbytes(120))[:size]
                 data[4:6] = (size - 7).to_bytes(2, "big")
-            elif kind == 1 and len(data) >= 8:  # the header says less or more than there is
+            elif kind == 1 and len(data) >= 8:  # the header gives a length that is too short or too long
                 data[4:6] = max(0, len(data) - 7 + random.choice((-9, -1, 1, 3, 500))).to_bytes(2, "big")
             elif len(data) < 8:
                 continue
@@ -277,7 +280,7 @@ class Commander:
                 data = data[: random.choice((0, 1, 5, 6, 7, 8, len(data)))]
         return bytes(data) or b"\0"
 
-    # -- sequences that go on from what was done before ------------------------------------------------------------
+    # -- sequences that build on earlier commands ------------------------------------------------------------------
 
     def _filters(self) -> Iterator[tuple[str, bytes]]:
         app = self._random.choice(("SAMPLE_APP", "CFE_ES", "CFE_SB", "CI_LAB", "TO_LAB"))

@@ -1,4 +1,4 @@
-"""Flies the steps of a seed on two computers and tells what differs: what the comparing programs have in common."""
+"""Fly the steps of a seed on two computers and report the differences: the common part of the comparing programs."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ class Flown(NamedTuple):
     """A step that was flown on both.
 
     Attributes:
-        observed: what came of it in NASA's.
-        lines: what differs.
+        observed: its results on NASA's cFE.
+        lines: the differences.
     """
 
     step: Step
@@ -38,7 +38,7 @@ def fly(
 
 
 def parser_of(name: str, usage: str | None, steps: int) -> argparse.ArgumentParser:
-    """The command line of a program that flies seeds; so many steps are a flight."""
+    """Return the command line parser of a program that flies seeds. `steps` is the default length of a flight."""
     parser = argparse.ArgumentParser(prog=f"python -m {name}", description=usage)
     parser.add_argument("--seed", type=int, default=0, help="of the first flight; the next ones count up")
     parser.add_argument("--count", type=int, default=100, help="commands in all")
@@ -47,7 +47,7 @@ def parser_of(name: str, usage: str | None, steps: int) -> argparse.ArgumentPars
 
 
 def real_folder(variable: str = VARIABLE) -> Path:
-    """Where NASA's executable is, as an environment variable says; ends the program where it does not."""
+    """Return the folder of NASA's executable from an environment variable. Ends the program if it is not set."""
     built = installed(variable)
     if built is None:
         sys.exit(f"{variable} does not say where the folder of NASA's core-cpu1 is")
@@ -55,7 +55,7 @@ def real_folder(variable: str = VARIABLE) -> Path:
 
 
 def run(given: argparse.Namespace, flight: Callable[[int], Iterable[Flown]]) -> int:
-    """Fly one seed after the other until there were so many commands, and print what differs; the exit status."""
+    """Fly seeds one by one up to the number of commands, and print the differences. Returns the exit status."""
     steps = commands = unlike = 0
     for seed in itertools.count(given.seed):
         for number, (step, _, lines) in enumerate(flight(seed)):

@@ -1,4 +1,4 @@
-"""Flies steps on a computer, and keeps what came of each: the packets that came down and the files that changed."""
+"""Fly steps on a computer, and keep the results of each: the packets received and the files changed."""
 
 from __future__ import annotations
 
@@ -41,13 +41,13 @@ ENABLE = to_lab.packets.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1")
 
 
 class Observed(NamedTuple):
-    """What came of a step: packets in order, and the files that were made or changed, by path."""
+    """Results of a step: packets in order, and the new or changed files by path."""
 
     packets: tuple[bytes, ...]
     files: dict[str, bytes]
 
     def told(self, of_packet: Callable[[bytes], bytes | None] = masks.of_packet) -> Counter[bytes]:
-        """What is compared of the packets."""
+        """Return the compared contents of the packets."""
         return Counter(each for each in map(of_packet, self.packets) if each is not None)
 
 
@@ -55,24 +55,24 @@ class Computer(Protocol):
     """One that flies steps."""
 
     def fly(self, step: Step, expected: Observed | None = None) -> Observed:
-        """Send a step up, and wait for what comes of it; `expected` says when that is all there."""
+        """Send a step up, and wait for its results. `expected` lists them, so that the wait can end early."""
 
 
 Flyer = TypeVar("Flyer", bound=Computer)
 
 
 def with_housekeeping(step: Step) -> tuple[bytes, ...]:
-    """What a step sends, and then the question for its service's housekeeping."""
+    """Return the packets of a step, followed by its service's housekeeping request."""
     return (*step.packets, *question(step))
 
 
 def question(step: Step) -> tuple[bytes, ...]:
-    """The question for the housekeeping of a step's service; none where it has none."""
+    """Return the housekeeping request of a step's service, or nothing if there is none."""
     return (HOUSEKEEPING[step.service].packet(),) if step.service in HOUSEKEEPING else ()
 
 
 def preparation() -> list[Step]:
-    """Steps that make both computers alike: what counted the boot, which is not alike, begins anew."""
+    """Return steps that reset counters of the boot, which differ between the two computers."""
     reset = [es.RESET_COUNTERS, evs.RESET_COUNTERS, sb.RESET_COUNTERS, tbl.RESET_COUNTERS, time_packets.RESET_COUNTERS]
     steps = [Step("EVS", (evs.RESET_ALL_FILTERS.packet(AppName="CFE_SB"),), PLAIN)]
     steps += [Step(each.name.split("_")[1], (each.packet(),), PLAIN) for each in reset]
@@ -84,8 +84,8 @@ class Simulated:
     """The mission in cfepy.
 
     Args:
-        flown: it.
-        line: the ports at which it hears the ground and the ground hears it.
+        flown: the mission.
+        line: the ports of commands and of telemetry.
     """
 
     def __init__(self, flown: Mission, line: tuple[int, int] = (CI_PORT, TO_PORT)) -> None:
@@ -159,7 +159,7 @@ class Real:
 
     def _come_down(self, step: Step, expected: Observed | None) -> Iterator[bytes]:
         wanted = expected.told(self.of_packet) if expected is not None else Counter[bytes]()
-        silent = bool(wanted)  # then the last answer is the end; otherwise it takes a while to know
+        silent = bool(wanted)  # then the last answer is the end; otherwise it takes a while to be sure
         last = begin = time.monotonic()
         end = begin + LIMIT_S[step.pace]
         while time.monotonic() < end:
@@ -192,13 +192,13 @@ def prepared_simulation(
     make: Callable[[Mission], Simulated] = Simulated,
     release: str = RELEASE,
 ) -> Iterator[Simulated]:
-    """A mission in cfepy.
+    """Return a mission in cfepy.
 
     Args:
         files: its files, by virtual path.
-        steps: what it flies first.
+        steps: steps to fly first.
         make: makes the computer of the mission.
-        release: of cFE, such as "7.0.0".
+        release: release of cFE, such as "7.0.0".
     """
     with tempfile.TemporaryDirectory() as folder:
         for path, data in files.items():
@@ -217,14 +217,14 @@ def prepared_real(
     make: Callable[[RealCfe], Real] = Real,
     line: tuple[int, int] = (CI_PORT, TO_PORT),
 ) -> Iterator[Real]:
-    """The same in NASA's cFE.
+    """Return the same in NASA's cFE.
 
     Args:
         built: the folder of its executable.
-        files: what to write over its files, by virtual path.
-        steps: what it flies first.
+        files: files to write over its own, by virtual path.
+        steps: steps to fly first.
         make: makes the computer of it.
-        line: the ports at which it hears the ground and the ground hears it.
+        line: the ports of commands and of telemetry.
     """
     with tempfile.TemporaryDirectory() as folder, RealCfe(built, Path(folder) / "cfe", files, line) as booted:
         yield _after(steps, make(booted))
@@ -237,17 +237,17 @@ def _after(steps: Iterable[Step], computer: Flyer) -> Flyer:
 
 
 def simulated(release: str) -> AbstractContextManager[Simulated]:
-    """The mission of the lab applications in cfepy, prepared, on a release of cFE such as "7.0.0"."""
+    """Return the mission of the lab applications in cfepy, prepared, on a release of cFE such as "7.0.0"."""
     return prepared_simulation(mission.files(), preparation(), release=release)
 
 
 def real(built: Path) -> AbstractContextManager[Real]:
-    """The same in NASA's cFE, prepared."""
+    """Return the same in NASA's cFE, prepared."""
     return prepared_real(built, mission.files(), preparation())
 
 
 def differences(ours: Observed, theirs: Observed) -> list[str]:
-    """What is not the same in two observations of a step, a line each."""
+    """Return the differences between two observations of a step, one line each."""
     mine, real_ones = ours.told(), theirs.told()
     missing, added = [*(real_ones - mine).elements()], [*(mine - real_ones).elements()]
     found = []
@@ -267,7 +267,7 @@ def _of_file(path: str, ours: bytes, theirs: bytes) -> str:
 
 
 def only(missing: Iterable[bytes], added: Iterable[bytes]) -> list[str]:
-    """Lines of what was told by one side alone."""
+    """Return a line for each packet that only one side sent."""
     return [
         *(f"only NASA's: {shown(told)}" for told in missing),
         *(f"only ours:   {shown(told)}" for told in added),
@@ -275,12 +275,12 @@ def only(missing: Iterable[bytes], added: Iterable[bytes]) -> list[str]:
 
 
 def file_differences(ours: Observed, theirs: Observed, compare: Callable[[str, bytes, bytes], str]) -> list[str]:
-    """A line for each file that is not alike.
+    """Return a line for each file that differs.
 
     Args:
-        ours: what came of a step in cfepy.
-        theirs: the same of NASA's.
-        compare: gets a path and two contents, and says what is not alike; nothing when they are.
+        ours: the results of a step in cfepy.
+        theirs: the results in NASA's cFE.
+        compare: gets a path and two contents, and returns the differences, or "" if there are none.
     """
     found = []
     for path in sorted({*ours.files, *theirs.files}):
@@ -293,7 +293,7 @@ def file_differences(ours: Observed, theirs: Observed, compare: Callable[[str, b
 
 
 def shown(told: bytes) -> str:
-    """What is compared of a packet, for people."""
+    """Return the compared content of a packet as readable text."""
     msg_id = int.from_bytes(told[:2], "big")
     if msg_id == evs.LONG_EVENT_MSG_MID:
         app, number = told[8:28].partition(b"\0")[0], int.from_bytes(told[28:30], "little")
@@ -302,7 +302,7 @@ def shown(told: bytes) -> str:
 
 
 def first_difference(ours: bytes, theirs: bytes) -> str:
-    """Where two pieces of data begin to differ, and how; nothing where they are the same."""
+    """Return where and how two pieces of data begin to differ, or "" if they are equal."""
     if ours == theirs:
         return ""
     at = next((at for at, (one, other) in enumerate(zip(ours, theirs, strict=False)) if one != other), None)
@@ -313,5 +313,5 @@ def first_difference(ours: bytes, theirs: bytes) -> str:
 
 
 def fly(computer: Computer, steps: Iterable[Step]) -> list[Observed]:
-    """Fly steps, and keep what came of each."""
+    """Fly steps, and return the results of each."""
     return [computer.fly(step, None) for step in steps]

@@ -24,12 +24,12 @@ class FlightCommand(NamedTuple):
 
 
 class FlightApp(NamedTuple):
-    """What the ground says to an application, and hears of it.
+    """An application's commands and telemetry.
 
     Attributes:
-        commands_mid: of ground commands.
-        housekeeping_mid: the question for housekeeping.
-        wakeup_mid: what wakes it up to work, as a scheduler sends it; 0 where there is none.
+        commands_mid: MsgId of ground commands.
+        housekeeping_mid: MsgId of the housekeeping request.
+        wakeup_mid: MsgId of a scheduler's wakeup; 0 if there is none.
         telemetry: MsgIds that it sends.
     """
 

@@ -1,7 +1,7 @@
-"""LINK, the way to the ground that stays when CI_LAB, TO_LAB or SCH_LAB end; the twin of link_app.c.
+"""LINK, the link to the ground that stays when CI_LAB, TO_LAB or SCH_LAB end; the twin of link_app.c.
 
-Datagrams at its port go to the bus, what is on the bus goes to the ground. It also calls the CDS for the ground, and
-passes datagrams on to CI_LAB. A mission has this file in its folder, as `link.py`.
+It puts datagrams of its port on the bus, and sends packets of the bus to the ground. It also calls the CDS for the
+ground, and passes datagrams on to CI_LAB. A mission has this file in its folder, as `link.py`.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""Random steps that end applications and reset the processor, and ask what was left: `lives_flight` flies them.
+"""Random steps that end applications, reset the processor, and query the remaining state; `lives_flight` flies them.
 
 They go up through LINK (link_app.c), which stays when CI_LAB, TO_LAB or SCH_LAB end. Some go on from LINK to CI_LAB's
-port, so that it shows whether CI_LAB listens. Ground tones are among them, and blocks of the CDS, which LINK has.
+port, to show whether CI_LAB listens. They include ground tones, and blocks of the CDS that LINK owns.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ NOTHING = "LINK"
 
 
 def request(letter: str, slot: int = 0, size: int = 0, byte: int = 0, name: str = "") -> bytes:
-    """What LINK is asked for."""
+    """Return a request for LINK."""
     return bytes(msg.command(REQUEST_MID, 0, REQUEST.pack(letter.encode(), slot, size, byte) + name.encode() + b"\0"))
 
 
 def through_ci_lab(packet: bytes) -> bytes:
-    """A datagram that LINK sends on to CI_LAB's port."""
+    """Return a datagram that LINK sends on to CI_LAB's port."""
     return bytes(msg.command(REQUEST_MID, 0, b"U" + packet))
 
 
@@ -125,7 +125,7 @@ class LivesCommander(Commander):
                 yield service, bytes(packet)
         for kind in random.choice(((PROCESSOR,), (PROCESSOR,), (PROCESSOR, PROCESSOR), (POWERON,), (0,), (3,))):
             yield "ES", bytes(es.RESTART.packet(RestartType=kind))
-            yield "EVS", evs.RESET_APP_COUNTER.packet(AppName="CFE_ES")  # it tells of as many modules as the build has
+            yield "EVS", evs.RESET_APP_COUNTER.packet(AppName="CFE_ES")  # its number of modules depends on the build
             yield from self._what_survived()
 
     def _what_survived(self) -> Iterator[tuple[str, bytes]]:

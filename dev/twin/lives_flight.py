@@ -1,8 +1,8 @@
-"""Fly random ends of applications, resets and ground tones in cfepy and in NASA's cFE, and tell what differs.
+"""Fly random ends of applications, resets and ground tones in cfepy and in NASA's cFE, and report the differences.
 
 Usage: CFEPY_REAL_CFE=FOLDER python -m dev.twin.lives_flight [--seed N] [--count COMMANDS] [--record FILE]
 
-FOLDER is build/exe/cpu1 in the folder in which NASA's cFE was built: LINK (link_app.c) is compiled with what is there.
+FOLDER is build/exe/cpu1 in the folder in which NASA's cFE was built: LINK (link_app.c) is compiled with its files.
 """
 
 from __future__ import annotations
@@ -49,11 +49,11 @@ STARTUP = f"{_LIBRARY}\n{LINK}{_APPS}"
 
 
 def settled(observed: Observed) -> Observed:
-    """What came of a step, without times in LINK's replies, and what comes of a pipe that nobody reads.
+    """Return the results of a step without times in LINK's replies and without effects of a pipe that no task reads.
 
-    SCH_LAB gets a packet each second, of which its pipe takes four. Whether there is a fifth one between its last look
-    and its end depends on how the seconds of ES and TIME lie to each other. Of what SCH_LAB itself sends into a full
-    pipe no event tells in NASA's, since SCH_LAB is not registered with EVS; see docs/reference/differences.md.
+    SCH_LAB gets a packet each second, and its pipe holds four. Whether a fifth one arrives between its last read
+    and its end depends on the phase between the seconds of ES and TIME. NASA's cFE sends no event when SCH_LAB itself
+    sends into a full pipe, because SCH_LAB is not registered with EVS; see docs/reference/differences.md.
     """
     packets = (_without_overflow(each) for each in observed.packets)
     files = {path: _filters_without_overflow(data) for path, data in observed.files.items()}
@@ -78,9 +78,9 @@ def _without_overflow(packet: bytes) -> bytes:
 
 
 def _tones(packet: bytes) -> bytes:
-    """Of the diagnostic packet of TIME, how many more tones than data of tones came: the ground sent these.
+    """Return how many more tones than tone data the diagnostic packet of TIME counts: the ground sent these.
 
-    Both also count the clock's own, of which one may just be on its way when the counters are cleared or told.
+    Both numbers include the clock's own, one of which may be on its way when the counters are cleared or sent.
     """
     fields = time.DIAG_TLM.read(packet)
     return f"more tones than data: {fields['ToneSignalCounter'] - fields['ToneDataCounter']}".encode()
@@ -101,13 +101,13 @@ def _blanked(data: bytes, at: int, size: int) -> bytes:
 
 
 def simulated(release: str) -> AbstractContextManager[Simulated]:
-    """The mission in cfepy, prepared, on a release of cFE such as "7.0.0"."""
+    """Return the mission in cfepy, prepared, on a release of cFE such as "7.0.0"."""
     files = {**mission.files(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": LINK_APP.with_suffix(".py").read_bytes()}
     return prepared_simulation(files, preparation(), lambda flown: Simulated(flown, LINE), release)
 
 
 def real(built: Path) -> AbstractContextManager[Real]:
-    """The mission in NASA's cFE, prepared."""
+    """Return the mission in NASA's cFE, prepared."""
     link = compiled_app(built.parents[2], LINK_APP)
     files = {**mission.files(), STARTUP_PATH: STARTUP.encode(), "/cf/link.so": link}
     return prepared_real(built, files, preparation(), line=LINE)

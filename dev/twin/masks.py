@@ -1,7 +1,7 @@
-"""What may differ between a packet or a file of NASA's cFE and ours: which fields, and why. All else is compared.
+"""Allowed differences between packets or files of NASA's cFE and ours: which fields, and why. All else is compared.
 
-Time in the headers of packets and files is left out everywhere, and so is the sequence count of events, since TIME of
-the real one enters and leaves flywheel mode when the host is slow, with an event each time.
+Time in the headers of packets and files is left out everywhere, and so is the sequence count of events. TIME of the
+real cFE enters and leaves flywheel mode when the host is slow, with an event each time.
 """
 
 from __future__ import annotations
@@ -140,12 +140,12 @@ def _declared() -> dict[int, Telemetry]:
 
 
 def is_event(packet: bytes) -> bool:
-    """Whether a packet is an event, long or short."""
+    """Return whether a packet is an event, long or short."""
     return msg.get_msg_id(packet) in (evs.LONG_EVENT_MSG_MID, evs.SHORT_EVENT_MSG_MID)
 
 
 def of_packet(packet: bytes) -> bytes | None:
-    """What is compared of a packet; None for one that is left out."""
+    """Return the compared content of a packet, or None to leave it out."""
     declared = _declared().get(msg.get_msg_id(packet)) if len(packet) > 6 else None
     if declared is None or len(packet) != declared.length:
         return packet  # something that went up and was sent on
@@ -172,14 +172,14 @@ def of_packet(packet: bytes) -> bytes | None:
 
 
 def _without_limit_errors(packet: bytes) -> bytes:
-    """Housekeeping of SB; of the messages that could not be sent, those that met a message limit are taken out."""
+    """Return housekeeping of SB without the count of messages that met a message limit."""
     errors = TLM_HEADER_SIZE + sb.HOUSEKEEPING.offsets["MsgSendErrorCounter"]
     limits = TLM_HEADER_SIZE + sb.HOUSEKEEPING.offsets["MsgLimitErrorCounter"]
     return packet[:errors] + bytes([packet[errors] - packet[limits] & 0xFF]) + packet[errors + 1 :]
 
 
 def _without_unused_entries(packet: bytes) -> bytes:
-    """Housekeeping of EVS; NASA's clears only the first entry that no application has any more."""
+    """Return housekeeping of EVS without unused entries. NASA's clears only the first of them."""
     size = evs.APP_TLM.size
     for at in range(TLM_HEADER_SIZE + evs.HOUSEKEEPING.offsets["AppData"], len(packet), size):
         if not any(packet[at : at + size]):
@@ -188,7 +188,10 @@ def _without_unused_entries(packet: bytes) -> bytes:
 
 
 def fields_that_differ(ours: bytes, theirs: bytes) -> str:
-    """Fields of two packets of a MsgId, as `of_packet` leaves them: path, our bytes, NASA's; "" for other packets."""
+    """Return the differing fields of two packets of a MsgId, as `of_packet` leaves them: path, our bytes, NASA's.
+
+    Other packets give "".
+    """
     declared = _declared().get(int.from_bytes(ours[:2], "big"))
     if declared is None or ours[:4] != theirs[:4] or len(ours) != 4 + declared.payload.size:
         return ""
@@ -199,14 +202,14 @@ def fields_that_differ(ours: bytes, theirs: bytes) -> str:
 
 
 def _subscriptions(packet: bytes) -> bytes:
-    """The entries that are in use, in any order: applications subscribe as they come up."""
+    """Return the entries that are in use, in any order: applications subscribe as they come up."""
     fields = sb.ALLSUBS_TLM.read(packet)
     used = sorted(each["MsgId"] for each in fields["Entry"][: fields["Entries"]])
     return repr((fields["PktSegment"], fields["TotalSegments"], fields["Entries"], used)).encode()
 
 
 def of_file(data: bytes) -> bytes:
-    """What is compared of a file that was written."""
+    """Return the compared content of a written file."""
     try:
         head = read_header(data)
     except CfeError:  # whatever it is, it is compared as it stands
@@ -237,27 +240,27 @@ def of_file(data: bytes) -> bytes:
 
 
 def log_lines(text: bytes) -> list[bytes]:
-    """The lines of a system log, without the times at their beginning."""
+    """Return the lines of a system log, without the times at their beginning."""
     lines = (STAMP.sub(b"", line) for line in text.rstrip(b"\0").split(b"\n"))
     return [NOT_ALIKE.sub(rb"\1", line) for line in lines]
 
 
 def _text(field: bytes | bytearray) -> bytes:
-    """A text up to its NUL: NASA's headers have what the stack held behind it."""
+    """Return a text up to its NUL. In NASA's headers, the bytes behind it come from the stack."""
     return bytes(field).partition(b"\0")[0].ljust(len(field), b"\0")
 
 
 def logged(data: bytes) -> list[bytes]:
-    """The events of an event log, as they are compared."""
+    """Return the events of an event log in comparable form."""
     size = TLM_HEADER_SIZE + evs.LONG_EVENT.size
     events = (of_packet(data[at : at + size]) for at in range(HEADER_SIZE, len(data), size))
     return [each for each in events if each is not None and not VERSIONS.search(each)]
 
 
 def same_log(ours: bytes, theirs: bytes) -> bool:
-    """Whether two event logs tell the same, as far as flywheel events leave room for it.
+    """Return whether two event logs agree, as far as flywheel events leave room for it.
 
-    They take entries, so that others are there or not; and who is first of two applications is chance.
+    Flywheel events take entries, so other events may be missing. The order of two applications is nondeterministic.
     """
     mine, real = logged(ours), logged(theirs)
     both = Counter(mine) & Counter(real)
@@ -265,5 +268,5 @@ def same_log(ours: bytes, theirs: bytes) -> bool:
 
 
 def is_log(data: bytes) -> bool:
-    """Whether a file is an event log."""
+    """Return whether a file is an event log."""
     return len(data) > HEADER_SIZE and int.from_bytes(data[4:8], "big") == header.SUBTYPE_EVS_EVENTLOG

@@ -1,4 +1,4 @@
-"""Random steps for MM, MD and CS with addresses at which something is: a block of memory that both computers have."""
+"""Random steps for MM, MD and CS with valid addresses: a block of memory that both computers have."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ WAKEUPS = 6
 
 
 def files(address: int) -> dict[str, bytes]:
-    """Definitions of CS's tables, and files for MM to load, with the block at an address; by virtual path."""
+    """Return tables for CS and files for MM to load, by virtual path, with the block at an address."""
     states = (ENABLED, DISABLED, ENABLED, ENABLED)
     memory = b"".join(
         struct.pack("<QHHI", address + at, state, 0, size) for (at, size), state in zip(PIECES, states, strict=True)
@@ -66,17 +66,17 @@ def _load(offset: int, data: bytes, kind: int, symbol: str = SYMBOL, flaw: int =
 
 
 def command(app: FlightApp, code: int, layout: str = "", *values: int | bytes) -> bytes:
-    """A command with a payload in the letters of `struct`, without gaps but those that it names."""
+    """Return a command with a payload in the letters of `struct`, without gaps but those that it names."""
     return bytes(msg.command(app.commands_mid, code, struct.pack("<" + layout, *values)))
 
 
 def lookup() -> Step:
-    """The question where the block is."""
+    """Return the request for the address of the block."""
     return Step(MM.name, (command(MM, LOOKUP, "64s", SYMBOL.encode()),), PLAIN)
 
 
 def preparation() -> list[Step]:
-    """CS lets alone what is not alike: the code of cFE and of the operating system."""
+    """Return steps that keep CS off the parts that differ: the code of cFE and of the operating system."""
     return [Step(CS.name, (command(CS, DISABLE_CORE), command(CS, DISABLE_OS)), PLAIN)]
 
 
@@ -102,7 +102,7 @@ class MemoryCommander:
             yield Step(app.name, (*wakeups, bytes(msg.command(app.housekeeping_mid, 0))), PLAIN)
 
     def _where(self, room: int, align: int = 1) -> bytes:
-        """A symbolic address of so many bytes, mostly a good one."""
+        """Return a symbolic address for a number of bytes, mostly a valid one."""
         offset = self._random.randrange(0, WORKED_ON - room, align)
         symbol, offset = self._random.choice(((SYMBOL, offset), ("", self._address + offset), ("nothing", offset)))
         if self._random.random() < 0.1:

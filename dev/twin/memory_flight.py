@@ -1,11 +1,11 @@
-"""Fly MM, MD and CS on memory that holds the same in cfepy and in NASA's cFE, and tell what differs.
+"""Fly MM, MD and CS on memory with the same content in cfepy and in NASA's cFE, and report the differences.
 
 Usage: CFEPY_REAL_CFE_RAM=FOLDER python -m dev.twin.memory_flight [--seed N] [--count COMMANDS]
 
-FOLDER is as that of dev.twin.apps_flight, but of a build with ram_direct in place of ram_notimpl in
-psp/fsw/pc-linux/psp_module_list.cmake: NASA's PSP for Linux does not read and write memory by address, and MM could not
-work. The library STORE (memory_app.c) has the block that they work on; in NASA's
-it lies where it lies in cfepy.
+FOLDER is as for dev.twin.apps_flight, but from a build with ram_direct in place of ram_notimpl in
+psp/fsw/pc-linux/psp_module_list.cmake. NASA's default PSP for Linux does not read and write memory by address, so MM
+could not work. The library STORE (memory_app.c) has the block that they work on. In NASA's cFE the block has the same
+address as in cfepy.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ FOUND = re.compile(rb"Addr = (0x[0-9A-Fa-f]+)")
 
 
 def block_address(built: Path, store: bytes) -> int:
-    """Where the block is in cfepy; the same in each run."""
+    """Return the address of the block in cfepy, which is the same in each run."""
     with simulated(built, {"/cf/store.so": store, STARTUP_PATH: STARTUP_WITH_STORE}) as computer:
         told = FOUND.search(b"".join(computer.fly(lookup()).packets))
     if told is None:

@@ -1,7 +1,7 @@
-"""The mission that both fly: NASA's lab applications, with tables that let the link answer quickly and say all.
+"""The mission that both fly: NASA's lab applications, with tables that make the link fast and complete.
 
-SCH_LAB has CI_LAB look at its socket twenty times a second. TO_LAB takes every message that is compared, as many of a
-MsgId as fit into its pipe.
+SCH_LAB makes CI_LAB read its socket twenty times a second. TO_LAB takes every compared message, with as many of a MsgId
+as fit into its pipe.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def _table(name: str, data: bytes, offset: int = 0) -> bytes:
 
 
 def files() -> dict[str, bytes]:
-    """What is in /cf beside the applications, by virtual path."""
+    """Return the files in /cf other than the applications, by virtual path."""
     subscription = to_lab.packets.SUBSCRIPTION
     rows = b"".join(subscription.pack(Stream=each, BufLimit=50) for each in (*DOWN, *LAB_DOWN))
     look = {"MessageID": ci_lab.READ_UPLINK.msg_id, "PacketRate": 1}

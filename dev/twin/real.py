@@ -1,7 +1,7 @@
-"""Boots NASA's cFE: its Linux executable, in a private copy of its folder and in namespaces of its own.
+"""Boot NASA's cFE: its Linux executable, in a private copy of its folder and in its own namespaces.
 
-Message queues, shared memory, the RAM disk, UDP ports and process ids are private, so many can run at once, and
-nothing of one outlives it. A processor reset ends NASA's process; it is started again, and finds its retained memory.
+Message queues, shared memory, the RAM disk, UDP ports and process ids are private. So many can run at once, and
+nothing remains after the end. A processor reset ends NASA's process; it is restarted with its retained memory.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ RAM_DISK = "dev/shm/osal:RAM"
 OPERATIONAL = b"entering OPERATIONAL state"
 CLONE_NEWNET = 0x40000000
 BOOT_LIMIT_S = 60.0
-NOT_LONGER_THAN_US = ("setpriv", "--pdeathsig", "KILL")  # also when nobody leaves the context
+NOT_LONGER_THAN_US = ("setpriv", "--pdeathsig", "KILL")  # also if the context is never left
 NAMESPACES = ("unshare", "--ipc", "--net", "--mount", "--pid", "--fork", "--kill-child", "--mount-proc")
 FURNISH = """
 mount -t tmpfs none /dev/shm
@@ -41,10 +41,10 @@ FOREVER = FURNISH + 'while true; do "$@"; echo "process ended with $?"; done\n'
 
 
 def installed(variable: str = VARIABLE) -> Path | None:
-    """The folder of NASA's executable, as an environment variable says.
+    """Return the folder of NASA's executable from an environment variable.
 
     Raises:
-        FileNotFoundError: the variable is set, and no executable is there.
+        FileNotFoundError: the variable is set, but the executable does not exist.
     """
     folder = os.environ.get(variable)
     if not folder:
@@ -55,22 +55,22 @@ def installed(variable: str = VARIABLE) -> Path | None:
 
 
 def one_cpu() -> int:
-    """The only processor of the host that a cFE gets, so that its applications start in the order of their priorities.
+    """Return the only host processor that a cFE gets, so that its applications start in the order of their priorities.
 
-    On more of them it is chance which one subscribes first, and with it which ids pipes have.
+    With several processors, the first subscriber is random, and so are the ids of pipes.
     """
     return min(os.sched_getaffinity(0))
 
 
 class RealCfe:
-    """NASA's cFE while it runs, as a context manager. Needs Linux and the rights of root for the namespaces.
+    """A running cFE of NASA's, as a context manager. Needs Linux and root rights for the namespaces.
 
     Args:
         built: the folder of the executable and of its `cf`.
-        folder: where its private copy goes.
-        files: what to write over files of the copy, by virtual path ("/cf/x").
-        line: the ports at which it hears the ground and the ground hears it.
-        arguments: of its command line, such as "--cpuid", "2".
+        folder: folder for its private copy.
+        files: files to write over the copy's, by virtual path ("/cf/x").
+        line: the ports of commands and of telemetry.
+        arguments: arguments of its command line, such as "--cpuid", "2".
 
     Attributes:
         inside: id of the first process of its namespaces.
@@ -132,26 +132,26 @@ class RealCfe:
         self._up.sendto(packet, ("127.0.0.1", self._up_port))
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """The next datagram that comes down; None when none comes in so many seconds of the host."""
+        """Return the next datagram from it, or None after `timeout_s` seconds of the host without one."""
         if not select.select([self._down], [], [], max(0.0, timeout_s))[0]:
             return None
         return self._down.recv(65536)
 
     def kill(self) -> None:
-        """End its process as a crash would; it is started again."""
+        """End its process as a crash would. It is restarted."""
         for child in Path(f"/proc/{self.inside}/task/{self.inside}/children").read_text(encoding="utf-8").split():
             os.kill(int(child), signal.SIGKILL)
 
     def console(self) -> bytes:
-        """All that was printed since the start."""
+        """Return the output since the start."""
         return self._log.read_bytes()
 
     def boots(self) -> int:
-        """How often it has come up."""
+        """Return how often it has booted."""
         return self.console().count(OPERATIONAL)
 
     def release(self) -> str:
-        """Which release of cFE it is, as its first events say: "7.0.0"."""
+        """Return the release of cFE according to its first events, such as "7.0.0"."""
         found = re.search(rb"cFE ES Initialized: CFE_ES v(\d+\.\d+\.\d+)", self.console())
         return found[1].decode() if found else ""
 
@@ -162,7 +162,7 @@ class RealCfe:
 
     @property
     def folder(self) -> Path:
-        """Where the private copy is; /cf is its `cf`."""
+        """The private copy; /cf is its `cf`."""
         return self._folder
 
     def wait(self, done: Callable[[], bool], what: str, limit_s: float) -> None:
@@ -181,7 +181,7 @@ class RealCfe:
 
 @contextmanager
 def in_network_of(pid: int) -> Iterator[None]:
-    """Sockets that are made here belong to the network of another process; they keep belonging to it."""
+    """Create sockets in the network of another process while the block runs. They stay in that network."""
     enter = ctypes.CDLL(None, use_errno=True).setns
     with (
         Path("/proc/self/ns/net").open(encoding="utf-8") as own,

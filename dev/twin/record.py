@@ -1,4 +1,4 @@
-"""Flies seeds on NASA's cFE and puts them on record: `python -m dev.twin.record FILE --seeds 1 2 --flight 80`."""
+"""Flies seeds on NASA's cFE and records them: `python -m dev.twin.record FILE --seeds 1 2 --flight 80`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Flights of NASA's cFE on record: what went up, what came down, which files were written, step by step."""
+"""Recorded flights of NASA's cFE: the packets sent, the packets received, and the files written, step by step."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Flight = list[tuple[Step, Observed]]
 
 
 def of_release(release: str, what: str = "commands") -> Path:
-    """The record of a release of cFE such as "7.0.0"; `what` begins its name."""
+    """Return the record of a release of cFE such as "7.0.0"; `what` begins its name."""
     return DATA / f"{what}_{release.replace('.', '_')}.json.xz"
 
 

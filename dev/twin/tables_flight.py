@@ -1,7 +1,7 @@
-"""A flight of tables in cfepy: the twins of tables_app.c, and what of an answer is compared.
+"""A flight of tables in cfepy: the twins of tables_app.c, and the compared parts of an answer.
 
-An answer is a list of texts: the status of a call, and the events and packets of Table Services that came of a step.
-Times, addresses and handles are left out; of a dumped file the bytes that NASA's cFE never sets.
+An answer is a list of texts: the status of a call, and the resulting events and packets of Table Services.
+Times, addresses and handles are left out. Of a dumped file, bytes that NASA's cFE never sets are left out.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def TTB_Main(cfe):
 
 
 def fly(cfe_version: str, steps: list[Step]) -> list[Answer]:
-    """What cfepy answers to the steps of a flight."""
+    """Return cfepy's answers to the steps of a flight."""
     with tempfile.TemporaryDirectory() as folder:
         sources = {"tt.py": LISTENER, "tta.py": CALLER, "ttb.py": CALLER, "startup.scr": STARTUP}
         mission_file = f'cfe_version: "{cfe_version}"\nlimits: {{evs_max_app_event_burst: 0}}\n'
@@ -211,7 +211,7 @@ class _Flight:
             pass  # it was never written
 
 
-# -- what is compared --------------------------------------------------------------------------------------------------
+# -- compared parts ----------------------------------------------------------------------------------------------------
 
 
 def _msg_id(packet: bytes) -> int:
@@ -219,7 +219,7 @@ def _msg_id(packet: bytes) -> int:
 
 
 def packets_of(packets: list[bytes]) -> Answer:
-    """The events and packets of Table Services."""
+    """Return the events and packets of Table Services."""
     return [text for text in map(_packet, packets) if text]
 
 
@@ -243,7 +243,7 @@ def _packet(packet: bytes) -> str:
 
 
 def _fields(fields: dict[str, Any]) -> str:
-    """All fields; of times and addresses only whether they are zero."""
+    """Return all fields as text. Times and addresses only show whether they are zero."""
     shown = {}
     for name, value in fields.items():
         if isinstance(value, dict):
@@ -275,11 +275,11 @@ def result_of(letter: str, status: int, data: bytes) -> Answer:
 
 
 def dump_of(file: bytes) -> str:
-    """A dumped table; its time and its application are left out, and what NASA's cFE never sets in its table header."""
+    """Return a dumped table without its time, its application, and the header bytes that NASA's cFE never sets."""
     return (file[:16] + file[32:64] + file[72:115] + file[116:]).hex()
 
 
 def registry_of(file: bytes) -> Answer:
-    """The records of a registry dump."""
+    """Return the records of a registry dump."""
     size = pk.REGISTRY_RECORD.size
     return [_fields(pk.REGISTRY_RECORD.unpack(file, at)) for at in range(64, len(file) - size + 1, size)]

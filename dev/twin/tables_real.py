@@ -1,4 +1,4 @@
-"""Flies tables on NASA's cFE and puts them on record: `python -m dev.twin.tables_real BUILT FILE --seed N --count N`.
+"""Flies tables on NASA's cFE and records them: `python -m dev.twin.tables_real BUILT FILE --seed N --count N`.
 
 BUILT is the folder in which NASA's cFE was built, with sources, `build/inc` and `build/exe/cpu1`. tables_app.c is
 compiled with the flags of its SAMPLE_APP.
@@ -32,7 +32,7 @@ TICKS_PER_S = 100
 
 
 def compiled_app(built: Path, source: Path = SOURCE, *more: str) -> bytes:
-    """The shared object of tables_app.c, or of another source, for a cFE; with more flags of the compiler."""
+    """Return the shared object of tables_app.c, or of another source, for a cFE; `more` are further compiler flags."""
     said = dict(re.findall(r"^(C_\w+) = (.*)$", (built / FLAGS).read_text(encoding="utf-8"), re.MULTILINE))
     modules = [f"-I{folder}/{part}" for folder in (built / "cfe/modules").iterdir() for part in ("fsw/inc", "fsw/src")]
     flags = [*shlex.split(said["C_DEFINES"]), *shlex.split(said["C_INCLUDES"]), *modules]
@@ -54,7 +54,7 @@ class RealTables:
         self._listen()
 
     def _listen(self) -> None:
-        """Begin after a boot, with a socket that no answer of before can come to."""
+        """Begin after a boot, with a new socket that cannot receive earlier answers."""
         with in_network_of(self._cfe.inside):
             self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         self._socket.settimeout(ANSWER_LIMIT_S)
@@ -69,7 +69,7 @@ class RealTables:
         return _split(self._ask(LISTENER_PORT, b"C" + packet))
 
     def _wait(self, seconds: int) -> list[bytes]:
-        """Let so many s of NASA's clock pass; the packets of that time."""
+        """Wait some seconds of NASA's clock. Returns the packets of that time."""
         second = b"D" + bytes([TICKS_PER_S])
         return [packet for _ in range(seconds) for packet in _split(self._ask(LISTENER_PORT, second))]
 
@@ -83,7 +83,7 @@ class RealTables:
         return self._request("B", letter, 0, 0, 0, 0, path, data=data)[1]
 
     def answer(self, step: Step) -> Answer:
-        """What a step does."""
+        """Return the answer to a step."""
         kind, *given = step
         if kind == COMMAND:
             return flight.packets_of(self._send(bytes.fromhex(given[0])))
@@ -130,7 +130,7 @@ def _split(data: bytes) -> list[bytes]:
 
 
 def fly(built: Path, steps: list[Step]) -> list[Answer]:
-    """What NASA's cFE answers to the steps of a flight."""
+    """Return the answers of NASA's cFE to the steps of a flight."""
     with tempfile.TemporaryDirectory() as folder:
         startup = re.sub("tt[ab],", "tt,", flight.STARTUP)
         files = {"/cf/tt.so": compiled_app(built), "/cf/cfe_es_startup.scr": startup.encode()}

@@ -1,6 +1,6 @@
-"""Random steps of a flight of tables: what the ground sends, and what two applications call.
+"""Random steps of a flight of tables: ground commands, and calls of two applications.
 
-A step is a list of plain values, which can be put on record: its kind, and what that kind needs.
+A step is a list of plain values, which can be recorded: its kind, and the arguments of that kind.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class Steps:
         self._odd = [f"/ram/f{number}.tbl" for number in range(40)]
 
     def make(self, count: int) -> list[Step]:
-        """So many steps, or a few more; the first ones register the tables and write the files."""
+        """Return `count` steps, or a few more. The first ones register the tables and write the files."""
         steps = [*self._register_all(1.0), *self._files()]
         while len(steps) < count:
             steps += self._next()
@@ -92,7 +92,7 @@ class Steps:
         return bytes([first, *(self._random.randrange(256) for _ in range(size - 1))])
 
     def _odd_file(self) -> bytes:
-        """A table file with an extent of its own, and often with something wrong."""
+        """Return a table file with an extent of its own, and often with something wrong."""
         roll = self._random
         name = roll.choice(NAMES)
         size = number = SIZES[name]

@@ -1,7 +1,7 @@
 """PyKDL for nodes: vectors, rotations, frames, twists and wrenches of orocos KDL, in Python.
 
-Names, arguments and results are those of PyKDL 1.5; results agree but for the last digits of a double. Kinematic chains
-and trees are here with the common solvers; dynamics are not.
+Names, arguments and results match PyKDL 1.5. Results agree except for the last digits of a double. Kinematic
+chains and trees are included with the common solvers; dynamics are not.
 """
 
 from __future__ import annotations

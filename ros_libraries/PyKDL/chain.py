@@ -16,13 +16,13 @@ _AXES = {"X": Vector(1, 0, 0), "Y": Vector(0, 1, 0), "Z": Vector(0, 0, 1)}
 class Joint:
     """A joint with one degree of freedom, or none.
 
-    `Joint(name="NoName", type=Joint.Fixed, scale=1, offset=0, ...)`, or with origin and axis before the type; the name
-    may be left out. Inertia, damping and stiffness are taken and not used. Its motion is `scale * q + offset`.
+    `Joint(name="NoName", type=Joint.Fixed, scale=1, offset=0, ...)`, or with origin and axis before the type. The name
+    may be left out. Inertia, damping and stiffness are accepted but ignored. Its motion is `scale * q + offset`.
     """
 
     RotAxis, RotX, RotY, RotZ, TransAxis, TransX, TransY, TransZ = range(8)
     Fixed: ClassVar[int] = 8
-    # PyKDL has "None", a word of Python's, as the older name of Fixed; getattr(Joint, "None") finds it.
+    # In PyKDL, "None" is the older name of Fixed, but a keyword in Python. getattr(Joint, "None") finds it.
 
     def __init__(self, *args: Any) -> None:
         if len(args) == 1 and isinstance(args[0], Joint):
@@ -40,7 +40,7 @@ class Joint:
             self._axis = Vector(_AXES[self.getTypeName()[-1]])
 
     def pose(self, q: float) -> Frame:
-        """Where the joint's moving end is.
+        """Return where the joint's moving end is.
 
         Args:
             q: its position, in rad or m.
@@ -58,15 +58,15 @@ class Joint:
         return Twist(motion, Vector()) if self._type < Joint.Fixed else Twist()
 
     def JointAxis(self) -> Vector:
-        """The axis it turns about or moves along."""
+        """Return the axis it turns about or moves along."""
         return Vector(self._axis)
 
     def JointOrigin(self) -> Vector:
-        """A point on the axis."""
+        """Return a point on the axis."""
         return Vector(self._origin)
 
     def getName(self) -> str:
-        """Its name."""
+        """Return its name."""
         return str(self._name)
 
     def getType(self) -> int:
@@ -74,7 +74,7 @@ class Joint:
         return int(self._type)
 
     def getTypeName(self) -> str:
-        """The name of its type."""
+        """Return the name of its type."""
         return _TYPE_NAMES[self._type]
 
     def __repr__(self) -> str:
@@ -103,7 +103,7 @@ class Segment:
         self._inertia = rest[2] if len(rest) > 2 else RigidBodyInertia.Zero()
 
     def pose(self, q: float) -> Frame:
-        """Where its tip is, seen from its root."""
+        """Return where its tip is, seen from its root."""
         found: Frame = self._joint.pose(q) * self._tip
         return found
 
@@ -112,19 +112,19 @@ class Segment:
         return self._joint.twist(q_dot).RefPoint(self._joint.pose(q).M * self._tip.p)
 
     def getFrameToTip(self) -> Frame:
-        """Where its tip is at the joint's position 0."""
+        """Return where its tip is at the joint's position 0."""
         return self.pose(0)
 
     def getName(self) -> str:
-        """Its name."""
+        """Return its name."""
         return str(self._name)
 
     def getJoint(self) -> Joint:
-        """Its joint."""
+        """Return its joint."""
         return self._joint
 
     def getInertia(self) -> RigidBodyInertia:
-        """Its inertia."""
+        """Return its inertia."""
         return self._inertia
 
     def setInertia(self, I_in: RigidBodyInertia) -> None:
@@ -132,7 +132,7 @@ class Segment:
         self._inertia = I_in
 
     def moves(self) -> bool:
-        """Whether its joint has a degree of freedom."""
+        """Return whether its joint has a degree of freedom."""
         return self._joint.getType() != Joint.Fixed
 
 
@@ -151,15 +151,15 @@ class Chain:
         self.segments += chain.segments
 
     def getNrOfJoints(self) -> int:
-        """How many joints move."""
+        """Return how many joints move."""
         return sum(segment.moves() for segment in self.segments)
 
     def getNrOfSegments(self) -> int:
-        """How many segments there are."""
+        """Return how many segments there are."""
         return len(self.segments)
 
     def getSegment(self, index: int) -> Segment:
-        """A segment by its number."""
+        """Return a segment by its number."""
         return self.segments[index]
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""`Frame`: a rotation and a position, which is where something is and how it is turned."""
+"""`Frame`: a pose, which consists of a rotation and a position."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from .vector import EPSILON, Vector
 
 
 class Frame:
-    """`M`, the rotation, and `p`, the position: `Frame()`, `Frame(M, p)`, one of them alone, or a copy of another."""
+    """A pose with the rotation `M` and the position `p`: `Frame()`, `Frame(M, p)`, one of them, or a copy."""
 
     def __init__(self, *args: Any) -> None:
         if len(args) == 1:
@@ -24,7 +24,7 @@ class Frame:
 
     @staticmethod
     def Identity() -> Frame:
-        """The frame of reference itself."""
+        """Return the identity frame."""
         return Frame()
 
     @staticmethod
@@ -51,7 +51,7 @@ class Frame:
         return NotImplemented
 
     def Inverse(self, arg: Any = None) -> Any:
-        """The inverse, or what it makes of a Vector, Twist or Wrench."""
+        """Return the inverse, or the inverse applied to a Vector, Twist or Wrench."""
         inverse = Frame(self.M.Inverse(), -self.M.Inverse(self.p))
         return inverse if arg is None else inverse * arg
 

@@ -12,7 +12,7 @@ from .vector import EPSILON, Vector, near, scalar_product
 
 
 def Equal(a: Any, b: Any, eps: float = EPSILON) -> bool:
-    """Whether two of a kind differ by less than `eps` in each number."""
+    """Return whether two of a kind differ by less than `eps` in each number."""
     return near(_numbers(a), _numbers(b), eps)
 
 
@@ -38,7 +38,7 @@ def SetToZero(value: Any) -> None:
 
 
 def dot(a: Any, b: Any) -> float:
-    """The scalar product of two vectors; of a Twist and a Wrench, which is power."""
+    """Return the scalar product of two vectors, or of a Twist and a Wrench, which is power."""
     if isinstance(a, Vector):
         return scalar_product(a, b)
     twist, wrench = (a, b) if isinstance(a, Twist) else (b, a)
@@ -46,7 +46,7 @@ def dot(a: Any, b: Any) -> float:
 
 
 def diff(a: Any, b: Any, dt: float = 1) -> Any:
-    """The motion that takes `a` to `b` in a time: a Vector for Vectors and Rotations, a Twist for Frames."""
+    """Return the motion that takes `a` to `b` in a time: a Vector for Vectors and Rotations, a Twist for Frames."""
     if isinstance(a, Rotation):
         return a * (a.Inverse() * b).GetRot() / dt
     if isinstance(a, Frame):
@@ -55,7 +55,7 @@ def diff(a: Any, b: Any, dt: float = 1) -> Any:
 
 
 def addDelta(a: Any, da: Any, dt: float = 1) -> Any:
-    """Where `a` is after a motion `da` for a time; the reverse of `diff`."""
+    """Return `a` after a motion `da` for a time. This is the reverse of `diff`."""
     if isinstance(a, Rotation):
         return a * Rotation.Rot(a.Inverse(da), da.Norm() * dt)
     if isinstance(a, Frame):

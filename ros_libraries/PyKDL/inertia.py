@@ -1,4 +1,4 @@
-"""`RotationalInertia` and `RigidBodyInertia`: how a body resists being turned and moved."""
+"""`RotationalInertia` and `RigidBodyInertia`: the inertia of rigid bodies."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class RotationalInertia:
 
     @staticmethod
     def Zero() -> RotationalInertia:
-        """That of nothing."""
+        """Return a zero inertia."""
         return RotationalInertia()
 
     @staticmethod
@@ -68,7 +68,7 @@ class RigidBodyInertia:
 
     @staticmethod
     def Zero() -> RigidBodyInertia:
-        """That of nothing."""
+        """Return a zero inertia."""
         return RigidBodyInertia()
 
     @staticmethod
@@ -82,7 +82,7 @@ class RigidBodyInertia:
         return self.m
 
     def getCOG(self) -> Vector:
-        """Centre of mass, in m; the origin if there is no mass."""
+        """Return the centre of mass in m, or the origin if there is no mass."""
         return self.h / self.m if self.m else Vector()
 
     def getRotationalInertia(self) -> RotationalInertia:
@@ -90,7 +90,7 @@ class RigidBodyInertia:
         return self.I
 
     def RefPoint(self, p: Vector) -> RigidBodyInertia:
-        """The same inertia with the origin at another point."""
+        """Return the same inertia with the origin at another point."""
         moved = self.h - p * self.m
         inertia = self.I + -1.0 * _of_point(p, self.h) + -1.0 * _of_point(moved, p)
         return self._of(self.m, moved, inertia)
@@ -99,7 +99,7 @@ class RigidBodyInertia:
         return self._of(self.m + other.m, self.h + other.h, self.I + other.I)
 
     def __mul__(self, twist: Twist) -> Wrench:
-        """The momentum of a motion."""
+        """Return the momentum of a motion."""
         return Wrench(twist.vel * self.m - self.h * twist.rot, self.I * twist.rot + self.h * twist.vel)
 
     def __rmul__(self, other: Any) -> RigidBodyInertia:
@@ -116,6 +116,6 @@ _AXES = (Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1))
 
 
 def _of_point(a: Vector, b: Vector) -> RotationalInertia:
-    """(a.b) 1 - b aT: what a mass at a point adds, where b is the point times the mass."""
+    """Return (a.b) 1 - b aT, the inertia of a point mass, where b is the point times the mass."""
     product = scalar_product(a, b)
     return RotationalInertia.of([(product if i == j else 0.0) - b[i] * a[j] for i in range(3) for j in range(3)])

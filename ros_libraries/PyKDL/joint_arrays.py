@@ -17,7 +17,7 @@ class JntArray:
         self.q: list[float] = list(size.q) if isinstance(size, JntArray) else [0.0] * size
 
     def rows(self) -> int:
-        """How many joints."""
+        """Return how many joints."""
         return len(self.q)
 
     def columns(self) -> int:
@@ -60,7 +60,7 @@ class Jacobian:
         return 6
 
     def columns(self) -> int:
-        """How many joints."""
+        """Return how many joints."""
         return len(self.twists)
 
     def resize(self, nr_columns: int) -> None:
@@ -68,7 +68,7 @@ class Jacobian:
         self.twists = (self.twists + [Twist() for _ in range(nr_columns)])[:nr_columns]
 
     def getColumn(self, index: int) -> Twist:
-        """The twist of a joint."""
+        """Return the twist of a joint."""
         return Twist(self.twists[index])
 
     def setColumn(self, index: int, t: Twist) -> None:

@@ -8,11 +8,11 @@ from typing import Any
 from .twist import Twist, Wrench
 from .vector import EPSILON, Vector, columns, near
 
-_UPRIGHT = 1e-12  # how near the poles angles are no longer unique
+_UPRIGHT = 1e-12  # distance from the poles below which angles are not unique
 
 
 class Rotation:
-    """Nine numbers by row, or three vectors that are the columns, or a copy; `Rotation()` is the identity."""
+    """A rotation from nine numbers by row, from three column vectors, or from a copy; `Rotation()` is the identity."""
 
     def __init__(self, *args: Any) -> None:
         if len(args) == 1:
@@ -27,7 +27,7 @@ class Rotation:
 
     @staticmethod
     def Identity() -> Rotation:
-        """No rotation."""
+        """Return no rotation."""
         return Rotation()
 
     @staticmethod
@@ -111,7 +111,7 @@ class Rotation:
         return (m[2] + m[6]) / s, (m[5] + m[7]) / s, 0.25 * s, (m[3] - m[1]) / s
 
     def GetRPY(self) -> tuple[float, float, float]:
-        """(roll, pitch, yaw) in rad; at a pole the roll is 0."""
+        """Return (roll, pitch, yaw) in rad. At a pole, the roll is 0."""
         m = self.m
         pitch = math.atan2(-m[6], math.hypot(m[0], m[3]))
         if abs(pitch) > math.pi / 2 - _UPRIGHT:
@@ -124,14 +124,14 @@ class Rotation:
         return yaw, pitch, roll
 
     def GetEulerZYZ(self) -> tuple[float, float, float]:
-        """(alpha, beta, gamma) in rad, see `EulerZYZ`; at a pole gamma is 0."""
+        """Return (alpha, beta, gamma) in rad, see `EulerZYZ`. At a pole, gamma is 0."""
         m = self.m
         if abs(m[8]) >= 1 - _UPRIGHT:
             return (math.atan2(m[3], m[0]), 0.0, 0.0) if m[8] > 0 else (math.atan2(-m[3], -m[0]), math.pi, 0.0)
         return math.atan2(m[5], m[2]), math.atan2(math.hypot(m[6], m[7]), m[8]), math.atan2(m[7], -m[6])
 
     def GetRotAngle(self, eps: float = EPSILON) -> tuple[float, Vector]:
-        """Angle in rad, 0 to pi, and axis; (0, 0, 1) is the axis of no rotation."""
+        """Return the angle in rad, 0 to pi, and the axis. Without rotation the axis is (0, 0, 1)."""
         m = self.m
         axis = Vector(m[7] - m[5], m[2] - m[6], m[3] - m[1])
         if any(abs(value) >= eps for value in axis.v):
@@ -142,7 +142,10 @@ class Rotation:
         return math.pi, self._axis_of_half_turn()
 
     def _axis_of_half_turn(self) -> Vector:
-        """A half turn is symmetric: (matrix + 1) / 2 is the product of the axis with itself."""
+        """Return the axis of a half turn.
+
+        Its matrix is symmetric: (matrix + 1) / 2 is the product of the axis with itself.
+        """
         m = self.m
         squares = [(m[0] + 1) / 2, (m[4] + 1) / 2, (m[8] + 1) / 2]
         at = max((2, 1, 0), key=squares.__getitem__)
@@ -150,7 +153,7 @@ class Rotation:
         return Vector(*(largest if i == at else (m[3 * at + i] + m[3 * i + at]) / (4 * largest) for i in range(3)))
 
     def GetRot(self) -> Vector:
-        """The axis, with the angle in rad as its length."""
+        """Return the axis, with the angle in rad as its length."""
         angle, axis = self.GetRotAngle()
         return Vector(axis * angle)
 
@@ -167,7 +170,7 @@ class Rotation:
         return NotImplemented
 
     def Inverse(self, arg: Any = None) -> Any:
-        """The inverse, or what it makes of a Vector, Twist or Wrench."""
+        """Return the inverse, or the inverse applied to a Vector, Twist or Wrench."""
         m = self.m
         inverse = Rotation(m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8])
         return inverse if arg is None else inverse * arg
@@ -189,15 +192,15 @@ class Rotation:
         self.m = (self * Rotation.RotZ(angle)).m
 
     def UnitX(self, vec: Vector | None = None) -> Vector | None:
-        """The first column; with a vector, set it."""
+        """Return the first column, or set it if a vector is given."""
         return self._column(0, vec)
 
     def UnitY(self, vec: Vector | None = None) -> Vector | None:
-        """The second column; with a vector, set it."""
+        """Return the second column, or set it if a vector is given."""
         return self._column(1, vec)
 
     def UnitZ(self, vec: Vector | None = None) -> Vector | None:
-        """The third column; with a vector, set it."""
+        """Return the third column, or set it if a vector is given."""
         return self._column(2, vec)
 
     def _column(self, index: int, vec: Vector | None) -> Vector | None:

@@ -1,7 +1,7 @@
 """Solvers for chains: forward kinematics, the Jacobian, and inverse kinematics by Newton's method.
 
-A solver returns 0, or a negative number of `SolverI` for what went wrong, as in KDL. NumPy is imported where the
-pseudo inverse is taken.
+A solver returns 0, or a negative error number of `SolverI`, as in KDL. NumPy is imported when the pseudo inverse is
+computed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from .twist import Twist
 
 
 class SolverI:
-    """What all solvers have: the outcome of the last call."""
+    """Base class of all solvers, with the result of the last call."""
 
     E_NOERROR = 0
     E_NO_CONVERGE = -1
@@ -35,11 +35,11 @@ class SolverI:
         return self.error
 
     def strError(self, error: int) -> str:
-        """An outcome in words."""
+        """Return the text of an error number."""
         return _WORDS.get(error, "UNKNOWN ERROR")
 
     def updateInternalDataStructures(self) -> None:
-        """The chain has changed; these solvers look at it in each call."""
+        """Accept a change of the chain. These solvers read the chain in each call."""
 
     def _done(self, error: int) -> int:
         self.error = error
@@ -64,12 +64,12 @@ class ChainFkSolverPos_recursive(SolverI):
     """Where the end of a chain is."""
 
     def JntToCart(self, q_in: JntArray, p_out: Any, segmentNr: int = -1) -> int:
-        """Forward kinematics.
+        """Compute the forward kinematics.
 
         Args:
             q_in: positions of the joints, in rad or m.
-            p_out: a Frame that is set; or a list of Frames, one for each segment.
-            segmentNr: how many segments count; below 0 all.
+            p_out: a Frame to set, or a list of Frames to set, one for each segment.
+            segmentNr: how many segments count; a negative number means all.
         """
         count = self.chain.getNrOfSegments() if segmentNr < 0 else segmentNr
         if not self._fits(q_in):
@@ -100,12 +100,12 @@ class ChainJntToJacSolver(SolverI):
         return self._done(self.E_NOERROR)
 
     def JntToJac(self, q_in: JntArray, jac: Jacobian, seg_nr: int = -1) -> int:
-        """The Jacobian at the end of the chain, in the axes of its base.
+        """Compute the Jacobian at the end of the chain, in the axes of its base.
 
         Args:
             q_in: positions of the joints, in rad or m.
-            jac: it is set; a column for each joint.
-            seg_nr: how many segments count; below 0 all.
+            jac: the Jacobian to set, with a column for each joint.
+            seg_nr: how many segments count; a negative number means all.
         """
         count = self.chain.getNrOfSegments() if seg_nr < 0 else seg_nr
         if not self._fits(q_in) or jac.columns() != q_in.rows():
@@ -140,7 +140,7 @@ class ChainIkSolverVel_pinv(SolverI):
         self._jacobian = ChainJntToJacSolver(chain)
 
     def CartToJnt(self, q_in: JntArray, v_in: Twist, qdot_out: JntArray) -> int:
-        """The least velocities that come nearest to a twist at the chain's end.
+        """Return the least velocities that come nearest to a twist at the chain's end.
 
         Args:
             q_in: positions of the joints.
@@ -232,7 +232,7 @@ class ChainIkSolverPos_NR_JL(ChainIkSolverPos_NR):
 
 
 def _frames(chain: Chain, q: JntArray, count: int) -> list[Frame]:
-    """Where the tips of the first segments are."""
+    """Return where the tips of the first segments are."""
     found: list[Frame] = []
     joint, here = 0, Frame()
     for segment in chain.segments[:count]:

@@ -1,4 +1,4 @@
-"""`Tree`: segments that hang on each other, out of which chains are cut."""
+"""`Tree`: a kinematic tree of segments, from which you can extract chains."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from .chain import Chain, Joint, Segment
 
 
 class Tree:
-    """Segments by name, each hooked to another one; the root has a name and no segment."""
+    """Segments by name, each attached to another one. The root has a name but no segment."""
 
     def __init__(self, root_name: str = "root") -> None:
         self.root_name = root_name
@@ -14,7 +14,7 @@ class Tree:
         self.hooks: dict[str, str] = {}
 
     def addSegment(self, segment: Segment, hook_name: str) -> bool:
-        """Hook a segment to the end of another one; False if that is not there, or the name is taken."""
+        """Attach a segment to the end of another one. Returns False if that does not exist, or if the name is taken."""
         name = segment.getName()
         if name == self.root_name or name in self.segments or not self._has(hook_name):
             return False
@@ -22,7 +22,7 @@ class Tree:
         return True
 
     def addChain(self, chain: Chain, hook_name: str) -> bool:
-        """Hook a chain to the end of a segment; see `addSegment`."""
+        """Attach a chain to the end of a segment; see `addSegment`."""
         for segment in chain.segments:
             if not self.addSegment(segment, hook_name):
                 return False
@@ -30,22 +30,22 @@ class Tree:
         return True
 
     def addTree(self, tree: Tree, hook_name: str) -> bool:
-        """Hook what hangs on another tree's root to the end of a segment; see `addSegment`."""
+        """Attach the segments of another tree's root to the end of a segment; see `addSegment`."""
         return all(
             self.addSegment(segment, hook_name if tree.hooks[name] == tree.root_name else tree.hooks[name])
             for name, segment in tree.segments.items()
         )
 
     def getNrOfJoints(self) -> int:
-        """How many joints move."""
+        """Return how many joints move."""
         return sum(segment.moves() for segment in self.segments.values())
 
     def getNrOfSegments(self) -> int:
-        """How many segments there are."""
+        """Return how many segments there are."""
         return len(self.segments)
 
     def getChain(self, chain_root: str, chain_tip: str) -> Chain:
-        """The way from the end of one segment to the end of another, up and down the tree; empty without one."""
+        """Return the chain from the end of one segment to the end of another, or an empty chain."""
         chain = Chain()
         if not (self._has(chain_root) and self._has(chain_tip)):
             return chain
@@ -74,7 +74,7 @@ class Tree:
 
 
 def _turned_round(segment: Segment) -> Segment:
-    """A segment that leads from its tip to its root."""
+    """Return a segment that leads from its tip to its root."""
     back, joint = segment.getFrameToTip().Inverse(), segment.getJoint()
     if segment.moves():
         kind = Joint.RotAxis if joint.getType() < Joint.TransAxis else Joint.TransAxis

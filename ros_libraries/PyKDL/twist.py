@@ -86,7 +86,7 @@ class _Pair:
         return self.equals(other) if isinstance(other, type(self)) else NotImplemented
 
     def equals(self, other: _Pair, eps: float = EPSILON) -> bool:
-        """Whether no number differs by `eps` or more."""
+        """Return whether no number differs by `eps` or more."""
         return near(self._numbers(), other._numbers(), eps)
 
     def __hash__(self) -> int:
@@ -98,7 +98,7 @@ class _Pair:
 
     @classmethod
     def Zero(cls) -> Self:
-        """All zeros."""
+        """Return all zeros."""
         return cls()
 
 
@@ -110,7 +110,7 @@ class Twist(_Pair):
     rot: Vector
 
     def RefPoint(self, base: Vector) -> Twist:
-        """The same motion seen at a point that lies at `base` from the present one."""
+        """Return the same motion seen at a point that lies at `base` from the present one."""
         return Twist(self.vel + self.rot * base, self.rot)
 
 
@@ -122,5 +122,5 @@ class Wrench(_Pair):
     torque: Vector
 
     def RefPoint(self, base: Vector) -> Wrench:
-        """The same load seen at a point that lies at `base` from the present one."""
+        """Return the same load seen at a point that lies at `base` from the present one."""
         return Wrench(self.force, self.torque + self.force * base)

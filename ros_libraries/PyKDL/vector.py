@@ -16,14 +16,14 @@ def columns(values: Iterable[float]) -> str:
 
 
 def near(a: Iterable[float], b: Iterable[float], eps: float = EPSILON) -> bool:
-    """Whether numbers are pairwise less than `eps` apart."""
+    """Return whether numbers are pairwise less than `eps` apart."""
     return all(abs(one - other) < eps for one, other in zip(a, b, strict=True))
 
 
 class Vector:
     """Three numbers: `Vector()`, `Vector(x, y, z)` or a copy of another one.
 
-    `*` with a number scales, with a vector it is the cross product; two vectors are equal if no component differs by
+    `*` with a number scales; with a vector it is the cross product. Two vectors are equal if no component differs by
     more than `EPSILON`.
     """
 
@@ -35,15 +35,15 @@ class Vector:
         self.v: list[float] = [float(value) for value in args or (0, 0, 0)]
 
     def x(self, value: float | None = None) -> float | None:
-        """The first component; with a value, set it."""
+        """Return the first component, or set it if a value is given."""
         return self._component(0, value)
 
     def y(self, value: float | None = None) -> float | None:
-        """The second component; with a value, set it."""
+        """Return the second component, or set it if a value is given."""
         return self._component(1, value)
 
     def z(self, value: float | None = None) -> float | None:
-        """The third component; with a value, set it."""
+        """Return the third component, or set it if a value is given."""
         return self._component(2, value)
 
     def _component(self, index: int, value: float | None) -> float | None:
@@ -106,14 +106,14 @@ class Vector:
         self.v = (-self).v
 
     def Norm(self, eps: float = EPSILON) -> float:
-        """Its length; 0 if every component is smaller than `eps`."""
+        """Return its length, or 0 if every component is smaller than `eps`."""
         return math.hypot(*self.v) if max(map(abs, self.v)) >= eps else 0.0
 
     def Normalize(self, eps: float = EPSILON) -> float:
-        """Make its length 1, in place; one shorter than `eps` becomes (1, 0, 0).
+        """Scale it to length 1 in place. A vector shorter than `eps` becomes (1, 0, 0).
 
         Returns:
-            the length it had, or 0.
+            the previous length, or 0.
         """
         length = self.Norm()
         if length < eps:
@@ -129,7 +129,7 @@ class Vector:
 
 
 def scalar_product(a: Vector, b: Vector) -> float:
-    """The sum of the products of components."""
+    """Return the sum of the products of components."""
     return sum(one * other for one, other in zip(a.v, b.v, strict=True))
 
 

@@ -1,8 +1,8 @@
 """actionlib for nodes: long-running jobs that a client can follow and cancel, over five topics.
 
-Names, states, texts and timing are those of ROS's actionlib 1.14; the code is cfepy's own, and stands on what `rospy`
-offers to every node. It is executed anew in each node that imports it, so nothing here is shared between nodes.
-As with ROS's, `from actionlib import *` brings along the modules that it stands on.
+Names, states, texts and timing match ROS's actionlib 1.14. The code is cfepy's own, and uses the node's `rospy`.
+It is executed anew in each node that imports it, so nodes share none of its state. As with ROS's, a star import also
+provides the modules that it uses.
 """
 
 from __future__ import annotations

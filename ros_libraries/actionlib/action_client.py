@@ -32,7 +32,7 @@ _goal_numbers = count(1)
 
 
 class GoalManager:
-    """Makes goals and passes on to each what the server says; a goal whose handle is gone is forgotten.
+    """Makes goals and passes the server's messages on to each. A goal whose handle is gone is forgotten.
 
     Args:
         ActionSpec: class of the *Action message.
@@ -48,11 +48,11 @@ class GoalManager:
     ActionGoal: Any
 
     def register_send_goal_fn(self, fn: Callable[[Any], object]) -> None:
-        """Set what publishes goals."""
+        """Set the function that publishes goals."""
         self.send_goal_fn = fn
 
     def register_cancel_fn(self, fn: Callable[[Any], object]) -> None:
-        """Set what publishes cancel requests."""
+        """Set the function that publishes cancel requests."""
         self.cancel_fn = fn
 
     def init_goal(self, goal: Any, transition_cb: Any = None, feedback_cb: Any = None) -> ClientGoalHandle:
@@ -97,11 +97,11 @@ class ActionClient:
     """Client of one action; any number of goals at a time.
 
     Args:
-        ns: name of the action, under which its topics are.
+        ns: name of the action, the namespace of its topics.
         ActionSpec: class of the *Action message.
 
     Raises:
-        ActionException: that is no such class.
+        ActionException: `ActionSpec` is not such a class.
     """
 
     ActionGoal: Any
@@ -169,10 +169,10 @@ class ActionClient:
         """Wait until all five topics are connected to one server.
 
         Args:
-            timeout: a rospy.Duration; zero waits for ever.
+            timeout: a rospy.Duration; zero waits forever.
 
         Returns:
-            whether the server is there.
+            whether the server is available.
         """
         end = rospy.get_rostime() + timeout
         while not rospy.is_shutdown():

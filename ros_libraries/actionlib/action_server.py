@@ -1,4 +1,4 @@
-"""`ActionServer`: takes goals and cancel requests, keeps their statuses, and publishes these five times a second."""
+"""`ActionServer`: accepts goals and cancel requests, keeps their statuses, and publishes these five times a second."""
 
 from __future__ import annotations
 
@@ -37,7 +37,10 @@ def nop_cb(goal_handle: ServerGoalHandle) -> None:
 
 
 def _is_over(tracker: StatusTracker, now: Any, oldest_ns: int) -> bool:
-    """Whether a goal ended before `oldest_ns`; in whole ns, since a server may have a thousand goals to look at."""
+    """Return whether a goal ended before `oldest_ns`.
+
+    It compares integers, because a server may check a thousand goals.
+    """
     ended = tracker.handle_destruction_time
     ended_ns = ended.to_nsec()
     if ended_ns == 0 or ended_ns >= oldest_ns:
@@ -51,14 +54,14 @@ class ActionServer:
     """Server of one action, for any number of goals at a time.
 
     Args:
-        ns: name of the action, under which its topics are.
+        ns: name of the action, the namespace of its topics.
         ActionSpec: class of the *Action message.
         goal_cb: called with a `ServerGoalHandle` for each new goal.
-        cancel_cb: called with one for each goal that is to be cancelled.
-        auto_start: whether to `start` at once, which is asking for trouble.
+        cancel_cb: called with the handle of each goal to cancel.
+        auto_start: whether to `start` at once, which is not recommended.
 
     Raises:
-        ActionException: `ActionSpec` is no such class.
+        ActionException: `ActionSpec` is not such a class.
     """
 
     ActionGoal: Any
@@ -116,7 +119,7 @@ class ActionServer:
             self.publish_status()
 
     def stop(self) -> None:
-        """Leave the topics; there should be no goal under way."""
+        """Leave the topics. No goal should be active."""
         with self.lock:
             self.started = False
             if self.status_timer is not None:
@@ -160,7 +163,7 @@ class ActionServer:
         name = rospy.search_param("actionlib_status_frequency")
         return 5.0 if name is None else float(rospy.get_param(name, 5.0))
 
-    # -- what goes out -------------------------------------------------------------------------------------------
+    # -- publishing ----------------------------------------------------------------------------------------------
 
     def publish_result(self, status: Any, result: Any) -> None:
         """Publish the result of a goal, then all statuses."""
@@ -174,13 +177,13 @@ class ActionServer:
             self._send(self.feedback_pub, self.ActionFeedback(status=status, feedback=feedback))
 
     def publish_status_async(self, event: object) -> None:
-        """Publish all statuses, when the timer says so."""
+        """Publish all statuses on the timer."""
         with self.lock:
             if self.started:
                 self.publish_status()
 
     def publish_status(self) -> None:
-        """Publish all statuses, without those whose goal ended some time ago."""
+        """Publish all statuses, except for goals that ended some time ago."""
         with self.lock:
             now = rospy.Time.now()
             oldest_ns = now.to_nsec() - self.status_list_timeout.to_nsec()
@@ -193,7 +196,7 @@ class ActionServer:
         if not rospy.is_shutdown():
             publisher.publish(message)
 
-    # -- what comes in -------------------------------------------------------------------------------------------
+    # -- receiving -----------------------------------------------------------------------------------------------
 
     def internal_goal_callback(self, goal: Any) -> None:
         """A goal came, as an *ActionGoal message."""

@@ -1,4 +1,4 @@
-"""The message classes of an action, taken out of its *Action class."""
+"""The message classes of an action, extracted from its *Action class."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class ActionTypes:
         spec: class of the *Action message.
 
     Raises:
-        ActionException: that is no such class.
+        ActionException: `spec` is not such a class.
     """
 
     def __init__(self, spec: Any) -> None:

@@ -15,7 +15,7 @@ _SILENCE_IS_FINE = (CommState.WAITING_FOR_GOAL_ACK, CommState.WAITING_FOR_RESULT
 
 
 class CommStateMachine:
-    """Follows one goal by what the server sends.
+    """Follows one goal through the server's messages.
 
     Args:
         action_goal: the *ActionGoal message that was sent.
@@ -62,7 +62,7 @@ class CommStateMachine:
             self.transition_cb(ClientGoalHandle(self))
 
     def update_status(self, status_array: Any) -> None:
-        """Take in the server's list of goals; a goal that is missing there is lost, or not known yet."""
+        """Process the server's list of goals. A goal that is missing there is lost, or not known yet."""
         with self.mutex:
             if self.state == CommState.DONE:
                 return
@@ -88,7 +88,7 @@ class CommStateMachine:
                 self.transition_to(state)
 
     def update_result(self, action_result: Any) -> None:
-        """Take in a result, which may be another goal's."""
+        """Process a result, which may be another goal's."""
         if action_result.status.goal_id.id != self._id:
             return
         with self.mutex:
@@ -103,7 +103,7 @@ class CommStateMachine:
                 self.transition_to(CommState.DONE)
 
     def update_feedback(self, action_feedback: Any) -> None:
-        """Take in feedback, which may be another goal's."""
+        """Process feedback, which may be another goal's."""
         if action_feedback.status.goal_id.id == self._id and self.feedback_cb and self.state != CommState.DONE:
             self.feedback_cb(ClientGoalHandle(self), action_feedback.feedback)
 
@@ -135,7 +135,7 @@ class ClientGoalHandle:
             machine.transition_to(CommState.WAITING_FOR_CANCEL_ACK)
 
     def get_comm_state(self) -> int:
-        """The goal's `CommState`."""
+        """Return the goal's `CommState`."""
         machine = self._machine("get_comm_state")
         return machine.state if machine else CommState.LOST
 
@@ -145,19 +145,19 @@ class ClientGoalHandle:
         return int(machine.latest_goal_status.status if machine else GoalStatus.PENDING)
 
     def get_goal_status_text(self) -> str:
-        """What the server said to that status."""
+        """Return the server's text for that status."""
         machine = self._machine("get_goal_status_text")
         if machine is None:
             return "ERROR: Trying to get_goal_status_text on an inactive ClientGoalHandle."
         return str(machine.latest_goal_status.text)
 
     def get_result(self) -> Any:
-        """The *Result message, or None when none has come."""
+        """Return the *Result message, or None when none has come."""
         machine = self._machine("get_result")
         return machine.latest_result.result if machine and machine.latest_result else None
 
     def get_terminal_state(self) -> int:
-        """How the goal ended, as a number of `TerminalState`; LOST when it did not."""
+        """Return the final state of the goal as a number of `TerminalState`, or LOST if it has not ended."""
         machine = self._machine("get_terminal_state")
         if machine is None:
             return int(GoalStatus.LOST)

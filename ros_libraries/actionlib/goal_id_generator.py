@@ -1,4 +1,4 @@
-"""Ids for goals that came without one."""
+"""Ids for goals that have none."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ class GoalIDGenerator:
     """Makes goal ids, unique in the node.
 
     Args:
-        name: what they begin with; None takes the node's name.
+        name: prefix of the ids; None takes the node's name.
     """
 
     def __init__(self, name: str | None = None) -> None:
         self.set_name(rospy.get_name() if name is None else name)
 
     def set_name(self, name: str) -> None:
-        """Set what the ids begin with."""
+        """Set the prefix of the ids."""
         self.name = name
 
     def generate_ID(self) -> Any:  # actionlib's name
-        """A new GoalID, stamped now."""
+        """Return a new GoalID, stamped now."""
         now = rospy.Time.now()
         return GoalID(id=f"{self.name}-{next(_goal_numbers)}-{now.secs}.{now.nsecs}", stamp=now)

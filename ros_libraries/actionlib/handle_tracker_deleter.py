@@ -1,4 +1,4 @@
-"""What starts the clock on a goal whose handles are gone."""
+"""Starts the expiry time of a goal whose handles are gone."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 class HandleTrackerDeleter:
-    """Notes when the last handle of a goal went; the server forgets the goal some time after."""
+    """Records when the last handle of a goal was deleted. The server forgets the goal some time after."""
 
     def __init__(self, action_server: ActionServer, status_tracker: StatusTracker) -> None:
         self.action_server = action_server

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 _PENDING, _ACTIVE = GoalStatus.PENDING, GoalStatus.ACTIVE
 _RECALLING, _PREEMPTING = GoalStatus.RECALLING, GoalStatus.PREEMPTING
 
-# What was asked for: from which status to which.
+# For each request: status before and after.
 _ACCEPT = {_PENDING: _ACTIVE, _RECALLING: _PREEMPTING}
 _REQUEST_CANCEL = {_PENDING: _RECALLING, _ACTIVE: _PREEMPTING}
 _CANCEL = {
@@ -30,7 +30,7 @@ _SUCCEED = {_PREEMPTING: GoalStatus.SUCCEEDED, _ACTIVE: GoalStatus.SUCCEEDED}
 
 
 class ServerGoalHandle:
-    """A goal that an action server got. Made by the server; without arguments it is the handle of no goal."""
+    """A goal that an action server received. The server creates it; without arguments it is the handle of no goal."""
 
     def __init__(
         self,
@@ -43,7 +43,7 @@ class ServerGoalHandle:
         self.handle_tracker = handle_tracker
         self.goal = status_tracker.goal if status_tracker else None
 
-    # -- what the server wants -----------------------------------------------------------------------------------
+    # -- server actions ------------------------------------------------------------------------------------------
 
     def set_accepted(self, text: str = "") -> None:
         """Work on the goal begins: it is active, or preempting when it was asked to be cancelled before."""
@@ -75,7 +75,10 @@ class ServerGoalHandle:
         self._end(_SUCCEED, "a succeeded state", "a preempting or active", result, text)
 
     def set_cancel_requested(self) -> bool:
-        """A client wants the goal to be cancelled: whether it is in a state where the user is told of it."""
+        """Handle a client's cancel request.
+
+        Returns whether the goal is in a state in which the user code is notified.
+        """
         self._debug("Transisitoning to a cancel requested state on goal id: %s, stamp: %.2f")
         if self.goal is None:
             return False
@@ -88,7 +91,7 @@ class ServerGoalHandle:
             return True
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Tell the clients how it goes; `feedback` is the *Feedback message."""
+        """Send the progress to the clients; `feedback` is the *Feedback message."""
         self._debug("Publishing feedback for goal, id: %s, stamp: %.2f")
         if self.goal is None:
             rospy.logerr("Attempt to publish feedback on an uninitialized ServerGoalHandle")
@@ -96,18 +99,18 @@ class ServerGoalHandle:
         with self.action_server.lock:
             self.action_server.publish_feedback(self.status_tracker.status, feedback)
 
-    # -- what there is to see ------------------------------------------------------------------------------------
+    # -- properties ----------------------------------------------------------------------------------------------
 
     def get_default_result(self) -> Any:
-        """An empty *Result message."""
+        """Return an empty *Result message."""
         return self.action_server.ActionResultType()
 
     def get_goal(self) -> Any:
-        """The *Goal message, or None."""
+        """Return the *Goal message, or None."""
         return self.goal.goal if self.goal is not None else None
 
     def get_goal_id(self) -> Any:
-        """The goal's GoalID."""
+        """Return the goal's GoalID."""
         if self.goal is None:
             rospy.logerr("Attempt to get a goal id on an uninitialized ServerGoalHandle")
             return GoalID()
@@ -115,7 +118,7 @@ class ServerGoalHandle:
             return self.status_tracker.status.goal_id
 
     def get_goal_status(self) -> Any:
-        """The goal's GoalStatus, as it is published."""
+        """Return the goal's GoalStatus, as it is published."""
         if self.goal is None:
             rospy.logerr("Attempt to get goal status on an uninitialized ServerGoalHandle")
             return GoalStatus()

@@ -32,11 +32,11 @@ class SimpleActionClient:
     """Client of one action that follows the goal it sent last.
 
     Args:
-        ns: name of the action, under which its topics are.
+        ns: name of the action, the namespace of its topics.
         ActionSpec: class of the *Action message.
 
     Raises:
-        ActionException: that is no such class.
+        ActionException: `ActionSpec` is not such a class.
     """
 
     def __init__(self, ns: str, ActionSpec: Any) -> None:
@@ -49,7 +49,7 @@ class SimpleActionClient:
         self.feedback_cb: Callable[[Any], object] | None = None
 
     def wait_for_server(self, timeout: Any = rospy.Duration()) -> bool:  # noqa: B008
-        """As `ActionClient.wait_for_server`."""
+        """Wait as `ActionClient.wait_for_server` does."""
         return self.action_client.wait_for_server(timeout)
 
     def send_goal(
@@ -78,11 +78,11 @@ class SimpleActionClient:
         execute_timeout: Any = rospy.Duration(),  # noqa: B008
         preempt_timeout: Any = rospy.Duration(),  # noqa: B008
     ) -> int:
-        """Send a goal and wait for its end; cancel it when that takes too long.
+        """Send a goal and wait for its end; cancel it if that takes too long.
 
         Args:
             goal: the *Goal message.
-            execute_timeout: a rospy.Duration before it is cancelled; zero waits for ever.
+            execute_timeout: a rospy.Duration before it is cancelled; zero waits forever.
             preempt_timeout: how long to wait after that.
 
         Returns:
@@ -101,7 +101,7 @@ class SimpleActionClient:
         """Wait until the goal is done.
 
         Args:
-            timeout: a rospy.Duration; zero waits for ever.
+            timeout: a rospy.Duration; zero waits forever.
 
         Returns:
             whether it is done.
@@ -120,21 +120,21 @@ class SimpleActionClient:
         return self.simple_state == SimpleGoalState.DONE
 
     def get_result(self) -> Any:
-        """The *Result message of the goal, or None."""
+        """Return the *Result message of the goal, or None."""
         if not self.gh:
             rospy.logerr("Called get_result when no goal is running")
             return None
         return self.gh.get_result()
 
     def get_state(self) -> int:
-        """Status number of actionlib_msgs/GoalStatus without the states in between; LOST when there is no goal."""
+        """Return the number of actionlib_msgs/GoalStatus without the states in between, or LOST without a goal."""
         if not self.gh:
             return int(GoalStatus.LOST)
         status = self.gh.get_goal_status()
         return _SIMPLIFIED.get(status, status)
 
     def get_goal_status_text(self) -> str:
-        """What the server said to the goal's status."""
+        """Return the server's text for the goal's status."""
         if not self.gh:
             rospy.logerr("Called get_goal_status_text when no goal is running")
             return "ERROR: Called get_goal_status_text when no goal is running"
@@ -157,7 +157,7 @@ class SimpleActionClient:
         """Forget the goal, which is not cancelled."""
         self.gh = None
 
-    # -- what happens to the goal --------------------------------------------------------------------------------
+    # -- events of the goal --------------------------------------------------------------------------------------
 
     def _handle_transition(self, gh: ClientGoalHandle) -> None:
         if gh != self.gh:

@@ -1,4 +1,4 @@
-"""`SimpleActionServer`: one goal at a time; a newer goal takes the place of the one before."""
+"""`SimpleActionServer`: one goal at a time; a newer goal replaces the one before."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class SimpleActionServer:
     """Server of one action.
 
     Args:
-        name: of the action, under which its topics are.
+        name: name of the action, the namespace of its topics.
         ActionSpec: class of the *Action message.
-        execute_cb: called with the *Goal message in a thread of its own, which does the work; None for a server that
-            polls, or that is told by callbacks.
-        auto_start: whether to `start` at once, which is asking for trouble.
+        execute_cb: called with the *Goal message in a separate thread, which does the work; None for a server that
+            polls, or that uses callbacks.
+        auto_start: whether to `start` at once, which is not recommended.
 
     Raises:
-        ActionException: `ActionSpec` is no such class.
+        ActionException: `ActionSpec` is not such a class.
     """
 
     def __init__(
@@ -76,10 +76,10 @@ class SimpleActionServer:
     # -- the goal --------------------------------------------------------------------------------------------------
 
     def accept_new_goal(self) -> Any:
-        """Take the new goal on; the one before, if it is under way, is preempted.
+        """Accept the new goal. The one before, if it is active, is preempted.
 
         Returns:
-            the *Goal message, or None when there is no new goal.
+            the *Goal message, or None if there is no new goal.
         """
         with self.action_server.lock, self.lock:
             if not self.new_goal or self.next_goal.get_goal() is None:
@@ -96,25 +96,25 @@ class SimpleActionServer:
             return self.current_goal.get_goal()
 
     def is_new_goal_available(self) -> bool:
-        """Whether a goal waits to be accepted."""
+        """Return whether a goal waits to be accepted."""
         return self.new_goal
 
     def is_preempt_requested(self) -> bool:
-        """Whether the goal is to be given up, for a newer one or because a client wants it."""
+        """Return whether the goal is to be given up, for a newer one or because a client wants it."""
         return self.preempt_request
 
     def is_active(self) -> bool:
-        """Whether there is a goal under way."""
+        """Return whether there is a goal under way."""
         if self.current_goal.get_goal() is None:
             return False
         return self.current_goal.get_goal_status().status in (GoalStatus.ACTIVE, GoalStatus.PREEMPTING)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Tell the clients how it goes; `feedback` is the *Feedback message."""
+        """Send the progress to the clients; `feedback` is the *Feedback message."""
         self.current_goal.publish_feedback(feedback)
 
     def get_default_result(self) -> Any:
-        """An empty *Result message."""
+        """Return an empty *Result message."""
         return self.action_server.ActionResultType()
 
     def set_succeeded(self, result: Any = None, text: str = "") -> None:
@@ -136,7 +136,7 @@ class SimpleActionServer:
     def _or_empty(self, result: Any) -> Any:
         return self.get_default_result() if result is None else result
 
-    # -- what comes in -----------------------------------------------------------------------------------------------
+    # -- receiving ---------------------------------------------------------------------------------------------------
 
     def internal_goal_callback(self, goal: ServerGoalHandle) -> None:
         """A goal came: it is the next one, unless it is older than the one there is."""

@@ -1,4 +1,4 @@
-"""The states of a goal as its client sees them, and how a status from the server changes them."""
+"""The states of a goal as its client sees them, and their changes by a status from the server."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class CommState:
 
 
 class TerminalState:
-    """How a goal can end; the numbers are those of actionlib_msgs/GoalStatus."""
+    """Final states of a goal. The numbers are those of actionlib_msgs/GoalStatus."""
 
     RECALLED = GoalStatus.RECALLED
     REJECTED = GoalStatus.REJECTED
@@ -40,7 +40,7 @@ TERMINAL_STATES = frozenset(value for name, value in vars(TerminalState).items()
 
 
 def get_name_of_constant(cls: type, value: int) -> str:
-    """Name of the constant of a class that has a value, e.g. "ACTIVE"."""
+    """Return the name of the constant of a class that has a value, e.g. "ACTIVE"."""
     for name, constant in vars(cls).items():
         if name.isupper() and constant == value:
             return name
@@ -59,8 +59,8 @@ _LETTERS = {
     "W": CommState.WAITING_FOR_RESULT,
 }
 
-# One column for each status by number: PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING,
-# RECALLING, RECALLED. The states that the goal passes through one after the other; "-" none, "!" against the rules.
+# One column for each status by number: PENDING, ACTIVE, PREEMPTED, SUCCEEDED, ABORTED, REJECTED, PREEMPTING, RECALLING,
+# RECALLED. Each has the states that the goal passes through in order; "-" none, "!" against the rules.
 _TABLE = {
     CommState.WAITING_FOR_GOAL_ACK: "P A AXW AW AW PW AX PR PW",
     CommState.PENDING: "- A AXW AW AW W AX R RW",

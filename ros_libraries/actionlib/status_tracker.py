@@ -1,4 +1,4 @@
-"""What an action server remembers of one goal."""
+"""An action server's record of one goal."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ class StatusTracker:
     """A goal's status.
 
     Args:
-        goal_id: of a goal that has not come, but was asked to be cancelled.
-        status: that goal's.
-        goal: the *ActionGoal message of one that came; it is pending, and gets an id and a stamp if it has none.
+        goal_id: id of a goal that has not arrived, but for which a cancel request has.
+        status: status of that goal.
+        goal: the *ActionGoal message of a goal that has arrived; it is pending, and gets an id and a stamp if it has
+            none.
     """
 
     def __init__(self, goal_id: Any = None, status: int | None = None, goal: Any = None) -> None:

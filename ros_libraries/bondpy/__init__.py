@@ -1,1 +1,1 @@
-"""bondpy for nodes: two nodes that notice when the other one ends (ROS's bondpy 1.8; the code is cfepy's own)."""
+"""bondpy for nodes: two nodes that detect each other's end (ROS's bondpy 1.8; the code is cfepy's own)."""

@@ -1,7 +1,7 @@
 """`Bond`: one end of a bond between two nodes.
 
-Both ends publish heartbeats with the same id on one topic. An end is broken when the other one says that it ends, or
-has not been heard for `heartbeat_timeout`. Callbacks are called without the lock, after the state has changed.
+Both ends publish heartbeats with the same id on one topic. The bond is broken if the other end announces its end, or
+sends no heartbeat for `heartbeat_timeout`. Callbacks are called without the lock, after the state has changed.
 """
 
 from __future__ import annotations
@@ -20,21 +20,21 @@ from .timeout import Timeout
 
 Callback = Callable[[], object] | None
 
-_LOOK_UP_S = 0.1  # one who waits looks this often whether the node is to end
+_LOOK_UP_S = 0.1  # a waiting thread checks at this interval whether the node is to end
 
 
 def as_ros_duration(d: Any) -> Any:
-    """A rospy.Duration of one, or of seconds."""
+    """Return a rospy.Duration of one, or of seconds."""
     return d if isinstance(d, rospy.Duration) else rospy.Duration.from_sec(d)
 
 
 def as_float_duration(d: Any) -> Any:
-    """Seconds of a rospy.Duration, or of seconds."""
+    """Return seconds of a rospy.Duration, or of seconds."""
     return d.to_sec() if isinstance(d, rospy.Duration) else d
 
 
 def _timeout(event: str) -> Any:
-    """A property that holds a time, in s or as a rospy.Duration, and makes the timer that raises an event."""
+    """Return a property that holds a time, in s or as a rospy.Duration, and makes the timer that raises an event."""
 
     def read(self: Bond) -> Any:
         return self._times[event]
@@ -51,10 +51,10 @@ class Bond:
     """One end of a bond; `start` begins it.
 
     Args:
-        topic: of the heartbeats, the same at both ends.
-        id: of the bond, the same at both ends.
+        topic: topic of the heartbeats, the same at both ends.
+        id: id of the bond, the same at both ends.
         on_broken: called when the bond breaks.
-        on_formed: called when the other end is there.
+        on_formed: called when the other end has connected.
     """
 
     connect_timeout = _timeout("ConnectTimeout")
@@ -83,7 +83,7 @@ class Bond:
 
     @property
     def heartbeat_period(self) -> float:
-        """Time between heartbeats, in s; may be set as a rospy.Duration."""
+        """Time between heartbeats, in s. You can set it as a rospy.Duration."""
         return self._period
 
     @heartbeat_period.setter
@@ -100,7 +100,7 @@ class Bond:
         self.connect_timeout = dur
 
     def get_heartbeat_timeout(self) -> Any:
-        """How long the other end may be silent."""
+        """Return how long the other end may be silent."""
         return self.heartbeat_timeout
 
     def set_heartbeat_timeout(self, dur: Any) -> None:
@@ -116,7 +116,7 @@ class Bond:
         self.disconnect_timeout = dur
 
     def get_heartbeat_period(self) -> float:
-        """Time between heartbeats, in s."""
+        """Return the time between heartbeats, in s."""
         return self.heartbeat_period
 
     def set_heartbeat_period(self, per: Any) -> None:
@@ -136,7 +136,7 @@ class Bond:
     # -- life ----------------------------------------------------------------------------------------------------------
 
     def start(self) -> None:
-        """Publish heartbeats and wait for those of the other end."""
+        """Publish heartbeats and wait for heartbeats of the other end."""
         with self.lock:
             self._timers["ConnectTimeout"].reset()
             self.sub = rospy.Subscriber(self.topic, Status, self._on_bond_status)
@@ -145,13 +145,13 @@ class Bond:
             self._started = True
 
     def wait_until_formed(self, timeout: Any = None) -> bool:
-        """Wait for the other end, for a rospy.Duration or for ever; whether the bond was formed."""
+        """Wait for the other end, for a rospy.Duration or forever. Returns whether the bond was formed."""
         with self.lock:
             self._wait_while(lambda: self.state == WAITING, timeout)
             return self.state != WAITING
 
     def wait_until_broken(self, timeout: Any = None) -> bool:
-        """Wait for the end of the bond, for a rospy.Duration or for ever; whether it is broken."""
+        """Wait for the end of the bond, for a rospy.Duration or forever. Returns whether it is broken."""
         with self.lock:
             self._wait_while(lambda: self.state != DEAD, timeout)
             return self.state == DEAD
@@ -165,12 +165,12 @@ class Bond:
             self.condition.wait(left)
 
     def is_broken(self) -> bool:
-        """Whether the bond is broken."""
+        """Return whether the bond is broken."""
         with self.lock:
             return self.state == DEAD
 
     def break_bond(self) -> None:
-        """Break the bond and tell the other end."""
+        """Break the bond and notify the other end."""
         with self.lock:
             self._handle("Die")
             self._publish(False)
@@ -197,7 +197,7 @@ class Bond:
     def __repr__(self) -> str:
         return f"[Bond {self.id}, Instance {self.instance_id} ({self.state})]"
 
-    # -- what happens --------------------------------------------------------------------------------------------------
+    # -- events --------------------------------------------------------------------------------------------------------
 
     def _handle(self, event: str) -> None:
         actions, following = TRANSITIONS.get((self.state, event), ((), self.state))

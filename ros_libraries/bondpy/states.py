@@ -1,10 +1,10 @@
-"""The life of one end of a bond, as a table: what happens in which state to what."""
+"""The states of one end of a bond, as a table of transitions."""
 
 from __future__ import annotations
 
 WAITING, ALIVE, DYING, DEAD = "SM.WaitingForSister", "SM.Alive", "SM.AwaitSisterDeath", "SM.Dead"
 
-# (state, event): (actions, names of functions of the owner; next state). Anything else changes nothing.
+# (state, event): (actions, names of functions of the owner; next state). Other events change nothing.
 TRANSITIONS: dict[tuple[str, str], tuple[tuple[str, ...], str]] = {
     (WAITING, "ConnectTimeout"): (("Death",), DEAD),
     (WAITING, "Die"): (("Death",), DEAD),

@@ -1,4 +1,4 @@
-"""`Timeout`: something that is to happen unless it is put off in time."""
+"""`Timeout`: an action that runs unless it is postponed in time."""
 
 from __future__ import annotations
 

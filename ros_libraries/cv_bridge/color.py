@@ -1,4 +1,4 @@
-"""Between encodings. What is wrong is a RuntimeError, as C++ reports it to Python."""
+"""Conversion between encodings. Errors are RuntimeErrors, as C++ reports them to Python."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ _HINT = "conversion from [{}] to [{}] needs OpenCV: pip install opencv-python"
 
 
 def opencv(what: str) -> Any:
-    """The module cv2.
+    """Return the module cv2.
 
     Raises:
-        RuntimeError: it is not installed; the text begins with what it is needed for.
+        RuntimeError: it is not installed; the text begins with its purpose.
     """
     try:
         return importlib.import_module("cv2")
@@ -26,7 +26,7 @@ def opencv(what: str) -> Any:
 
 
 def cvtColor2(img: Any, encoding_in: str, encoding_out: str) -> Any:
-    """An image in another encoding.
+    """Return an image in another encoding.
 
     Args:
         img: rows x columns, or rows x columns x channels.
@@ -57,13 +57,13 @@ def cvtColorForDisplay(
     min_image_value: float = 0.0,
     max_image_value: float = 0.0,
 ) -> Any:
-    """An image as bgr8, or another encoding of 8 bits, to be looked at.
+    """Return an image for display as bgr8, or in another encoding of 8 bits.
 
     Args:
         img: the image.
         encoding_in: its encoding.
         encoding_out: "" for bgr8.
-        do_dynamic_scaling: spread numbers of one channel from their least to their greatest.
+        do_dynamic_scaling: spread numbers of one channel from their minimum to their maximum.
         min_image_value: the number that becomes black; with both limits 0, 0 and 1 for floats, the type's for integers.
         max_image_value: the number that becomes white.
 
@@ -87,7 +87,7 @@ def cvtColorForDisplay(
 
 
 def _check(source: Encoding, target: Encoding) -> None:
-    """Numbers are no colours, and become such only under a name of their own."""
+    """Refuse a conversion between numbers and colours. Numbers become colours only under another encoding name."""
     same = source.channels == target.channels
     one, other = f"[{source.name}]", f"[{target.name}]"
     if source.order is None and target.order is not None:

@@ -22,7 +22,7 @@ class CvBridge:
     """Converts images."""
 
     def dtype_with_channels_to_cvtype2(self, dtype: Any, n_channels: int) -> str:
-        """The encoding of an array, e.g. "8UC3"."""
+        """Return the encoding of an array, e.g. "8UC3"."""
         return name_of(np.dtype(dtype).name, n_channels)
 
     def cvtype2_to_dtype_with_channels(self, cvtype: Any) -> tuple[str, int]:
@@ -50,11 +50,11 @@ class CvBridge:
         return self.cvtype2_to_dtype_with_channels(self.encoding_to_cvtype2(encoding))
 
     def imgmsg_to_cv2(self, img_msg: Any, desired_encoding: str = "passthrough") -> Any:
-        """The array in a sensor_msgs/Image: rows x columns, or rows x columns x channels.
+        """Return the array in a sensor_msgs/Image: rows x columns, or rows x columns x channels.
 
         Args:
             img_msg: the image.
-            desired_encoding: of the array; "passthrough" leaves it as it is.
+            desired_encoding: encoding of the array; "passthrough" leaves it unchanged.
 
         Raises:
             CvBridgeError: the encoding is unknown, or the conversion makes no sense.
@@ -69,15 +69,15 @@ class CvBridge:
         return array if desired_encoding == "passthrough" else _converted(array, img_msg.encoding, desired_encoding)
 
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
-        """The sensor_msgs/Image of an array.
+        """Return the sensor_msgs/Image of an array.
 
         Args:
             cvim: rows x columns, or rows x columns x channels.
-            encoding: what its numbers are; "passthrough" says no more than their type.
+            encoding: meaning of its numbers; "passthrough" only gives their type.
             header: a std_msgs/Header.
 
         Raises:
-            TypeError: it is no array.
+            TypeError: it is not an array.
             CvBridgeError: the array does not fit the encoding.
         """
         _check_array(cvim)
@@ -93,7 +93,7 @@ class CvBridge:
         return msg
 
     def compressed_imgmsg_to_cv2(self, cmprs_img_msg: Any, desired_encoding: str = "passthrough") -> Any:
-        """The array in a sensor_msgs/CompressedImage; OpenCV decodes it, as bgr8 if it has colours.
+        """Return the array in a sensor_msgs/CompressedImage. OpenCV decodes it, as bgr8 if it has colours.
 
         Raises:
             CvBridgeError: OpenCV is not installed, or the conversion makes no sense.
@@ -107,10 +107,10 @@ class CvBridge:
         return _converted(array, f"{order}{array.dtype.itemsize * 8}", desired_encoding)
 
     def cv2_to_compressed_imgmsg(self, cvim: Any, dst_format: str = "jpg") -> Any:
-        """The sensor_msgs/CompressedImage of an array, encoded by OpenCV.
+        """Return the sensor_msgs/CompressedImage of an array, encoded by OpenCV.
 
         Raises:
-            TypeError: it is no array.
+            TypeError: it is not an array.
             CvBridgeError: OpenCV is not installed.
         """
         _check_array(cvim)

@@ -1,4 +1,4 @@
-"""What the encodings of sensor_msgs/Image mean: depth, number of channels, and whether they are colours."""
+"""Meaning of the encodings of sensor_msgs/Image: depth, number of channels, and whether they are colours."""
 
 from __future__ import annotations
 
@@ -44,10 +44,10 @@ class Encoding(NamedTuple):
 
 
 def parse(name: str) -> Encoding:
-    """What an encoding means.
+    """Return the meaning of an encoding.
 
     Raises:
-        ValueError: there is none such.
+        ValueError: the encoding is unknown.
     """
     if match := _COLOR.fullmatch(name):
         return Encoding(name, f"{match[2]}U", _CHANNELS[match[1]], match[1])
@@ -61,7 +61,7 @@ def parse(name: str) -> Encoding:
 
 
 def name_of(dtype: str, channels: int) -> str:
-    """The encoding of plain numbers, e.g. "8UC3".
+    """Return the encoding of plain numbers, e.g. "8UC3".
 
     Raises:
         KeyError: OpenCV has no such numbers.
@@ -71,7 +71,7 @@ def name_of(dtype: str, channels: int) -> str:
 
 
 def name_of_number(cv_type: int) -> str:
-    """The encoding of plain numbers by OpenCV's number for it."""
+    """Return the encoding of plain numbers by OpenCV's number for it."""
     return f"{list(_DEPTHS)[cv_type % 8]}C{cv_type // 8 + 1}"
 
 

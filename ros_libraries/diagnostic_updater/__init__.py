@@ -1,7 +1,7 @@
-"""diagnostic_updater for nodes: what a node says about its health on /diagnostics.
+"""diagnostic_updater for nodes: reports of a node's health on /diagnostics.
 
-Names, arguments and texts are those of ROS's diagnostic_updater 1.11; the code is cfepy's own, on top of `rospy`. What
-a star import brings is the same too, `rospy` and `threading` included.
+Names, arguments and texts match ROS's diagnostic_updater 1.11; the code is cfepy's own, on top of `rospy`. A
+star import provides the same names, including `rospy` and `threading`.
 """
 
 from __future__ import annotations

@@ -19,13 +19,14 @@ class DiagnosticStatusWrapper(DiagnosticStatus):  # type: ignore[misc]  # the me
         self.level, self.message = _level_and_text(args)
 
     def clearSummary(self) -> None:
-        """All is well, and there is nothing to say."""
+        """Set level OK and an empty message."""
         self.summary(OK, "")
 
     def mergeSummary(self, *args: Any) -> None:
-        """Take in another level and message, given as in `summary`.
+        """Merge another level and message, given as in `summary`.
 
-        The worse level stays. Messages of two good or of two bad levels are joined by "; ", else the bad one's stays.
+        The worse level stays. If both levels are good or both are bad, their messages are joined by "; ". Otherwise the
+        bad one's message stays.
         """
         level, text = _level_and_text(args)
         if (level > OK) == (self.level > OK):
@@ -35,7 +36,7 @@ class DiagnosticStatusWrapper(DiagnosticStatus):  # type: ignore[misc]  # the me
         self.level = max(self.level, level)
 
     def add(self, key: str, val: Any) -> None:
-        """Add a value, as the text that `str` makes of it."""
+        """Add a value, converted to text by `str`."""
         self.values.append(KeyValue(key, str(val)))
 
 

@@ -1,4 +1,4 @@
-"""Diagnostic tasks, and `Updater`, which runs a node's tasks and publishes what they find."""
+"""Diagnostic tasks, and `Updater`, which runs a node's tasks and publishes their results."""
 
 from __future__ import annotations
 
@@ -29,11 +29,11 @@ class DiagnosticTask:
         self.name = name
 
     def getName(self) -> str:
-        """The task's name."""
+        """Return the task's name."""
         return self.name
 
     def run(self, stat: Any) -> Any:
-        """Fill in a status and return it; to be overridden."""
+        """Fill in a status and return it. Override this method."""
         return stat
 
 
@@ -61,7 +61,7 @@ class CompositeDiagnosticTask(DiagnosticTask):
         self.tasks.append(t)
 
     def run(self, stat: Any) -> Any:
-        """Run the tasks one after another; each begins with the summary that came in."""
+        """Run the tasks in order. Each begins with the summary that was passed in."""
         combined, original = DiagnosticStatusWrapper(), DiagnosticStatusWrapper()
         original.summary(stat)
         for task in self.tasks:
@@ -91,7 +91,7 @@ class DiagnosticTaskVector:
         self.lock = threading.Lock()
 
     def addedTaskCallback(self, task: DiagnosticTaskInternal) -> None:
-        """A task was added; to be overridden."""
+        """Handle a new task. Override this method."""
 
     def add(self, *args: Any) -> None:
         """Add a task: `add(task)` or `add(name, function)`."""
@@ -102,7 +102,7 @@ class DiagnosticTaskVector:
             self.addedTaskCallback(task)
 
     def removeByName(self, name: str) -> bool:
-        """Remove the first task with a name; whether there was one."""
+        """Remove the first task with a name. Returns whether there was one."""
         with self.lock:
             for index, task in enumerate(self.tasks):
                 if task.name == name:
@@ -125,7 +125,7 @@ class Updater(DiagnosticTaskVector):
         self.warn_nohwid_done = False
 
     def update(self) -> None:
-        """Run the tasks if it is time to; to be called often."""
+        """Run the tasks if it is time to. Call this often."""
         self._check_diagnostic_period()
         if rospy.Time.now() >= self.last_time + rospy.Duration(self.period):
             self.force_update()
@@ -160,7 +160,7 @@ class Updater(DiagnosticTaskVector):
         self.publish(found)
 
     def setHardwareID(self, hwid: str) -> None:
-        """Name of the device; "none" if there is none."""
+        """Set the name of the device; "none" if there is none."""
         self.hwid = hwid
 
     def _check_diagnostic_period(self) -> None:
@@ -170,7 +170,7 @@ class Updater(DiagnosticTaskVector):
             self.last_time_period_checked = now
 
     def publish(self, msg: Any) -> None:
-        """Publish a status or a list of some; the node's name goes before each status's."""
+        """Publish a status or a list of statuses. The node's name is put before each status's name."""
         found = msg if type(msg) is list else [msg]
         for status in found:
             status.name = f"{rospy.get_name()[1:]}: {status.name}"

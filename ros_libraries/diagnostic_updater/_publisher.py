@@ -1,4 +1,4 @@
-"""Diagnostics of a topic: how often it is published, and how old the stamps are."""
+"""Diagnostics of a topic: its frequency, and the age of its stamps."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
     """Watches the frequency of a topic.
 
     Args:
-        name: of the topic.
-        diag: the updater that it adds itself to.
-        freq: the frequencies that will do.
+        name: name of the topic.
+        diag: the updater to which it adds itself.
+        freq: the acceptable frequencies.
     """
 
     def __init__(self, name: str, diag: Updater, freq: FrequencyStatusParam) -> None:
@@ -34,7 +34,7 @@ class HeaderlessTopicDiagnostic(CompositeDiagnosticTask):
 
 
 class TopicDiagnostic(HeaderlessTopicDiagnostic):
-    """Watches frequency and stamps of a topic; `stamp` says which ages will do."""
+    """Watches frequency and stamps of a topic; `stamp` gives the acceptable ages."""
 
     def __init__(self, name: str, diag: Updater, freq: FrequencyStatusParam, stamp: TimeStampStatusParam) -> None:
         super().__init__(name, diag, freq)

@@ -1,4 +1,4 @@
-"""Ready tasks: how often something happens, how old stamps are, and that the node is alive."""
+"""Ready-made tasks: frequency of events, age of stamps, and whether the node is alive."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from ._diagnostic_updater import DiagnosticTask
 
 
 class FrequencyStatusParam:
-    """What a FrequencyStatus checks.
+    """Parameters of a FrequencyStatus.
 
     Args:
         freq_bound: "min" and, if there is one, "max", in Hz; read at each run.
-        tolerance: by what part of the bounds they may be missed.
+        tolerance: the fraction of the bounds by which they may be missed.
         window_size: number of runs over which events are counted.
     """
 
@@ -31,7 +31,7 @@ class FrequencyStatusParam:
 
     @property
     def highest(self) -> float | None:
-        """Highest frequency that will do, in Hz; None: any."""
+        """Highest acceptable frequency in Hz, or None for any."""
         return self.freq_bound["max"] * (1 + self.tolerance) if "max" in self.freq_bound else None
 
 
@@ -94,11 +94,11 @@ class FrequencyStatus(DiagnosticTask):
 
 
 class TimeStampStatusParam:
-    """What a TimeStampStatus checks.
+    """Parameters of a TimeStampStatus.
 
     Args:
-        min_acceptable: least age of a stamp, in s; below zero it may lie in the future.
-        max_acceptable: greatest age, in s.
+        min_acceptable: minimum age of a stamp, in s; a negative age lies in the future.
+        max_acceptable: maximum age, in s.
     """
 
     def __init__(self, min_acceptable: float = -1, max_acceptable: float = 5) -> None:
@@ -168,6 +168,6 @@ class Heartbeat(DiagnosticTask):
         super().__init__("Heartbeat")
 
     def run(self, stat: Any) -> Any:
-        """All is well."""
+        """Report that all is well."""
         stat.summary(OK, "Alive")
         return stat

@@ -1,6 +1,6 @@
-"""dynamic_reconfigure for nodes: parameters that others may change while the node runs.
+"""dynamic_reconfigure for nodes: parameters that other nodes can change at run time.
 
-Names, arguments, topics and services are those of ROS's dynamic_reconfigure 1.7; the code is cfepy's own, on top of
+Names, arguments, topics and services match ROS's dynamic_reconfigure 1.7; the code is cfepy's own, on top of
 `rospy`. The modules `<package>.cfg.<Name>Config` are made from a package's cfg/<Name>.cfg when they are imported.
 """
 
@@ -22,7 +22,7 @@ class DynamicReconfigureCallbackException(DynamicReconfigureException):
 
 
 def find_reconfigure_services() -> list[str]:
-    """Names of the servers that can be reconfigured, sorted."""
+    """Return the names of the servers that can be reconfigured, sorted."""
     import rosservice
 
     ending = "/set_parameters"
@@ -30,5 +30,5 @@ def find_reconfigure_services() -> list[str]:
 
 
 def get_parameter_names(descr: Any) -> Any:
-    """Names of the parameters of a `...Config` module."""
+    """Return the names of the parameters of a `...Config` module."""
     return descr.defaults.keys()

@@ -21,20 +21,20 @@ Callback = Callable[[Any], object] | None
 
 _TYPES: dict[str, type] = {"int": int, "double": float, "str": str, "bool": bool}
 _TRUE = ("yes", "true", "t", "1")
-_LOOK_UP_S = 1.0  # one who waits without limit looks this often whether the node is to end
+_LOOK_UP_S = 1.0  # a thread that waits without a limit checks at this interval whether the node is to end
 
 
 class Client:
-    """Connects to a server, waiting for it.
+    """Connects to a server and waits for it.
 
     Args:
-        name: of the server, usually the node's name.
-        timeout: in s; None or 0 waits for ever.
+        name: name of the server, usually the node's name.
+        timeout: in s; None or 0 waits forever.
         config_callback: called with the configuration whenever it changes.
-        description_callback: called with the list of parameters when it comes.
+        description_callback: called with the list of parameters when it arrives.
 
     Raises:
-        ROSException: the server was not there in time.
+        ROSException: the server was not available in time.
     """
 
     def __init__(
@@ -57,10 +57,10 @@ class Client:
         self._updates_sub = self._subscribe("parameter_updates", ConfigMsg, self._updates_msg)
 
     def get_configuration(self, timeout: float | None = None) -> Any:
-        """The server's configuration, waiting for the first one.
+        """Return the server's configuration, waiting for the first one.
 
         Args:
-            timeout: in s; None or 0 waits for ever.
+            timeout: in s; None or 0 waits forever.
 
         Returns:
             values by name, or None if there is none in time.
@@ -70,11 +70,11 @@ class Client:
         return self._wait_for("config", timeout)
 
     def get_parameter_descriptions(self, timeout: float | None = None) -> Any:
-        """The list of the server's parameters, each a dict; None if it does not come in time."""
+        """Return the list of the server's parameters, each a dict, or None if it does not arrive in time."""
         return self._wait_for("param_description", timeout)
 
     def get_group_descriptions(self, timeout: float | None = None) -> Any:
-        """The tree of the server's groups; None if it does not come in time."""
+        """Return the tree of the server's groups, or None if it does not arrive in time."""
         return self._wait_for("group_description", timeout)
 
     def update_configuration(self, changes: dict[str, Any]) -> Any:
@@ -85,7 +85,7 @@ class Client:
                 Groups are opened and closed by a dict of states by name under "groups".
 
         Returns:
-            the configuration that came of it.
+            the resulting configuration.
 
         Raises:
             DynamicReconfigureParameterException: an unknown parameter, or a value that does not fit.
@@ -108,7 +108,7 @@ class Client:
         return decode_config(msg, self.group_description)
 
     def update_groups(self, changes: dict[str, Any]) -> Any:
-        """The tree of groups with new states.
+        """Return the tree of groups with new states.
 
         Args:
             changes: states by group name.
@@ -124,11 +124,11 @@ class Client:
         self._updates_sub.unregister()
 
     def get_config_callback(self) -> Callback:
-        """What is called with each new configuration."""
+        """Return the callback for new configurations."""
         return self._config_callback
 
     def set_config_callback(self, value: Callback) -> None:
-        """Have something else called; it gets the present configuration at once."""
+        """Set the callback for new configurations. It gets the present configuration at once."""
         self._config_callback = value
         if value is not None:
             value(self.config)
@@ -136,11 +136,11 @@ class Client:
     config_callback = property(get_config_callback, set_config_callback)
 
     def get_description_callback(self) -> Callback:
-        """What is called with the list of parameters."""
+        """Return the callback for the list of parameters."""
         return self._description_callback
 
     def set_description_callback(self, value: Callback) -> None:
-        """Have something else called; it gets the present list at once."""
+        """Set the callback for the list of parameters. It gets the present list at once."""
         self._description_callback = value
         if value is not None:
             value(self.param_description)
@@ -164,13 +164,13 @@ class Client:
             raise DynamicReconfigureParameterException(problem) from None
 
     def _constants(self, name: str) -> dict[str, Any]:
-        """Values of a parameter's enum by lower-case name."""
+        """Return values of a parameter's enum by lower-case name."""
         method = next(each["edit_method"] for each in self.param_description if each["name"] == name)
         listed = ast.literal_eval(method)["enum"] if method else []
         return {each["name"].lower(): self._param_type_from_string(each["type"])(each["value"]) for each in listed}
 
     def _wait_for(self, attribute: str, timeout: float | None) -> Any:
-        """An attribute of this client as soon as it is not None."""
+        """Return an attribute of this client as soon as it is not None."""
         end = time.time() + timeout if timeout else None
         with self._cv:
             while getattr(self, attribute) is None and not rospy.is_shutdown():

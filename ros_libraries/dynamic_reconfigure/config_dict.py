@@ -1,4 +1,4 @@
-"""`Config`: a dict whose items are attributes too, which is what a server's callback gets."""
+"""`Config`: a dict whose items are also attributes. A server's callback gets it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Config(dict[str, Any]):
         self[name] = value
 
     def copy(self) -> Config:
-        """A flat copy."""
+        """Return a flat copy."""
         return Config(self)
 
     def __deepcopy__(self, memo: Any) -> Config:

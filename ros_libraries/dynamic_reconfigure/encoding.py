@@ -1,7 +1,7 @@
-"""Between the dicts that a program works with and the messages that servers and clients exchange.
+"""Conversion between dicts in programs and the messages of servers and clients.
 
 A *description* is the `config_description` of a generated module: a tree of groups with their parameters, in which
-`groups` is a list; the one that a client gets from a message has a dict of groups by name in its place.
+`groups` is a list. A description that a client gets from a message has a dict of groups by name instead.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def encode_description(descr: Any) -> Any:
 
 
 def encode_groups(parent: Any, group: Mapping[str, Any]) -> list[Any]:
-    """Group messages of a description, each before those inside it; `parent` is not used, as in ROS."""
+    """Return the group messages of a description, each before those inside it. `parent` is not used, as in ROS."""
     fields = ("name", "type", "level", "description", "edit_method")
     parameters = [ParamDescription(*(each[field] for field in fields)) for each in group["parameters"]]
     made = Group(group["name"], group["type"], parameters, group["parent"], group["id"])
@@ -46,7 +46,7 @@ def encode_groups(parent: Any, group: Mapping[str, Any]) -> list[Any]:
 
 
 def encode_config(config: Mapping[str, Any], flat: bool = True) -> Any:
-    """Config message of values by name.
+    """Return a Config message from values by name.
 
     Args:
         config: ints, floats, bools and strs; a tree of groups under "groups". Values of other types are left out.
@@ -70,14 +70,14 @@ def _state(group: Any) -> Any:
 
 
 def _below(group: Any) -> Iterator[Any]:
-    """The groups inside a group, each behind those inside itself."""
+    """Yield the groups inside a group, each behind those inside itself."""
     for inner in group["groups"].values():
         yield from _below(inner)
         yield inner
 
 
 def group_dict(group: Any) -> Config:
-    """A group as a dict, from a Group or a GroupState message."""
+    """Return a group as a dict, from a Group or a GroupState message."""
     return Config(
         id=group.id,
         parent=group.parent,
@@ -90,7 +90,7 @@ def group_dict(group: Any) -> Config:
 
 
 def decode_description(msg: Any) -> Config:
-    """The description in a ConfigDescription; each parameter has its min, max and default."""
+    """Return the description in a ConfigDescription. Each parameter has its min, max and default."""
     low, high, default = (decode_config(each) for each in (msg.min, msg.max, msg.dflt))
 
     def parameter(param: Any) -> dict[str, Any]:
@@ -110,7 +110,10 @@ _DESCRIBED = ("type", "level", "description", "edit_method")
 
 
 def get_tree(m: Any, group: Any = None) -> Config:
-    """The tree of the groups in a message; with a `group` of it that is not the outermost, those inside that one."""
+    """Return the tree of the groups in a message.
+
+    With a `group` that is not the outermost, return the groups inside it.
+    """
     if group is None or group.id == 0:
         return _tree(m.groups, group_dict)
     return _inside(m.groups, group.id, group_dict)
@@ -135,7 +138,7 @@ def _inside(groups: Iterable[Any], parent: int, make: Callable[[Any], Config]) -
 
 
 def initial_config(msg: Any, description: Mapping[str, Any] | None = None) -> Config:
-    """What a server begins with: values, and groups with the states of the description and their parameters' values."""
+    """Return a server's initial values, and groups with the states of the description and their parameters' values."""
     config = _values(msg)
     if msg.groups and description is not None:
         states = {group["id"]: group["state"] for group in _described_below(description)}
@@ -152,7 +155,7 @@ def initial_config(msg: Any, description: Mapping[str, Any] | None = None) -> Co
 
 
 def decode_config(msg: Any, description: Mapping[str, Any] | None = None) -> Config:
-    """Values by name from a Config message; with a description also the tree of groups, with the values in them."""
+    """Return values by name from a Config message. With a description, include the tree of groups with their values."""
     config = _values(msg)
     if msg.groups and description is not None:
         config["groups"] = get_tree(msg)
@@ -167,7 +170,7 @@ def _values(msg: Any) -> Config:
 
 
 def _pairs(group: Mapping[str, Any], described: Mapping[str, Any]) -> Iterator[tuple[Any, Mapping[str, Any]]]:
-    """Each group of a tree with what describes it."""
+    """Yield each group of a tree with its description."""
     yield group, described
     for inner in group["groups"].values():
         for each in _described_groups(described):
@@ -187,12 +190,12 @@ def _described_below(described: Mapping[str, Any]) -> Iterator[Mapping[str, Any]
 
 
 def extract_params(group: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """All parameters of a description: those of the group, then those inside its groups."""
+    """Return all parameters of a description: those of the group, then those inside its groups."""
     return [*group["parameters"], *(each for inner in _described_groups(group) for each in extract_params(inner))]
 
 
 def get_parents(group: Mapping[str, Any], descriptions: Mapping[str, Any]) -> list[Any]:
-    """The groups around a group, outermost first, out of the list `descriptions["group"]`."""
+    """Return the groups around a group, outermost first, out of the list `descriptions["group"]`."""
     found: list[Any] = []
     for each in descriptions["group"]:
         if each["id"] == group["parent"] and each is not group:

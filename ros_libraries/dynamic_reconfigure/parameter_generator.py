@@ -1,4 +1,4 @@
-"""The older name of `parameter_generator_catkin`, which .cfg files of rosbuild's time begin with."""
+"""The older name of `parameter_generator_catkin`, used by .cfg files from the time of rosbuild."""
 
 from __future__ import annotations
 

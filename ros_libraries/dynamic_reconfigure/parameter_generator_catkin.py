@@ -1,7 +1,7 @@
-"""`ParameterGenerator`: what a package's cfg/*.cfg scripts describe their parameters with.
+"""`ParameterGenerator`: a package's cfg/*.cfg scripts describe their parameters with it.
 
-ROS runs such a script at build time and writes C++ and Python from it. Here `generate` keeps the description, and the
-module `<package>.cfg.<Name>Config` is made from that (`cfg_script`).
+ROS runs such a script at build time and writes C++ and Python from it. Here `generate` keeps the description, and
+`cfg_script` makes the module `<package>.cfg.<Name>Config` from it.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class ParameterGenerator:
     defval: ClassVar[dict[str, Any]] = {"int": 0, "double": 0, "str": "", "bool": False}
     """What stands for a limit or default that is not given; ROS has the int 0 for a double as well."""
 
-    Group = Group  # what ROS calls it
+    Group = Group  # its name in ROS
 
     def __init__(self) -> None:
         self.constants: list[dict[str, Any]] = []
@@ -79,7 +79,7 @@ class ParameterGenerator:
         return made
 
     def enum(self, constants: Sequence[dict[str, Any]], description: str) -> str:
-        """The `edit_method` of a parameter that takes one of some constants.
+        """Return the `edit_method` of a parameter that takes one of some constants.
 
         Raises:
             Exception: the constants are of different types.
@@ -117,10 +117,10 @@ class ParameterGenerator:
         return _TYPES[drtype]
 
     def check_type(self, param: dict[str, Any], field: str) -> None:
-        """Check that a value is of its parameter's type; an int for a double becomes a float.
+        """Check that a value is of its parameter's type. An int for a double becomes a float.
 
         Raises:
-            TypeError: it is not.
+            TypeError: the value has another type.
         """
         value, wanted = param[field], self.pytype(param["type"])
         if type(value) is not wanted and not (wanted is float and type(value) is int):

@@ -1,4 +1,4 @@
-"""`Group`: parameters that a user sees together, and the groups inside; ParameterGenerator.Group in ROS."""
+"""`Group`: parameters that a user sees together, and nested groups; ParameterGenerator.Group in ROS."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def check_name(name: str) -> None:
 
 
 def source_of(frame: Any) -> dict[str, Any]:
-    """Where a parameter, group or constant was described."""
+    """Return where a parameter, group or constant was described."""
     return {"srcline": frame.f_lineno, "srcfile": frame.f_code.co_filename}
 
 
@@ -36,7 +36,7 @@ class Group:
         type: how it is shown: "", "collapse", "tab", "hide" or "apply".
         state: whether it is open.
         id: its number; 0 is the outermost group.
-        parent: number of the group around it.
+        parent: number of the enclosing group.
     """
 
     def __init__(self, gen: Any, name: str, type: str, state: bool, id: int, parent: int) -> None:
@@ -50,7 +50,7 @@ class Group:
         gen.groups.append(self)
 
     def get_group(self, id: int) -> Group:
-        """The generator's group with a number."""
+        """Return the generator's group with a number."""
         found: Group = self.gen.groups[id]
         return found
 
@@ -100,25 +100,25 @@ class Group:
         self.parameters.append(made)
 
     def get_parameters(self) -> list[dict[str, Any]]:
-        """The parameters of this group and of those inside."""
+        """Return the parameters of this group and of those inside."""
         return [*self.parameters, *(each for group in self.groups for each in group.get_parameters())]
 
     def get_parents(self) -> list[str]:
-        """Names of the groups around this one, outermost first, and its own."""
+        """Return the names of the groups around this one, outermost first, and its own."""
         above = self.get_group(self.parent).get_parents() if self.id else []
         return [*above, self.name]
 
     def get_field(self) -> str:
-        """Its member in the generated C++ class."""
+        """Return its member in the generated C++ class."""
         return "::".join(each.lower() if each == self.name else each.upper() for each in self.get_parents())
 
     def get_class(self, parent: bool = False) -> str:
-        """Its class in the generated C++, or the one around that."""
+        """Return its class in the generated C++, or the one around that."""
         names = self.get_parents()[:-1] if parent else self.get_parents()
         return "::".join(names).upper()
 
     def to_dict(self) -> dict[str, Any]:
-        """The description of the group: `config_description` of the generated module."""
+        """Return the description of the group: `config_description` of the generated module."""
         return {
             "name": self.name,
             "type": self.type,

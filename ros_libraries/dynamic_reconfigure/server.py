@@ -1,4 +1,4 @@
-"""`Server`: offers a node's parameters to be changed by others."""
+"""`Server`: lets other nodes change a node's parameters."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ class Server:
     """Offers parameters.
 
     It latches `parameter_descriptions` and `parameter_updates`, answers `set_parameters`, and mirrors the values to the
-    parameters of the same names. Values that are set as parameters beforehand count more than the defaults.
+    parameters of the same names. Values that were set as parameters beforehand override the defaults.
 
     Args:
         type: a generated module, e.g. `my_package.cfg.MyConfig`.
         callback: `(config, level) -> config`, called at once and for each change; it may alter values. `level` is the
             union of the levels of the parameters that change.
-        namespace: where topics and parameters are; the node's own by default.
+        namespace: namespace of topics and parameters; the node's own by default.
 
     Raises:
         DynamicReconfigureCallbackException: the callback returns None.
@@ -59,10 +59,10 @@ class Server:
         self.set_service = rospy.Service(self.ns + "set_parameters", Reconfigure, self._set_callback)
 
     def update_configuration(self, changes: Mapping[str, Any]) -> Any:
-        """Change values from within the node, callback included.
+        """Change values from within the node, and call the callback.
 
         Returns:
-            the configuration that came of it.
+            the resulting configuration.
         """
         with self.mutex:
             changed = copy.deepcopy(self.config)
@@ -119,7 +119,7 @@ class Server:
 
 
 def _prefix(namespace: str) -> str:
-    """What comes before the names of topics and parameters."""
+    """Return the prefix of the names of topics and parameters."""
     if not namespace or namespace == "~":
         return "~"
     absolute = namespace if namespace[0] in "/~" else f"~{namespace}"

@@ -1,7 +1,7 @@
 """genmsg for nodes: message and service definitions as objects, their md5sums and full texts.
 
-Names, arguments, results and texts of errors are those of ROS's genmsg 0.6; the code is cfepy's own. cfepy itself makes
-message classes without it; it is here for tools that read definitions, and for `genpy.generator`.
+Names, arguments, results and texts of errors match ROS's genmsg 0.6; the code is cfepy's own. cfepy makes
+message classes without it. It serves tools that read definitions, and `genpy.generator`.
 """
 
 from __future__ import annotations

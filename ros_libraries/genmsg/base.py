@@ -1,4 +1,4 @@
-"""Constants of the definition language, the two errors, and what is said when `log_verbose` asks for it."""
+"""Constants of the definition language, the two errors, and the output that `log_verbose` enables."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class MsgGenerationException(Exception):  # ROS's name
 
 
 def log_verbose(value: bool) -> None:
-    """Whether `log` and `plog` say anything."""
+    """Enable or disable the output of `log` and `plog`."""
     global verbose
     verbose = value
 

@@ -1,4 +1,4 @@
-"""What generators of code take on their command lines."""
+"""Command line arguments of code generators."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 
 def includepath_to_dict(includepath: Iterable[str] | None) -> dict[str, list[str]]:
-    """A search path from arguments "package:folder"."""
+    """Return a search path from arguments "package:folder"."""
     found: dict[str, list[str]] = {}
     for each in includepath or ():
         package, _, folder = each.partition(":")

@@ -27,7 +27,7 @@ def find_msg_dependencies(pkg_name: str, msg_file: str, search_paths: SearchPath
 
 
 def find_srv_dependencies_with_type(pkg_name: str, msg_file: str, search_paths: SearchPath) -> Found:
-    """(type, file) of all that a .srv file needs; see `find_msg_dependencies_with_type`."""
+    """Return (type, file) of all dependencies of a .srv file; see `find_msg_dependencies_with_type`."""
 
     def parts(spec: Any) -> list[str]:
         return [spec.request.full_name, spec.response.full_name]

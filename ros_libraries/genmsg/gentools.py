@@ -14,7 +14,7 @@ _SEPARATOR = "=" * 80 + "\n"
 
 
 def compute_md5_text(msg_context: MsgContext, spec: MsgSpec) -> str:
-    """The text that is hashed: constants, then fields, nested messages as their md5sums."""
+    """Return the text that is hashed: constants, then fields, nested messages as their md5sums."""
     lines = [f"{constant.type} {constant.name}={constant.val_text}" for constant in spec.constants]
     for kind, name in spec.fields():
         bare = bare_msg_type(kind)
@@ -44,10 +44,10 @@ compute_md5_v2 = compute_md5
 
 
 def compute_full_text(msg_context: MsgContext, spec: Any) -> str:
-    """The definition, followed by those of all types that it needs, each once.
+    """Return the definition, followed by the definitions of all types that it needs, each once.
 
     Raises:
-        KeyError: what it needs was not loaded, see `msg_loader.load_depends`.
+        KeyError: a needed type was not loaded, see `msg_loader.load_depends`.
     """
     parts = [f"{spec.text}\n"]
     for name in dict.fromkeys(msg_context.get_all_depends(spec.full_name)):

@@ -1,4 +1,4 @@
-"""`MsgContext`: the definitions that are known, the files they came from, and what they need; part of msg_loader."""
+"""`MsgContext`: the known definitions, their files, and their dependencies; part of msg_loader."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class MsgContext:
         self._files[full_msg_type] = file_path
 
     def get_file(self, full_msg_type: str) -> str | None:
-        """The file that a type came from."""
+        """Return the file that a type came from."""
         return self._files.get(full_msg_type)
 
     def set_depends(self, full_msg_type: str, dependencies: list[str]) -> None:
@@ -39,14 +39,14 @@ class MsgContext:
         self._dependencies[full_msg_type] = dependencies
 
     def get_depends(self, full_msg_type: str) -> list[str] | None:
-        """The types of the fields of a type, or None if that was not said."""
+        """Return the types of the fields of a type, or None if that was not said."""
         return self._dependencies.get(full_msg_type)
 
     def get_all_depends(self, full_msg_type: str) -> list[str]:
-        """The types that a type needs, each followed by those that it needs itself.
+        """Return the types that a type needs, each followed by its own dependencies.
 
         Raises:
-            KeyError: what it needs was not said.
+            KeyError: its dependencies are unknown.
         """
         needed = self._dependencies[full_msg_type]
         return [name for each in needed for name in (each, *self.get_all_depends(each))]
@@ -56,11 +56,11 @@ class MsgContext:
         self._specs[_key(full_msg_type)] = msgspec
 
     def is_registered(self, full_msg_type: str) -> bool:
-        """Whether the definition of a type, or of an array's items, is known."""
+        """Return whether the definition of a type, or of an array's items, is known."""
         return _key(full_msg_type) in self._specs
 
     def get_registered(self, full_msg_type: str) -> Any:
-        """The definition of a type, or of an array's items.
+        """Return the definition of a type, or of an array's items.
 
         Raises:
             KeyError: it is not known.

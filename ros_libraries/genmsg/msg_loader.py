@@ -1,4 +1,4 @@
-"""Reads definitions from texts and files into a `MsgContext`, with those that they need.
+"""Reads definitions and their dependencies from texts and files into a `MsgContext`.
 
 A search path is a dict: folders with .msg (or .srv) files by package name.
 """
@@ -66,11 +66,11 @@ class MsgNotFound(Exception):  # ROS's name
 
 
 def get_msg_file(package: str, base_type: str, search_path: SearchPath, ext: str = EXT_MSG) -> str:
-    """Path of a definition.
+    """Return the path of a definition.
 
     Raises:
-        MsgNotFound: the package or the file is not there.
-        ValueError: the search path is no dict.
+        MsgNotFound: the package or the file does not exist.
+        ValueError: the search path is not a dict.
     """
     _check_path(search_path)
     if package not in search_path:
@@ -85,7 +85,7 @@ def get_msg_file(package: str, base_type: str, search_path: SearchPath, ext: str
 
 
 def get_srv_file(package: str, base_type: str, search_path: SearchPath) -> str:
-    """Path of a service's definition; see `get_msg_file`."""
+    """Return the path of a service's definition; see `get_msg_file`."""
     return get_msg_file(package, base_type, search_path, EXT_SRV)
 
 
@@ -111,10 +111,10 @@ def load_srv_by_type(msg_context: MsgContext, srv_type: str, search_path: Search
 
 
 def convert_constant_value(field_type: str, val: str) -> Any:
-    """The value of a constant, from its text.
+    """Convert the text of a constant to its value.
 
     Raises:
-        InvalidMsgSpec: it does not fit into its type, or there are no constants of the type.
+        InvalidMsgSpec: it does not fit into its type, or the type has no constants.
         ValueError: it is not of its type.
     """
     if field_type in ("float32", "float64"):
@@ -155,7 +155,7 @@ def load_msg_from_string(msg_context: MsgContext, text: str, full_name: str) -> 
 
 
 def load_msg_from_file(msg_context: MsgContext, file_path: str, full_name: str) -> MsgSpec:
-    """Read a definition from a file, and make it known.
+    """Read a definition from a file, and register it.
 
     Raises:
         InvalidMsgSpec: it has a mistake; the text names the file.
@@ -221,7 +221,7 @@ def load_msg_depends(msg_context: MsgContext, spec: MsgSpec, search_path: Search
 
 
 def load_depends(msg_context: MsgContext, spec: Any, msg_search_path: SearchPath) -> list[str]:
-    """As `load_msg_depends`, for a service too.
+    """Load dependencies as `load_msg_depends` does, also for a service.
 
     Raises:
         ValueError: `spec` is neither.

@@ -1,4 +1,4 @@
-"""`MsgSpec` and what it is made of: types, fields and constants."""
+"""`MsgSpec` and its parts: types, fields and constants."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ _BRACKETS = re.compile(r"(\[\d*\])*")
 
 
 def bare_msg_type(msg_type: Any) -> Any:
-    """A type without its brackets."""
+    """Return a type without its brackets."""
     return None if msg_type is None else msg_type.partition("[")[0]
 
 
 def resolve_type(msg_type: str, package_context: str) -> str:
-    """The full name of a type, as it is meant in a definition of some package."""
+    """Return the full name of a type, as used in a definition of a package."""
     bare = bare_msg_type(msg_type)
     if bare == HEADER:
         return HEADER_FULL_NAME
@@ -38,10 +38,10 @@ def resolve_type(msg_type: str, package_context: str) -> str:
 
 
 def parse_type(msg_type: str) -> tuple[str, bool, int | None]:
-    """(type without brackets, whether it is an array, length of a fixed array).
+    """Return (type without brackets, whether it is an array, length of a fixed array).
 
     Raises:
-        ValueError: an empty type, more than one dimension, or a length that is no number.
+        ValueError: an empty type, more than one dimension, or a length that is not a number.
     """
     if not msg_type:
         raise ValueError("Invalid empty type")
@@ -57,7 +57,7 @@ def parse_type(msg_type: str) -> tuple[str, bool, int | None]:
 
 
 def is_valid_msg_type(x: str) -> bool:
-    """Whether a type, with its brackets, is written as one can be."""
+    """Return whether a type, with its brackets, is written as one can be."""
     if not x or x != x.strip():
         return False
     base = bare_msg_type(x)
@@ -65,22 +65,22 @@ def is_valid_msg_type(x: str) -> bool:
 
 
 def is_valid_constant_type(x: str) -> bool:
-    """Whether there can be constants of a type."""
+    """Return whether there can be constants of a type."""
     return x in PRIMITIVE_TYPES
 
 
 def is_valid_msg_field_name(x: str) -> bool:
-    """Whether a field can have a name."""
+    """Return whether a field can have a name."""
     return is_legal_resource_base_name(x)
 
 
 def is_builtin(msg_type_name: str) -> bool:
-    """Whether a type belongs to the language."""
+    """Return whether a type belongs to the language."""
     return msg_type_name in BUILTIN_TYPES
 
 
 def is_header_type(msg_type: str) -> bool:
-    """Whether a type is the header, under any of its names."""
+    """Return whether a type is the header, under any of its names."""
     return msg_type in (HEADER, HEADER_FULL_NAME, "roslib/Header")
 
 
@@ -125,16 +125,16 @@ class MsgSpec:
     """A message definition.
 
     Args:
-        types: of the fields.
-        names: of the fields.
+        types: types of the fields.
+        names: names of the fields.
         constants: the constants.
         text: the definition.
         full_name: "package/Name".
-        package: of the message; that of the full name by default.
-        short_name: its bare name; that of the full name by default.
+        package: package of the message; by default from the full name.
+        short_name: its bare name; by default from the full name.
 
     Raises:
-        InvalidMsgSpec: two fields have one name, or a type is none.
+        InvalidMsgSpec: two fields have one name, or a type is invalid.
     """
 
     __hash__ = None  # type: ignore[assignment]
@@ -166,11 +166,11 @@ class MsgSpec:
         return list(zip(self.types, self.names, strict=True))
 
     def parsed_fields(self) -> list[Field]:
-        """The fields."""
+        """Return the fields."""
         return self._parsed_fields
 
     def has_header(self) -> bool:
-        """Whether the first field is `Header header`."""
+        """Return whether the first field is `Header header`."""
         return self.header_present
 
     def _parts(self) -> tuple[Any, ...]:

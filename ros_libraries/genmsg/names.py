@@ -10,22 +10,22 @@ BASE_RESOURCE_NAME_LEGAL_CHARS_P = re.compile(r"[A-Za-z]\w*")
 
 
 def normalize_package_context(package_context: str) -> str:
-    """A package's name without spaces around it and separators behind it."""
+    """Return a package's name without spaces around it and separators behind it."""
     return package_context.strip().rstrip(PRN_SEPARATOR)
 
 
 def resource_name(res_pkg_name: str, name: str, my_pkg: str | None = None) -> str:
-    """The full name, or the bare one if the package is `my_pkg`."""
+    """Return the full name, or the bare one if the package is `my_pkg`."""
     return name if res_pkg_name == my_pkg else f"{res_pkg_name}{PRN_SEPARATOR}{name}"
 
 
 def resource_name_base(name: str) -> str:
-    """The name without its package."""
+    """Return the name without its package."""
     return name.rpartition(PRN_SEPARATOR)[2]
 
 
 def resource_name_package(name: str) -> str | None:
-    """The package of a name, or None."""
+    """Return the package of a name, or None."""
     package, separator, _ = name.partition(PRN_SEPARATOR)
     return package if separator else None
 
@@ -43,10 +43,10 @@ def package_resource_name(name: str) -> tuple[str, str]:
 
 
 def is_legal_resource_name(name: str | None) -> bool:
-    """Whether a name, with or without package, has legal characters only."""
+    """Return whether a name, with or without package, has legal characters only."""
     return name is not None and "//" not in name and RESOURCE_NAME_LEGAL_CHARS_P.fullmatch(name) is not None
 
 
 def is_legal_resource_base_name(name: str | None) -> bool:
-    """Whether a name without package has legal characters only."""
+    """Return whether a name without package has legal characters only."""
     return name is not None and BASE_RESOURCE_NAME_LEGAL_CHARS_P.fullmatch(name) is not None

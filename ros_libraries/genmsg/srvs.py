@@ -16,8 +16,8 @@ class SrvSpec:
         response: spec of the response.
         text: the definition.
         full_name: "package/Name".
-        short_name: its bare name; that of the full name by default.
-        package: of the service; that of the full name by default.
+        short_name: its bare name; by default from the full name.
+        package: package of the service; by default from the full name.
     """
 
     __hash__ = None  # type: ignore[assignment]

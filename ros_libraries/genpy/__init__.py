@@ -1,7 +1,7 @@
-"""genpy for nodes: what message classes stand on, and the generator of their source text.
+"""genpy for nodes: the base of message classes, and the generator of their source text.
 
-`genpy.message` and `genpy.rostime` are made for each node; the modules beside this one write Python source from
-definitions as ROS's genpy 0.6 does. cfepy itself does not need them: it makes its classes in memory.
+`genpy.message` and `genpy.rostime` are made for each node. The other modules here write Python source from definitions
+as ROS's genpy 0.6 does. cfepy itself does not need them: it makes its classes in memory.
 """
 
 from __future__ import annotations

@@ -10,5 +10,5 @@ SIMPLE_TYPES = list(SIMPLE_TYPES_DICT)
 
 
 def is_simple(type_: str) -> bool:
-    """Whether a type has a code of `struct`."""
+    """Return whether a type has a code of `struct`."""
     return type_ in SIMPLE_TYPES_DICT

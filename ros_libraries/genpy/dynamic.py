@@ -14,16 +14,16 @@ _HEADING = "MSG: "
 
 
 def generate_dynamic(core_type: str, msg_cat: str) -> dict[str, Any]:
-    """Classes of a type and of all types in it.
+    """Return the classes of a type and of all types in it.
 
     Args:
         core_type: name of the first type in the text.
         msg_cat: the full text, as in `_full_text`, a connection header or a bag.
 
     Raises:
-        MsgGenerationException: a type behind the first does not name itself.
+        MsgGenerationException: a type after the first does not name itself.
         InvalidMsgSpec: a definition has a mistake.
-        MsgNotFound: a type is used that is not in the text.
+        MsgNotFound: the text uses a type that it does not define.
     """
     text = msg_cat.replace("roslib/Header", "std_msgs/Header")  # where the header was long ago
     core, *others = text.split(_SEPARATOR)

@@ -34,12 +34,12 @@ _SPECIAL = {
 
 
 def is_special(type_: str) -> bool:
-    """Whether a type is a header, a time or a duration."""
+    """Return whether a type is a header, a time or a duration."""
     return type_ in _SPECIAL
 
 
 def get_special(type_: str) -> Any:
-    """What stands for a special type, or None."""
+    """Return the replacement of a special type, or None."""
     return _SPECIAL.get(type_)
 
 
@@ -58,7 +58,7 @@ def get_registered_ex(msg_context: MsgContext, type_: str) -> MsgSpec:
 
 
 def default_value(msg_context: MsgContext, field_type: str, default_package: str) -> str | None:
-    """Expression for the default of a type; None if it is not known."""
+    """Return an expression for the default of a type, or None if the type is unknown."""
     base, is_array, length = parse_type(field_type)
     if not is_array:
         return _default_of_one(msg_context, field_type, default_package)
@@ -81,11 +81,11 @@ def _default_of_one(msg_context: MsgContext, field_type: str, default_package: s
 
 
 def compute_constructor(msg_context: MsgContext, package: str, type_: str) -> str | None:
-    """Expression that makes a message; None for an array or a type that is not known.
+    """Return an expression that makes a message, or None for an array or an unknown type.
 
     Args:
         msg_context: the known types.
-        package: that of the message in which the type is named.
+        package: package of the message that uses the type.
         type_: the type.
     """
     if is_special(type_):
@@ -116,7 +116,7 @@ def compute_pkg_type(package: str, type_: str) -> tuple[str, str]:
 
 
 def compute_import(msg_context: MsgContext, package: str, type_: str) -> list[str]:
-    """Import statements that a type needs, with those of the types inside it."""
+    """Return the import statements of a type and of the types inside it."""
     bare = bare_msg_type(type_)
     owner, name = compute_pkg_type(package, bare)
     if is_builtin(bare) or is_header_type(bare):
@@ -132,12 +132,12 @@ def compute_import(msg_context: MsgContext, package: str, type_: str) -> list[st
 
 
 def compute_full_text_escaped(msg_context: MsgContext, spec: MsgSpec) -> str:
-    """The full text, fit for triple quotes."""
+    """Return the full text, fit for triple quotes."""
     return genmsg.compute_full_text(msg_context, spec).replace('"""', r"\"\"\"")
 
 
 def flatten(msg_context: MsgContext, msg: MsgSpec) -> MsgSpec:
-    """A spec in which nested messages, not arrays of them, are replaced by their fields, with dotted names."""
+    """Return a spec with nested messages replaced by their fields, with dotted names. Arrays of messages stay."""
     types: list[str] = []
     names: list[str] = []
     for kind, name in msg.fields():
@@ -152,7 +152,7 @@ def flatten(msg_context: MsgContext, msg: MsgSpec) -> MsgSpec:
 
 
 def make_python_safe(spec: MsgSpec) -> MsgSpec:
-    """A spec in which reserved words have an underscore behind them."""
+    """Return a spec in which reserved words end with an underscore."""
     constants = [genmsg.Constant(each.type, _safe(each.name), each.val, each.val_text) for each in spec.constants]
     return MsgSpec(spec.types, [_safe(name) for name in spec.names], constants, spec.text, spec.full_name)
 

@@ -9,7 +9,7 @@ from genmsg import MsgGenerationException
 
 
 def write_modules(outdir: str) -> int:
-    """Write `__init__.py` for the modules that are in a folder; nothing if there is no such folder."""
+    """Write `__init__.py` for the modules in a folder. Does nothing if the folder does not exist."""
     if os.path.isdir(outdir):
         files = sorted(os.listdir(outdir))
         write_module(outdir, [f"_{name[1:-3]}" for name in files if name.endswith(".py") and name != "__init__.py"])

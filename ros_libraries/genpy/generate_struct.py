@@ -1,4 +1,4 @@
-"""Source text that packs and unpacks by `struct`, and the patterns that were used in it."""
+"""Source text that packs and unpacks by `struct`, and the patterns that it uses."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ def clear_patterns() -> None:
 
 
 def get_patterns() -> list[str]:
-    """The patterns used since `clear_patterns`."""
+    """Return the patterns used since `clear_patterns`."""
     return list(_patterns)
 
 
 def compute_struct_pattern(types: Sequence[str] | None) -> str | None:
-    """Pattern of several fields; None if there is none, or one that is not simple."""
+    """Return the pattern of several fields, or None if there is no field or one is not simple."""
     codes = [SIMPLE_TYPES_DICT.get(each) for each in types or ()]
     return "".join(map(str, codes)) if codes and None not in codes else None
 
 
 def reduce_pattern(pattern: str) -> str:
-    """A pattern with counts in place of repetitions."""
+    """Return a pattern with counts in place of repetitions."""
     if not pattern or "%" in pattern:
         return pattern
     runs = [(char, len(list(run))) for char, run in itertools.groupby(pattern)]

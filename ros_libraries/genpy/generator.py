@@ -159,7 +159,7 @@ def _functions(msg_context: MsgContext, spec: MsgSpec) -> Source:
 
 
 def _structs() -> Source:
-    """What `_get_struct_<pattern>` is in the functions."""
+    """Yield the code of `_get_struct_<pattern>` for the functions."""
     yield ""
     yield "_struct_I = genpy.struct_I"
     yield "def _get_struct_I():"
@@ -172,7 +172,7 @@ def _structs() -> Source:
 
 
 def srv_generator(msg_context: MsgContext, spec: Any, search_path: SearchPath) -> Source:
-    """Source of a service: the classes of request and response, and one that holds them; see `msg_generator`."""
+    """Yield the source of a service: request, response, and a class that holds both; see `msg_generator`."""
     for part in (spec.request, spec.response):
         yield from msg_generator(msg_context, part, search_path)
     load_depends(msg_context, spec, search_path)
@@ -197,8 +197,8 @@ class Generator:
     """Writes source files.
 
     Args:
-        what: what it makes, for errors.
-        ext: how the definitions' files end.
+        what: name of its output, for errors.
+        ext: file name extension of the definitions.
         spec_loader_fn: reads one of them.
         generator_fn: `msg_generator` or `srv_generator`.
     """
@@ -210,7 +210,7 @@ class Generator:
         self.spec_loader_fn, self.generator_fn = spec_loader_fn, generator_fn
 
     def generate(self, msg_context: MsgContext, full_type: str, f: str, outdir: str, search_path: SearchPath) -> str:
-        """Write the source of one definition; the path of the file."""
+        """Write the source of one definition. Returns the path of the file."""
         os.makedirs(outdir, exist_ok=True)
         spec = self.spec_loader_fn(msg_context, f, full_type)
         outfile = compute_outfile_name(outdir, os.path.basename(f), self.ext)
@@ -224,10 +224,10 @@ class Generator:
         """Write the sources of several definitions of a package.
 
         Returns:
-            0, or 1 if one of them could not be written, which is said on stderr.
+            0, or 1 if one of them could not be written; the error is on stderr.
 
         Raises:
-            MsgGenerationException: the package's name is none.
+            MsgGenerationException: the package's name is invalid.
         """
         if not genmsg.is_legal_resource_base_name(package):
             problem = f"package name '{package}' is illegal and cannot be used in message generation."

@@ -44,7 +44,7 @@ Source = Iterator[str]
 
 
 def next_var() -> str:
-    """A name for a local variable that was not used yet."""
+    """Return a name for a local variable that was not used yet."""
     _variables[0] += 1
     return f"_v{_variables[0]}"
 
@@ -60,12 +60,12 @@ def push_context(context: str) -> None:
 
 
 def pop_context() -> None:
-    """Put in front of fields what was there before."""
+    """Restore the previous prefix of fields."""
     _contexts.pop()
 
 
 def len_serializer_generator(var: str, is_string: bool, serialize: bool) -> Source:
-    """The length of an array; that of a string is written together with it."""
+    """Yield code for the length of an array. A string's length is written together with the string."""
     if not serialize:
         yield "start = end"
         yield "end += 4"
@@ -77,7 +77,7 @@ def len_serializer_generator(var: str, is_string: bool, serialize: bool) -> Sour
 
 
 def string_serializer_generator(package: str, type_: str, name: str, serialize: bool) -> Source:
-    """A string, or an array of uint8."""
+    """Return a string, or an array of uint8."""
     base, _, length = parse_type(type_)
     octets = base in ("uint8", "char")
     var = _contexts[-1] + name
@@ -120,7 +120,7 @@ def _read_string(var: str, octets: bool, length: int | None) -> Source:
 def array_serializer_generator(
     msg_context: MsgContext, package: str, type_: str, name: str, serialize: bool, is_numpy: bool
 ) -> Source:
-    """An array.
+    """Return an array.
 
     Raises:
         MsgGenerationException: the type is none.
@@ -171,7 +171,7 @@ def _read_numbers(var: str, base: str, length: int | None, is_numpy: bool) -> So
 
 
 def _items(msg_context: MsgContext, package: str, type_: str, var: str, serialize: bool, is_numpy: bool) -> Source:
-    """An array of strings or messages."""
+    """Return an array of strings or messages."""
     base, _, length = parse_type(type_)
     item = f"val{len(_contexts) - 1}"
     push_context("" if base == "string" else f"{item}.")
@@ -200,10 +200,10 @@ def _items(msg_context: MsgContext, package: str, type_: str, var: str, serializ
 def complex_serializer_generator(
     msg_context: MsgContext, package: str, type_: str, name: str, serialize: bool, is_numpy: bool
 ) -> Source:
-    """A field whose type is not simple.
+    """Yield code for a field whose type is not simple.
 
     Raises:
-        MsgGenerationException: its type is not known.
+        MsgGenerationException: its type is unknown.
     """
     if parse_type(type_)[1]:
         yield from array_serializer_generator(msg_context, package, type_, name, serialize, is_numpy)
@@ -248,10 +248,10 @@ def simple_serializer_generator(
 
 
 def serializer_generator(msg_context: MsgContext, spec: Any, serialize: bool, is_numpy: bool) -> Source:
-    """All fields of a message.
+    """Yield code for all fields of a message.
 
     Raises:
-        MsgGenerationException: there is no spec, or a field's type is not known.
+        MsgGenerationException: the spec is missing, or a field's type is unknown.
     """
     if spec is None:
         raise MsgGenerationException("spec is none")

@@ -1,6 +1,6 @@
-"""The node behind `cfepy service call`: calls a service once, and prints what came of it as a line of JSON.
+"""The node behind `cfepy service call`: calls a service once, and prints the result as a line of JSON.
 
-Its argument is a JSON list: the service, the request as YAML values, and the virtual second at which to call, or null.
+Its argument is a JSON list: the service, the request as YAML values, and the virtual second of the call, or null.
 It is executed in a node's universe, with the node's own rospy.
 """
 
@@ -19,7 +19,7 @@ WAIT_S = 60.0
 
 
 def plain(value: Any) -> Any:
-    """A message as dictionaries, lists, numbers and texts."""
+    """Return a message as dictionaries, lists, numbers and texts."""
     names = getattr(value, "__slots__", None)
     if names is not None:
         return {name: plain(getattr(value, name)) for name in names}
@@ -37,7 +37,7 @@ def main() -> None:
     try:
         rospy.wait_for_service(name, timeout=WAIT_S)
         _, response = rosservice.call_service(name, [yaml.safe_load(word) for word in words])
-    except Exception as error:  # whatever goes wrong is what the caller wants to know
+    except Exception as error:  # report any error to the caller
         print(json.dumps({"error": str(error)}))
         sys.exit(1)
     print(json.dumps({"at": time.monotonic(), "response": plain(response), "text": str(response)}))

@@ -33,7 +33,7 @@ def main() -> None:
             keys = {"now": now, "auto": Header(stamp=now)}
             genpy.message.fill_message_args(message, [yaml.safe_load(word) for word in words], keys=keys)
             publisher.publish(message)
-        except Exception as error:  # whatever goes wrong is what the caller wants to know
+        except Exception as error:  # report any error to the caller
             print(json.dumps({"error": f"{topic}: {error}"}))
             sys.exit(1)
         if rate_hz is None:

@@ -1,7 +1,7 @@
 """The node behind `cfepy rosbag`, `rosmsg`, `rossrv`, `rosnode` and `tf`: runs one of ROS's command line tools.
 
 Its argument is a JSON list: the tool, the words that follow it on a command line, and the virtual second at which to
-run it, or null. What the tool prints and its exit status are lines of JSON, so that nobody takes them for those of
+run it, or null. The tool's output and exit status are printed as lines of JSON, to distinguish them from the output of
 other nodes. It is executed in a node's universe, with the node's own libraries.
 """
 
@@ -55,11 +55,11 @@ TOOLS: Mapping[str, Callable[[], None]] = {
 
 
 class Told(io.TextIOBase):
-    """What the tool writes to one of its streams, told line by line.
+    """A stream of the tool, reported line by line.
 
     Args:
-        stream: where to.
-        key: what the lines are called: "out" or "err".
+        stream: the stream to print to.
+        key: name of the lines: "out" or "err".
     """
 
     def __init__(self, stream: TextIO, key: str) -> None:
@@ -89,13 +89,13 @@ def main() -> None:
     console = sys.stdout
     out, err = Told(console, "out"), Told(console, "err")
     sys.argv[:] = [tool, *words]
-    sys.stdout, sys.stderr, sys.stdin = out, err, io.StringIO("y\n")  # of those who ask before they do it
+    sys.stdout, sys.stderr, sys.stdin = out, err, io.StringIO("y\n")  # confirms the prompts of tools
     try:
         TOOLS[tool]()
         status: object = 0
     except SystemExit as end:
         status = end.code or 0
-    except Exception as error:  # whatever goes wrong in a tool is what its user wants to know
+    except Exception as error:  # report any error of the tool to its user
         status = f"{tool}: {type(error).__name__}: {error}"
     if not isinstance(status, int):
         print(status, file=err)

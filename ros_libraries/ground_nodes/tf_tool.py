@@ -18,7 +18,7 @@ WAIT_S = 1.0  # how long tf_echo waits before it complains
 
 
 def main(words: Sequence[str]) -> None:
-    """Do what a command line says.
+    """Execute a command line.
 
     Args:
         words: `echo FRAME FRAME HZ [COUNT]`, or `frames SECONDS`.
@@ -34,10 +34,10 @@ def echo(source: str, target: str, rate_hz: str, count: str = "") -> None:
     """Print the transform between two frames at a rate, as tf_echo does.
 
     Args:
-        source: the frame that it is seen from.
-        target: the frame whose place it tells.
+        source: the frame of the observer.
+        target: the frame whose pose it prints.
         rate_hz: how often.
-        count: end after so many; nothing is until the node is shut down.
+        count: end after this many; without it, end when the node is shut down.
     """
     rospy.init_node("tf_echo", anonymous=True)
     buffer = tf2_ros.Buffer(debug=False)
@@ -57,7 +57,7 @@ def echo(source: str, target: str, rate_hz: str, count: str = "") -> None:
 
 
 def _text(found: Any) -> str:
-    """A transform as tf_echo shows it."""
+    """Return a transform as tf_echo shows it."""
     moved, turned = found.transform.translation, found.transform.rotation
     angles = Matrix3x3(Quaternion(turned.x, turned.y, turned.z, turned.w)).getRPY()
     return "\n".join(
@@ -79,7 +79,7 @@ def _numbers(*values: float) -> str:
 
 
 def frames(until_s: str) -> None:
-    """Listen to transforms, then print one line of JSON: what view_frames writes as a graph, and what is in it.
+    """Listen to transforms, then print one line of JSON: the graph that view_frames writes, and the data in it.
 
     Args:
         until_s: virtual second at which to print.

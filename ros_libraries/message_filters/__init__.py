@@ -1,6 +1,6 @@
-"""message_filters for nodes: messages of several topics brought together by their stamps.
+"""message_filters for nodes: matches messages of several topics by their stamps.
 
-Names, arguments and results are those of ROS's message_filters 1.15; the code is cfepy's own, on top of `rospy`. It is
+Names, arguments and results match ROS's message_filters 1.15; the code is cfepy's own, on top of `rospy`. It is
 executed anew in each node that imports it.
 """
 
@@ -14,7 +14,7 @@ from .cache import Cache
 from .filters import SimpleFilter, Subscriber
 from .synchronizers import ApproximateTimeSynchronizer, TimeSynchronizer
 
-# As in ROS, what a star import brings has rospy and threading in it.
+# As in ROS, a star import includes rospy and threading.
 __all__ = [
     "ApproximateTimeSynchronizer",
     "Cache",

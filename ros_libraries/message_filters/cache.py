@@ -9,12 +9,12 @@ from .filters import SimpleFilter, stamp_of
 
 
 class Cache(SimpleFilter):
-    """Keeps the last messages that came, and passes them on.
+    """Keeps the last messages that arrived, and passes them on.
 
     Args:
-        f: the filter they come from.
+        f: the filter that sends them.
         cache_size: how many are kept.
-        allow_headerless: give messages without a header the time at which they come.
+        allow_headerless: use the time of arrival for messages without a header.
     """
 
     def __init__(self, f: SimpleFilter, cache_size: int = 1, allow_headerless: bool = False) -> None:
@@ -44,7 +44,7 @@ class Cache(SimpleFilter):
         return zip(self.cache_times, self.cache_msgs, strict=True)
 
     def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
-        """The messages between two times, both included, in the order in which they came.
+        """Return the messages between two times, both included, in the order of arrival.
 
         Raises:
             AssertionError: the first time is after the second.
@@ -53,25 +53,25 @@ class Cache(SimpleFilter):
         return [msg for stamp, msg in self._pairs() if from_stamp <= stamp <= to_stamp]
 
     def getElemAfterTime(self, stamp: Any) -> Any:
-        """The first message that came with this stamp or a later one, or None."""
+        """Return the first message that came with this stamp or a later one, or None."""
         return next((msg for time, msg in self._pairs() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Any) -> Any:
-        """The last message that came with this stamp or an earlier one, or None."""
+        """Return the last message that came with this stamp or an earlier one, or None."""
         older = [msg for time, msg in self._pairs() if time <= stamp]
         return older[-1] if older else None
 
     def getLatestTime(self) -> Any:
-        """Stamp of the message that came last, or None."""
+        """Return the stamp of the message that came last, or None."""
         return self.cache_times[-1] if self.cache_times else None
 
     getLastestTime = getLatestTime  # the misspelt name is part of ROS's interface
 
     def getOldestTime(self) -> Any:
-        """Stamp of the message that came first of those kept, or None."""
+        """Return the stamp of the kept message that arrived first, or None."""
         return self.cache_times[0] if self.cache_times else None
 
     def getLast(self) -> Any:
-        """The first message that came with the last stamp, or None."""
+        """Return the first message that came with the last stamp, or None."""
         latest = self.getLatestTime()
         return None if latest is None else self.getElemAfterTime(latest)

@@ -1,4 +1,4 @@
-"""The base of all filters, and the one that stands at the beginning: a subscription."""
+"""The base of all filters, and the first filter of a chain: a subscription."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ _NO_STAMP = (
 
 
 class SimpleFilter:
-    """Something that messages come out of."""
+    """A source of messages."""
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., object], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., object], *args: Any) -> int:
-        """Have `cb` called with what comes out, followed by `args`.
+        """Register `cb`, which is called with each message followed by `args`.
 
         Returns:
             number of the connection.
@@ -30,13 +30,13 @@ class SimpleFilter:
         return number
 
     def signalMessage(self, *msg: Any) -> None:
-        """Pass on what comes out."""
+        """Pass a message on to the callbacks."""
         for callback, args in self.callbacks.values():
             callback(*msg, *args)
 
 
 class Subscriber(SimpleFilter):
-    """Passes on the messages of a topic; takes the arguments of rospy.Subscriber, and offers what that offers."""
+    """Passes on the messages of a topic. It has the arguments and the attributes of rospy.Subscriber."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__()
@@ -49,7 +49,7 @@ class Subscriber(SimpleFilter):
         self.signalMessage(msg)
 
     def getTopic(self) -> Any:
-        """The topic as it was given."""
+        """Return the topic as it was given."""
         return self.topic
 
     def __getattr__(self, key: str) -> Any:
@@ -57,7 +57,10 @@ class Subscriber(SimpleFilter):
 
 
 def stamp_of(msg: Any, allow_headerless: bool) -> Any:
-    """Stamp of a message; of one without a header now, or None with a warning when that is not allowed."""
+    """Return the stamp of a message.
+
+    Without a header, return the current time, or None with a warning if that is not allowed.
+    """
     if hasattr(msg, "header") and hasattr(msg.header, "stamp"):
         return msg.header.stamp
     if allow_headerless:

@@ -1,4 +1,4 @@
-"""Synchronizers: one message of each of several filters at a time, of equal or nearly equal stamps."""
+"""Synchronizers: one message of each of several filters at a time, with equal or nearly equal stamps."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ Queue = dict[Any, Any]
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Passes on messages with the same stamp, one of each filter, as soon as all are there.
+    """Passes on messages with the same stamp, one from each filter, as soon as the set is complete.
 
     Args:
         fs: the filters.
-        queue_size: how many messages of each wait; the oldest stamp goes first.
+        queue_size: how many messages of each wait; the oldest stamp is dropped first.
         reset: forget a filter's messages when simulated time jumps back.
     """
 
@@ -57,7 +57,7 @@ class TimeSynchronizer(SimpleFilter):
                 self._emit([stamp] * len(self.queues))
 
     def _follow_clock(self, queue: Queue, index: int | None) -> bool:
-        """Notice that simulated time jumped back: whether other filters have yet to notice it."""
+        """Detect that simulated time jumped back. Returns whether other filters have yet to detect it."""
         if not self.enable_reset or rospy.rostime.is_wallclock():
             return False
         now = rospy.Time.now()
@@ -82,13 +82,13 @@ class TimeSynchronizer(SimpleFilter):
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """Passes on messages whose stamps differ by less than a slop, one of each filter.
+    """Passes on messages whose stamps differ by less than a slop, one from each filter.
 
     Args:
         fs: the filters.
         queue_size: how many messages of each wait.
         slop: in s.
-        allow_headerless: give messages without a header the time at which they come.
+        allow_headerless: use the time of arrival for messages without a header.
         reset: forget a filter's messages when simulated time jumps back.
     """
 
@@ -106,7 +106,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.last_added = rospy.Time()
 
     def add(self, msg: Any, my_queue: Queue, my_queue_index: int | None = None) -> None:
-        """A message came; see `TimeSynchronizer.add`."""
+        """Add a message; see `TimeSynchronizer.add`."""
         stamp = stamp_of(msg, self.allow_headerless)
         if stamp is None:
             return
@@ -137,6 +137,6 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
                 return
 
     def _near(self, stamp: Any, queue: Queue) -> list[Any]:
-        """The stamps in a queue that are no further away than the slop, nearest first."""
+        """Return the stamps in a queue that differ by at most the slop, nearest first."""
         near = [each for each in queue if abs(each - stamp) <= self.slop]
         return sorted(near, key=lambda each: abs(each - stamp))

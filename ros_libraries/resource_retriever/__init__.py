@@ -1,7 +1,7 @@
-"""resource_retriever for nodes: files by URL, those of ROS packages as `package://name/path`.
+"""resource_retriever for nodes: files by URL, including files of ROS packages as `package://name/path`.
 
-Names and results are those of ROS's resource_retriever 1.12; the code is cfepy's own. Files are read as the node sees
-them; other schemes go to urllib, which refuses the network in a simulation.
+Names and results match ROS's resource_retriever 1.12; the code is cfepy's own. Files are read as the node sees
+them. Other schemes use urllib, which refuses the network in a simulation.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ _rospack: Any = None
 
 
 def get_rospack() -> Any:
-    """The node's rospkg.RosPack."""
+    """Return the node's rospkg.RosPack."""
     global _rospack
     if _rospack is None:
         _rospack = rospkg.RosPack()
@@ -25,7 +25,7 @@ def get_rospack() -> Any:
 
 
 def get_filename(url: str, use_protocol: bool = True) -> str:
-    """Where the file of a package lies; other URLs stay as they are.
+    """Return the path of a package's file. Other URLs stay unchanged.
 
     Args:
         url: e.g. "package://my_robot/meshes/base.stl".
@@ -33,7 +33,7 @@ def get_filename(url: str, use_protocol: bool = True) -> str:
 
     Raises:
         ResourceNotFound: there is no such package.
-        Exception: there is no path behind the package's name.
+        Exception: the path after the package's name is missing.
     """
     if not url.startswith(PACKAGE_PREFIX):
         return url
@@ -44,7 +44,7 @@ def get_filename(url: str, use_protocol: bool = True) -> str:
 
 
 def get(url: str) -> bytes:
-    """Contents of a file.
+    """Return the contents of a file.
 
     Raises:
         Exception: there is no such file.

@@ -1,4 +1,4 @@
-"""What rosnode, rosservice and rostopic have in common; a package of its own, which no source of ROS replaces."""
+"""The common part of rosnode, rosservice and rostopic; a separate package, which no ROS source replaces."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from typing import Any
 
 
 def command_of(tool: str, name: str) -> Any:
-    """One command of a tool, under the name by which ROS's tests and other tools call it.
+    """Return one command of a tool, under the name that ROS's tests and other tools use.
 
     Args:
         tool: the tool's package.
-        name: `_rosnode_cmd_list` and the like, which take the command line, or `_fullusage`.
+        name: `_rosnode_cmd_list` and similar names, which take the command line, or `_fullusage`.
 
     Raises:
-        AttributeError: the tool has nothing of that name.
+        AttributeError: the tool has no such command.
     """
     module = importlib.import_module(f"{tool}.command")
     prefix = f"_{tool}_cmd_"

@@ -1,4 +1,4 @@
-"""Running the tests of a suite as rosunit and rostest do it; apart from both, which sources of ROS may replace."""
+"""Runs the tests of a suite as rosunit and rostest do; separate from both, because ROS sources may replace them."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from rosunit.core import XML_OUTPUT_FLAG, create_xml_runner
 
 
 def suite_of(test: Any) -> unittest.TestSuite:
-    """The tests of a TestCase class, or of what a dotted name stands for."""
+    """Return the tests of a TestCase class, or of the class or suite behind a dotted name."""
     loader = unittest.TestLoader()
     return loader.loadTestsFromName(test) if isinstance(test, str) else loader.loadTestsFromTestCase(test)
 
 
 def run_suite(package: str, test_name: str, test: Any, sysargs: Sequence[str]) -> unittest.TestResult:
-    """Run tests as a command line says: `--text` shows them, `--gtest_output=xml:FILE` names the file for the results.
+    """Run tests with a command line: `--text` shows them, `--gtest_output=xml:FILE` names the file for the results.
 
     Args:
-        package: of the test.
+        package: package of the test.
         test_name: its name.
         test: a TestCase class, or a dotted name.
         sysargs: the command line.

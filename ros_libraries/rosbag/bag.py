@@ -1,7 +1,7 @@
 """`rosbag.Bag`: messages read from and written to a bag (rosbag's Python API).
 
-Imports rospy, genpy, rosbag_storage and the modules beside it. The names that begin with an underscore are those that
-tools around rosbag use.
+Imports rospy, genpy, rosbag_storage and the modules beside it. Tools around rosbag use the names that begin with an
+underscore.
 """
 
 from __future__ import annotations
@@ -59,17 +59,17 @@ class Bag(Indexed):
     """A bag.
 
     Args:
-        f: name of the file, or a binary stream that can be sought.
-        mode: "r" to read, "w" to write a new one, "a" to go on with one.
-        compression: of what is written; see `Compression`.
-        chunk_threshold: bytes, without compression, with which a chunk is ended.
-        allow_unindexed: open a bag that was not closed, too; `reindex` makes it readable.
-        options: "compression" and "chunk_threshold" in a dictionary, before the arguments.
-        skip_index: read where messages are only when it is first needed.
+        f: name of the file, or a seekable binary stream.
+        mode: "r" to read, "w" to write a new one, "a" to append to one.
+        compression: compression of written chunks; see `Compression`.
+        chunk_threshold: size in bytes, without compression, at which a chunk ends.
+        allow_unindexed: also open a bag that was not closed; `reindex` makes it readable.
+        options: "compression" and "chunk_threshold" in a dictionary, which override the arguments.
+        skip_index: read the positions of messages only when they are first needed.
 
     Raises:
-        ValueError: an argument that cannot be.
-        ROSBagException: it is no bag; ROSBagUnindexedException when it was not closed.
+        ValueError: an invalid argument.
+        ROSBagException: it is not a bag; ROSBagUnindexedException if it was not closed.
         OSError: the file cannot be opened.
     """
 
@@ -133,7 +133,7 @@ class Bag(Indexed):
             if not allow_unindexed:
                 raise
 
-    # -- what it is --------------------------------------------------------------------------------------------------
+    # -- properties --------------------------------------------------------------------------------------------------
 
     @property
     def options(self) -> dict[str, Any]:
@@ -157,7 +157,7 @@ class Bag(Indexed):
 
     @property
     def size(self) -> int:
-        """Bytes of the file, with what is about to be written."""
+        """Bytes of the file, including unwritten data."""
         file = self._opened()
         at = file.tell()
         size = int(file.seek(0, 2))
@@ -166,7 +166,7 @@ class Bag(Indexed):
 
     @property
     def compression(self) -> str:
-        """Compression of what is written from now on; see `Compression`."""
+        """Compression of data written from now on; see `Compression`."""
         return self._compression
 
     @compression.setter
@@ -177,7 +177,7 @@ class Bag(Indexed):
 
     @property
     def chunk_threshold(self) -> int:
-        """Bytes with which a chunk is ended."""
+        """Size in bytes at which a chunk ends."""
         return self._chunk_threshold
 
     @chunk_threshold.setter
@@ -196,26 +196,26 @@ class Bag(Indexed):
         self.close()
 
     def __str__(self) -> str:
-        """What `rosbag info` shows."""
+        """Return the output of `rosbag info`."""
         return info.text_of(self)
 
     def get_message_count(self, topic_filters: str | list[str] | None = None) -> int:
-        """How many messages there are, on some topics or on all."""
+        """Return how many messages there are, on some topics or on all."""
         if topic_filters is not None:
             topics = self.get_type_and_topic_info(topic_filters).topics
             return sum(topic.message_count for topic in topics.values())
         return info.count(self._all_chunks(), self._connections.values())
 
     def get_start_time(self) -> float:
-        """Time of the first message in s; ROSBagException when there is none."""
+        """Return the time of the first message in s. Raises ROSBagException if there is none."""
         return info.times_of(self._all_chunks())[0]
 
     def get_end_time(self) -> float:
-        """Time of the last message in s; ROSBagException when there is none."""
+        """Return the time of the last message in s. Raises ROSBagException if there is none."""
         return info.times_of(self._all_chunks())[1]
 
     def get_type_and_topic_info(self, topic_filters: str | list[str] | None = None) -> views.TypesAndTopicsTuple:
-        """The types of messages, and what there is on each topic (or on some)."""
+        """Return the types of messages, and the data of each topic (or of some topics)."""
         return info.types_and_topics(self, topic_filters)
 
     def get_compression_info(self) -> views.CompressionTuple:
@@ -233,14 +233,14 @@ class Bag(Indexed):
         raw: bool = False,
         return_connection_header: bool = False,
     ) -> Iterator[Any]:
-        """The messages, by time.
+        """Return the messages, ordered by time.
 
         Args:
-            topics: one topic or several; all when there are none.
+            topics: one topic or several; all if there are none.
             start_time: `rospy.Time` of the earliest.
             end_time: `rospy.Time` of the latest.
-            connection_filter: takes (topic, type, md5sum, definition, connection header) and says whether messages of
-                that connection are wanted.
+            connection_filter: takes (topic, type, md5sum, definition, connection header) and returns whether to read
+                messages of that connection.
             raw: give (type, bytes, md5sum, position, class) in place of the message.
             return_connection_header: give the connection header as well.
 
@@ -266,12 +266,12 @@ class Bag(Indexed):
     def _read_message(
         self, position: tuple[int, int], raw: bool = False, return_connection_header: bool = False
     ) -> Any:
-        """The message at the position of an index entry."""
+        """Return the message at the position of an index entry."""
         self.flush()
         return self._message_at(position, raw, return_connection_header)
 
     def _get_yaml_info(self, key: str | None = None) -> Any:
-        """What `rosbag info --yaml` shows, or one value of it."""
+        """Return the output of `rosbag info --yaml`, or one value of it."""
         return info.yaml_of(self, key)
 
     # -- writing -----------------------------------------------------------------------------------------------------
@@ -286,11 +286,11 @@ class Bag(Indexed):
             msg: the message; with `raw`, (type, bytes, md5sum, class), or the same with a position before the class.
             t: `rospy.Time` of it; None is now.
             raw: see `msg`.
-            connection_header: written as it is with the topic's first message, and not looked at later; None makes one.
+            connection_header: written unchanged with the topic's first message, and ignored later; None makes one.
 
         Raises:
             ValueError: no topic, no message, or the bag is closed.
-            ROSBagException: the class of a raw message is not known.
+            ROSBagException: the class of a raw message is unknown.
         """
         self._opened()
         if not topic:
@@ -310,19 +310,19 @@ class Bag(Indexed):
             self.flush()
 
     def flush(self) -> None:
-        """Write what was kept back to the file; ValueError when the bag is closed."""
+        """Write buffered data to the file; ValueError if the bag is closed."""
         self._opened()
         self._storage.flush()
 
     def reindex(self) -> Iterator[int]:
-        """Make the index of a bag anew; an iterator over the positions of the chunks does it."""
+        """Rebuild the index of a bag. Iterate over the result to do it; it yields the positions of the chunks."""
         self._opened()
         self._topic_connections.clear()
         self._connection_indexes_read = True
         return self._storage.reindex()
 
     def close(self) -> None:
-        """Close the bag; a second time does nothing."""
+        """Close the bag. Further calls do nothing."""
         if self._file is None:
             return
         try:
@@ -332,11 +332,11 @@ class Bag(Indexed):
             self._close_file()
 
     def set_encryptor(self, encryptor: str | None = None, param: str | None = None) -> None:
-        """Encrypt what is written: there is no encryption here.
+        """Set the encryption of written data, which is not supported here.
 
         Raises:
             ROSBagException: there are chunks already.
-            ROSBagEncryptNotSupportedException: an encryptor is asked for.
+            ROSBagEncryptNotSupportedException: an encryptor was given.
         """
         if self._storage.contents.chunks:
             raise ROSBagException("Cannot set encryptor after chunks are written")

@@ -1,4 +1,4 @@
-"""The index of a bag as tools around rosbag see it, with the names that rosbag gives it. Imports rosbag_storage."""
+"""The index of a bag for tools around rosbag, with rosbag's names. Imports rosbag_storage."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from .search import Filter
 
 
 class Indexed:
-    """What `Bag` knows of its file; `_connection_indexes_read` says whether that includes where each message is."""
+    """The index of a `Bag`. `_connection_indexes_read` is true if the positions of messages have been read."""
 
     _storage: BagFile
     _connection_indexes_read: bool
@@ -22,7 +22,7 @@ class Indexed:
         raise NotImplementedError
 
     def _index(self) -> Contents:
-        """The contents, with the entries."""
+        """Return the contents, with the entries."""
         self.flush()
         if not self._connection_indexes_read:
             self._connection_indexes_read = True
@@ -30,7 +30,7 @@ class Indexed:
         return self._storage.contents
 
     def _all_chunks(self) -> list[Chunk]:
-        """The chunks, with the one that is being written."""
+        """Return the chunks, with the one that is being written."""
         return self._storage.all_chunks()
 
     @property

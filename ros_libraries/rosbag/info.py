@@ -1,4 +1,4 @@
-"""What there is to know of a bag: numbers, and the texts of `rosbag info`. Imports rosbag_storage and yaml."""
+"""Information about a bag: numbers, and the texts of `rosbag info`. Imports rosbag_storage and yaml."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ NS_PER_S = 1_000_000_000
 
 
 class Compression:
-    """How chunks can be compressed; LZ4 needs the package lz4."""
+    """The compressions of chunks. LZ4 needs the package lz4."""
 
     NONE = compression.NONE
     BZ2 = compression.BZ2
@@ -27,10 +27,10 @@ class Compression:
 
 
 def check_options(kind: Any, chunk_threshold: int) -> None:
-    """Check what a bag is to be written with.
+    """Check the options for writing a bag.
 
     Raises:
-        ValueError: it cannot be.
+        ValueError: an option is invalid.
     """
     allowed, hint = [Compression.NONE, Compression.BZ2, Compression.LZ4], ""
     if kind == Compression.LZ4:
@@ -48,15 +48,15 @@ def check_options(kind: Any, chunk_threshold: int) -> None:
 
 
 def seconds(ns: int) -> float:
-    """A time in s, with the rounding of `Time.to_sec`."""
+    """Return a time in s, with the rounding of `Time.to_sec`."""
     return ns // NS_PER_S + (ns % NS_PER_S) / 1e9
 
 
 def times_of(chunks: list[Chunk]) -> tuple[float, float]:
-    """Times of the first and the last message in s.
+    """Return the times of the first and the last message in s.
 
     Raises:
-        ROSBagException: there is none.
+        ROSBagException: there is no message.
     """
     if not chunks:
         raise ROSBagException("Bag contains no message")
@@ -64,25 +64,25 @@ def times_of(chunks: list[Chunk]) -> tuple[float, float]:
 
 
 def count(chunks: list[Chunk], connections: Iterable[Connection]) -> int:
-    """How many messages connections have."""
+    """Return how many messages connections have."""
     return sum(chunk.connection_counts.get(each.id, 0) for each in connections for chunk in chunks)
 
 
 def compression_of(chunks: list[Chunk], default: str) -> CompressionTuple:
-    """How most chunks are compressed; `default` when there are none."""
+    """Return the compression of most chunks, or `default` without chunks."""
     uses = _uses(chunks)
     main = uses[0][1] if uses else default
     return CompressionTuple(main, sum(each.size for each in chunks), sum(each.stored_size for each in chunks))
 
 
 def _uses(chunks: list[Chunk]) -> list[tuple[int, str]]:
-    """How many chunks are compressed how, the most first."""
+    """Return how many chunks are compressed how, the most first."""
     kinds = [chunk.compression for chunk in chunks]
     return sorted(((kinds.count(kind), kind) for kind in dict.fromkeys(kinds)), reverse=True)
 
 
 def types_and_topics(bag: Bag, topic_filters: str | list[str] | None = None) -> TypesAndTopicsTuple:
-    """See `Bag.get_type_and_topic_info`; types are those of all topics."""
+    """See `Bag.get_type_and_topic_info`. The types include all topics."""
     md5sums: dict[str, str] = {}
     for connection in bag._connections.values():
         md5sums.setdefault(connection.datatype, connection.md5sum)
@@ -101,7 +101,7 @@ def _topic(bag: Bag, connections: list[Connection]) -> TopicTuple:
 
 
 def _frequency(bag: Bag, connections: list[Connection]) -> float | None:
-    """From the median of the periods, in Hz; None without the index, and for less than two messages."""
+    """Return the frequency in Hz from the median period; None without the index, or with less than two messages."""
     if not bag._connection_indexes_read:
         return None
     stamps = [seconds(entry.time) for entry in bag._storage.contents.entries(connections)]
@@ -117,7 +117,7 @@ def _frequency(bag: Bag, connections: list[Connection]) -> float | None:
 
 
 def text_of(bag: Bag) -> str:
-    """What `rosbag info` shows."""
+    """Return the output of `rosbag info`."""
     rows: list[tuple[str, str]] = [("path", str(bag.filename))] if bag.filename else []
     rows.append(("version", _version(bag)))
     chunks = bag._all_chunks()
@@ -215,7 +215,7 @@ def _topic_texts(topics: dict[str, TopicTuple], type_width: int) -> list[str]:
 
 
 def human_size(size: float) -> str:
-    """Bytes as KB, MB, ..."""
+    """Return bytes as KB, MB, ..."""
     for unit in ("KB", "MB", "GB", "TB", "PB", "EB", "ZB", "YB"):
         size /= 1024.0
         if size < 1024.0:
@@ -236,7 +236,10 @@ def human_frequency(frequency: float) -> str:
 
 
 def yaml_of(bag: Bag, key: str | None) -> Any:
-    """What `rosbag info --yaml` shows; with a key such as "topics[0].type" only that value, None when there is none."""
+    """Return the output of `rosbag info --yaml`.
+
+    With a key such as "topics[0].type", return only that value or None.
+    """
     text = _yaml(bag)
     if not key:
         return text

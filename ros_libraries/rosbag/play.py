@@ -1,7 +1,7 @@
-"""The node `play` of package rosbag: publishes what is in bags, as fast as it was recorded (`rosbag play`).
+"""The node `play` of package rosbag: publishes the messages of bags, as fast as they were recorded (`rosbag play`).
 
-Messages go out as the bytes that they are. Bags are played by the clock of the computer, which is virtual; with
-`--clock` the time in the bags is told on /clock, for nodes with `use_sim_time`. Imports rospy and the modules
+Messages are published as their recorded bytes. Bags are played by the clock of the computer, which is virtual. With
+`--clock`, the time in the bags is published on /clock, for nodes with `use_sim_time`. Imports rospy and the modules
 beside it.
 """
 
@@ -25,11 +25,14 @@ from .bag import Bag
 from .raw import publisher_of
 
 NS_PER_S = 1_000_000_000
-POLL_S = 0.1  # between two looks whether subscribers have come, and while playing is paused
+POLL_S = 0.1  # interval of checks for subscribers, and while playing is paused
 
 
 def _time(ns: int) -> Any:
-    """A time to the nanosecond; seconds in a float have less, and would leave out the last message."""
+    """Return a time exact to the nanosecond.
+
+    Seconds in a float are less exact, and would leave out the last message.
+    """
     return rospy.Time(*divmod(ns, NS_PER_S))
 
 
@@ -64,7 +67,7 @@ class Player:
         return Bag(name)
 
     def run(self) -> None:
-        """Play; returns when all is played, or when the node is shut down."""
+        """Play. Returns when all messages are played, or when the node is shut down."""
         self._advertise()
         time.sleep(self._options.delay)
         self._await_subscribers()
@@ -113,7 +116,7 @@ class Player:
     # -- time --------------------------------------------------------------------------------------------------------
 
     def _due(self, stamp: Any) -> float:
-        """The computer's time at which a time in the bags is due."""
+        """Return the computer's time at which a time in the bags is due."""
         return float(self._origin + (stamp - self._first).to_sec() / self._options.rate)
 
     def _skip_gap(self, before: Any, stamp: Any) -> None:
@@ -123,7 +126,7 @@ class Player:
             self._origin -= (stamp - before).to_sec() / self._options.rate
 
     def _wait_until(self, stamp: Any) -> None:
-        """Wait until a time in the bags is due; the clock is told on the way."""
+        """Wait until a time in the bags is due, and publish the clock meanwhile."""
         while not rospy.is_shutdown():
             self._wait_while_paused()
             now, due = time.time(), self._due(stamp)
@@ -159,7 +162,7 @@ class Player:
 
 
 def options_of(argv: Sequence[str]) -> argparse.Namespace:
-    """The options of `rosbag play`."""
+    """Return the options of `rosbag play`."""
     parser = PlayParser(prog=os.path.basename(argv[0]), description="Play bags back.")
     return parser.parse_play(rospy.myargv(argv)[1:])
 

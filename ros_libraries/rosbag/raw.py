@@ -1,4 +1,4 @@
-"""Publishing serialised messages as they are. Imports rospy and genpy."""
+"""Publishes serialised messages unchanged. Imports rospy and genpy."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class RawMessage(genpy.Message):  # type: ignore[misc]  # it is made for each no
 
     __slots__ = ["data"]
     _slot_types: ClassVar[list[str]] = []
-    _has_header = False  # what is in the bytes stays as it is
+    _has_header = False  # the bytes are left unchanged
 
     def __init__(self, data: bytes = b"") -> None:
         self.data = data
@@ -36,7 +36,7 @@ class RawMessage(genpy.Message):  # type: ignore[misc]  # it is made for each no
 
 
 def publisher_of(topic: str, connection: Connection, queue_size: int) -> Any:
-    """A publisher of what a bag has of a connection; it latches if the recorded one did."""
+    """Return a publisher for the messages of a bag's connection. It latches if the recorded one did."""
     about = {"_type": connection.datatype, "_md5sum": connection.md5sum, "_full_text": connection.msg_def}
     kind = type("RawMessage", (RawMessage,), {"__slots__": [], **about})
     is_latching = connection.header.get("latching") in (b"1", "1")

@@ -1,6 +1,6 @@
 """The node `record` of package rosbag: topics into bags (wiki.ros.org/rosbag/Commandline, `rosbag record`).
 
-Messages are kept as they came, with the time at which they came. Imports rospy and the modules beside it.
+Messages are stored unchanged, with the time of their arrival. Imports rospy and the modules beside it.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class Recorder:
         self.done = False
 
     def run(self) -> None:
-        """Record; returns when the node is to end."""
+        """Record. Returns when the node is to end."""
         rospy.on_shutdown(self.close)
         self._stamp = time.strftime("%Y-%m-%d-%H-%M-%S", time.localtime())
         with self._lock:
@@ -56,7 +56,7 @@ class Recorder:
     # -- topics ------------------------------------------------------------------------------------------------------
 
     def _look(self) -> None:
-        """Subscribe to what is wanted and new."""
+        """Subscribe to new topics that are to be recorded."""
         for topic in self._wanted():
             if topic not in self._subscribers:
                 self._say("Subscribing to %s", topic)
@@ -92,7 +92,7 @@ class Recorder:
         self._bag.write(topic, parts, now, raw=True, connection_header=header)
 
     def _has_enough(self, topic: str) -> bool:
-        """Count a message; whether it is one too many."""
+        """Count a message. Returns whether it exceeds the limit."""
         count = self._counts[topic] = self._counts.get(topic, 0) + 1
         limit = self._options.limit
         if limit and count >= limit and topic in self._subscribers:
@@ -155,13 +155,13 @@ class Recorder:
 
 
 def duration_of(text: str) -> float:
-    """Seconds of "10", "10s", "5m" or "1h", for argparse."""
+    """Return seconds of "10", "10s", "5m" or "1h", for argparse."""
     unit = UNITS.get(text[-1:])
     return float(text) if unit is None else float(text[:-1]) * unit
 
 
 def options_of(argv: Sequence[str]) -> argparse.Namespace:
-    """The options of `rosbag record`; those for transports are accepted."""
+    """Return the options of `rosbag record`. Transport options are accepted."""
     parser = argparse.ArgumentParser(prog=os.path.basename(argv[0]), description="Record topics into a bag.")
     parser.add_argument("topics", nargs="*", metavar="TOPIC")
     for flag, text in (

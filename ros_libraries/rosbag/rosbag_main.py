@@ -21,13 +21,13 @@ EXPRESSIONS = "topic: name of the topic; m: the message; t: its time, with t.sec
 
 
 def rosbagmain(argv: Sequence[str] | None = None) -> None:
-    """What the command `rosbag` does.
+    """Run the command `rosbag`.
 
     Args:
         argv: the command line with the program's name; None takes that of the node.
 
     Raises:
-        SystemExit: a command line that cannot be, or a bag that cannot be read.
+        SystemExit: an invalid command line, or a bag that cannot be read.
     """
     words = list(sys.argv if argv is None else argv)[1:]
     if words and words[0] in ("record", "play"):
@@ -103,7 +103,7 @@ def _add_check(commands: Any) -> None:
 
 
 def _check(chosen: Any) -> None:
-    """There are no migration rules, so each message type whose md5sum is another is one that cannot be used."""
+    """Check the message types. Without migration rules, a message type with another md5sum cannot be used."""
     with _opened(chosen.bag) as bag:
         kinds = dict.fromkeys((each.datatype, each.md5sum) for each in bag._connections.values())
     migrations = [(*kind, _md5sum(kind[0])) for kind in kinds if kind[1] != _md5sum(kind[0])]
@@ -117,7 +117,7 @@ def _check(chosen: Any) -> None:
 
 
 def _md5sum(name: str) -> str | None:
-    """That of a message type as it is here; None where there is none such."""
+    """Return the md5sum of a message type on this computer, or None if there is no such type."""
     kind = genpy.message.get_message_class(name)
     return None if kind is None else str(kind._md5sum)
 
@@ -170,7 +170,7 @@ def _add_rewrite(commands: Any, name: str, text: str, run: Callable[[Any], None]
 
 
 def _places(chosen: Any, name: str) -> tuple[str, str] | None:
-    """Where a bag is read and written; the old one is moved out of the way. None: it is to be left alone."""
+    """Return the paths for reading and writing a bag; the old one is moved. None means that the bag must stay."""
     if chosen.output_dir is not None:
         return name, os.path.join(chosen.output_dir, os.path.basename(name))
     stem, ending = os.path.splitext(name)

@@ -1,5 +1,7 @@
-"""Which connections and messages are meant, and what a message to be written is made of. Imports genpy and
-rosbag_storage."""
+"""Selects connections and messages, and splits a message to be written into its parts.
+
+Imports genpy and rosbag_storage.
+"""
 
 from __future__ import annotations
 
@@ -21,7 +23,7 @@ Filter = Callable[[str, str, str, str, Any], Any]
 def connections(
     every: Iterable[Connection], topics: str | Iterable[str] | None, wanted: Filter | None
 ) -> Iterator[Connection]:
-    """Those of some topics, of all when there are none, that a filter lets through."""
+    """Yield the connections of some topics, or of all if there are none, that pass a filter."""
     names = {_canonical(each) for each in ([topics] if isinstance(topics, str) else topics or ()) if each}
     for each in every:
         if names and each.topic not in names and _canonical(each.topic) not in names:
@@ -37,7 +39,7 @@ def _canonical(topic: str) -> str:
 
 
 def entries(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: Any) -> Iterator[Entry]:
-    """The entries of connections (None: of all) from one time to another, both included, None without limit."""
+    """Yield the entries of connections (None: of all) from one time to another, both included, None without limit."""
     contents = bag._index()
     first = start.to_nsec() if start else None
     last_ns = end.to_nsec() if end else None
@@ -50,7 +52,7 @@ def entries(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: 
 
 
 def message_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[str, str]]]:
-    """A message's bytes, and what makes a connection header for it."""
+    """Return a message's bytes, and a function that makes its connection header."""
     buffer = io.BytesIO()
     message.serialize(buffer)
     kind = message.__class__
@@ -58,10 +60,10 @@ def message_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[st
 
 
 def raw_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[str, str]]]:
-    """The same for a raw message.
+    """Return the same for a raw message.
 
     Raises:
-        ValueError: it is no tuple of four or five.
+        ValueError: it is not a tuple of four or five.
     """
     if len(message) not in (4, 5):
         raise ValueError("msg must be of length 4 or 5")

@@ -1,4 +1,4 @@
-"""The classes of the messages in a bag, made of the definitions that the bag itself carries. Imports genpy."""
+"""The classes of the messages in a bag, made from the definitions in the bag. Imports genpy."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ if TYPE_CHECKING:
 
 
 def message_type(connection: Connection) -> Any:
-    """The class of a connection's messages; not the one that `import` gives, as with ROS.
+    """Return the class of a connection's messages. As with ROS, it is not the class that `import` gives.
 
     Raises:
-        ROSBagException: the definition in the bag is none.
+        ROSBagException: the definition in the bag is invalid.
     """
     return _made(connection.datatype, connection.md5sum, connection.msg_def)
 
@@ -26,7 +26,7 @@ def message_type(connection: Connection) -> Any:
 def _made(datatype: str, md5sum: str, definition: str) -> Any:
     try:
         made = genpy.dynamic.generate_dynamic(datatype, definition)[datatype]
-    except Exception as error:  # whatever is wrong with a text that somebody wrote into a bag
+    except Exception as error:  # a definition in a bag may be any text
         raise ROSBagException(f"Error generating datatype {datatype}: {error}") from None
     if made._md5sum != md5sum:
         print(

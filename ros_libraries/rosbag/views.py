@@ -1,5 +1,7 @@
-"""What is in a bag as rosbag shows it: tuples with ROS times in place of nanoseconds. Imports rospy and
-rosbag_storage."""
+"""The content of a bag as rosbag shows it: tuples with ROS times in place of nanoseconds.
+
+Imports rospy and rosbag_storage.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ class BagMessageWithConnectionHeader(NamedTuple):
 
 
 class CompressionTuple(NamedTuple):
-    """How most chunks are compressed; bytes of all chunks without and with compression."""
+    """The compression of most chunks, and the bytes of all chunks without and with compression."""
 
     compression: str
     uncompressed: int
@@ -37,7 +39,7 @@ class CompressionTuple(NamedTuple):
 
 
 class TopicTuple(NamedTuple):
-    """What there is on a topic; `frequency` in Hz is from the median of the periods, None when there is none."""
+    """Data of a topic. `frequency` in Hz is from the median of the periods, or None if there is none."""
 
     msg_type: str
     message_count: int
@@ -46,7 +48,7 @@ class TopicTuple(NamedTuple):
 
 
 class TypesAndTopicsTuple(NamedTuple):
-    """The md5sum of each message type, and what there is on each topic."""
+    """The md5sum of each message type, and the data of each topic."""
 
     msg_types: dict[str, str]
     topics: dict[str, TopicTuple]
@@ -75,15 +77,15 @@ class ChunkInfo(NamedTuple):
 
 
 def ros_time(ns: int) -> Any:
-    """A `rospy.Time` of so many ns."""
+    """Return a `rospy.Time` of so many ns."""
     return rospy.Time(ns // 1_000_000_000, ns % 1_000_000_000)
 
 
 def entry_view(entry: Entry) -> IndexEntry:
-    """An entry with a ROS time."""
+    """Return an entry with a ROS time."""
     return IndexEntry(ros_time(entry.time), entry.chunk_pos, entry.offset)
 
 
 def chunk_view(chunk: Chunk) -> ChunkInfo:
-    """A chunk with ROS times."""
+    """Return a chunk with ROS times."""
     return ChunkInfo(chunk.pos, ros_time(chunk.start), ros_time(chunk.end), chunk.connection_counts)

@@ -1,10 +1,10 @@
 """rosbag_storage: ROS's bag format 2.0 (wiki.ros.org/Bags/Format/2.0) as a library without ROS.
 
-A bag is a header, chunks of messages each followed by its index, and at the end what there is to know of connections
-and chunks. `BagFile` reads and writes one; times are integers of ns. It stands for the C++ package of that name, and
-may import the standard library, lz4 and zstandard only, so that tools outside of nodes can use it too.
+A bag is a header, chunks of messages each followed by its index, and finally the data of connections and chunks.
+`BagFile` reads and writes one; times are integers of ns. The package replaces the C++ package of that name. It may
+import the standard library, lz4 and zstandard only, so that tools outside of nodes can use it too.
 
-`opened` reads MCAP files (mcap.dev/spec) as well, whose topics of ROS 1 are like those of a bag.
+`opened` also reads MCAP files (mcap.dev/spec), whose topics of ROS 1 are like those of a bag.
 """
 
 from __future__ import annotations

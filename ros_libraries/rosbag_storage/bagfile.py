@@ -13,7 +13,7 @@ from .errors import ROSBagEncryptNotSupportedException, ROSBagException, ROSBagF
 
 
 class Message(NamedTuple):
-    """A message as it lies in a bag; its time is in ns."""
+    """A message as stored in a bag; its time is in ns."""
 
     connection: Connection
     time: int
@@ -24,12 +24,12 @@ class BagFile:
     """A bag.
 
     Args:
-        file: opened for reading, or for both when the bag is written; `create` or `open` comes next.
+        file: opened for reading, or for both if the bag is written; call `create` or `open` next.
 
     Attributes:
         contents: the index.
         version: such as 200 for 2.0.
-        header_pos: where the header's record is.
+        header_pos: position of the header's record.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -46,7 +46,7 @@ class BagFile:
         """Read the first line.
 
         Raises:
-            ROSBagException: it is no bag, or one of a version that is not supported.
+            ROSBagException: it is not a bag, or its version is not supported.
         """
         line = self.file.readline().rstrip()
         if not line:
@@ -65,10 +65,10 @@ class BagFile:
         """Read the index.
 
         Args:
-            with_entries: also where each message is; else that is read when it is first asked for.
+            with_entries: also read the position of each message; otherwise they are read when they are first needed.
 
         Raises:
-            ROSBagUnindexedException: there is no index, or it cannot be read.
+            ROSBagUnindexedException: the index is missing, or it cannot be read.
             ROSBagEncryptNotSupportedException: the bag is encrypted.
         """
         try:
@@ -95,11 +95,10 @@ class BagFile:
         return header
 
     def reindex(self) -> Iterator[int]:
-        """Make the index anew out of the chunks; yields the position of each, and drops what follows the last
-        sound one.
+        """Rebuild the index from the chunks. Yields the position of each, and drops the bytes after the last valid one.
 
         Raises:
-            ROSBagException: the file has no sound header.
+            ROSBagException: the file has no valid header.
         """
         self._file_header()
         self.contents = Contents()
@@ -109,10 +108,10 @@ class BagFile:
             self.file.truncate(end)
 
     def read(self, entry: Entry | tuple[int, int]) -> Message:
-        """The message at an entry, or at a (chunk position, offset).
+        """Return the message at an entry, or at a (chunk position, offset).
 
         Raises:
-            ROSBagException: there is none.
+            ROSBagException: there is no message.
         """
         chunk_pos, offset = entry[-2:]
         data = BytesIO(self._chunk_data(chunk_pos))
@@ -145,7 +144,7 @@ class BagFile:
         self._write_file_header(0)
 
     def append(self) -> None:
-        """Go on with a bag that was opened: its index goes, until `finish` writes the new one."""
+        """Continue a bag that was opened. Its index is removed, until `finish` writes the new one."""
         end = index.position(self._file_header())
         self.file.truncate(end)
         self._write_file_header(0, counts=False)
@@ -162,10 +161,10 @@ class BagFile:
         records.write_record(self.file, fields, padded_size=records.FILE_HEADER_LENGTH)
 
     def connect(self, topic: str, header: Mapping[str, bytes | str], kind: str = compression.NONE) -> Connection:
-        """A new connection, whose messages can be written from now on; `kind` compresses the chunk it begins in.
+        """Return a new connection, whose messages can be written from now on. `kind` compresses the chunk it begins in.
 
         Raises:
-            ROSBagFormatException: the header lacks what a reader needs.
+            ROSBagFormatException: the header lacks a field that a reader needs.
         """
         number = max(self.contents.connections, default=-1) + 1
         connection = Connection(number, topic, header)
@@ -177,7 +176,7 @@ class BagFile:
         """Write a message.
 
         Args:
-            connection: where it came from; see `connect`.
+            connection: its connection; see `connect`.
             time: in ns.
             data: the serialised message.
             kind: compresses the chunk, if the message begins one.
@@ -198,7 +197,7 @@ class BagFile:
         return 0 if self._open is None else self._open.data.tell()
 
     def all_chunks(self) -> list[Chunk]:
-        """The chunks in the file, and the one that is about to be."""
+        """Return the chunks in the file, and the one that is about to be."""
         made = None if self._open is None else self._open.chunk
         return self.contents.chunks if made is None else [*self.contents.chunks, made]
 
@@ -221,7 +220,7 @@ class BagFile:
         self.file.flush()
 
     def finish(self) -> None:
-        """Write the index, and where it is; the bag is whole then."""
+        """Write the index and its position, which completes the bag."""
         self.flush()
         end = self.file.seek(0, 2)
         index.write_index(self.file, self.contents)
@@ -230,10 +229,10 @@ class BagFile:
 
 
 class OpenChunk:
-    """A chunk that is being written; it comes into the file as a whole.
+    """A chunk that is being written. It is added to the file as a whole.
 
     Args:
-        kind: of its compression.
+        kind: kind of its compression.
     """
 
     def __init__(self, kind: str) -> None:

@@ -1,4 +1,4 @@
-"""How the data of a chunk are compressed: not at all, by bz2 or by LZ4, and in MCAP files by Zstandard.
+"""Compression of a chunk's data: none, bz2 or LZ4, and in MCAP files Zstandard.
 
 Imports what compresses when it is needed.
 """
@@ -42,7 +42,7 @@ def compress(kind: str, data: bytes) -> bytes:
 
 
 def decompress(kind: str, data: bytes) -> bytes:
-    """What `compress` was given.
+    """Return the data that `compress` was given.
 
     Args:
         kind: one of `ALL`, or `ZSTD`.
@@ -73,7 +73,7 @@ def decompress(kind: str, data: bytes) -> bytes:
 
 
 def _of_zstd(data: bytes) -> bytes:
-    """Not much more than `LARGEST` bytes of what is packed."""
+    """Decompress at most slightly more than `LARGEST` bytes."""
     zstandard = zstd()
     found = bytearray()
     try:
@@ -87,7 +87,7 @@ def _of_zstd(data: bytes) -> bytes:
 
 
 def zstd() -> Any:
-    """The package zstandard.
+    """Return the package zstandard.
 
     Raises:
         ImportError: it is not installed.
@@ -102,7 +102,7 @@ def zstd() -> Any:
 
 
 def _of_bz2(data: bytes) -> bytes:
-    """Not much more than `LARGEST` bytes of what is packed; there may be several streams, as of `bz2`."""
+    """Decompress at most slightly more than `LARGEST` bytes. There may be several streams, as with `bz2`."""
     import bz2
 
     found = b""
@@ -112,7 +112,7 @@ def _of_bz2(data: bytes) -> bytes:
             more = stream.decompress(data, LARGEST + 1 - len(found))
         except OSError as error:
             if found:
-                break  # what follows a stream and is none is ignored
+                break  # bytes after a stream that are not a stream are ignored
             raise ROSBagFormatException(f"the data of a chunk are damaged: {error}") from None
         found = found + more if found else more
         if not stream.eof and len(found) <= LARGEST:

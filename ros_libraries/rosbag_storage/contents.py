@@ -1,4 +1,7 @@
-"""What a bag holds, as its index says: connections, chunks, and where each message is. Imports records and errors."""
+"""The content of a bag according to its index: connections, chunks, and positions of messages.
+
+Imports records and errors.
+"""
 
 from __future__ import annotations
 
@@ -21,15 +24,15 @@ class Entry(NamedTuple):
 
 
 class Connection:
-    """One publisher of a topic, as its connection header tells.
+    """One publisher of a topic, as described by its connection header.
 
     Args:
         id: number in the bag.
         topic: name.
-        header: the connection header; written as it is.
+        header: the connection header; written unchanged.
 
     Raises:
-        ROSBagFormatException: the header lacks what a reader needs.
+        ROSBagFormatException: the header lacks a field that a reader needs.
     """
 
     def __init__(self, id: int, topic: str, header: Mapping[str, bytes | str]) -> None:
@@ -49,7 +52,7 @@ class Connection:
 
 @dataclass
 class Chunk:
-    """A chunk: its position in the file, first and last time in ns, messages per connection; how its data are kept."""
+    """A chunk: position in the file, first and last time in ns, messages per connection, compression and size."""
 
     pos: int
     start: int
@@ -76,7 +79,7 @@ class Contents:
     indexes: dict[int, list[Entry]] = field(default_factory=dict)
 
     def entries(self, connections: Iterable[Connection]) -> Iterator[Entry]:
-        """The entries of some connections, by time."""
+        """Return the entries of some connections, by time."""
         return heapq.merge(*(self.indexes.get(each.id, []) for each in connections), key=attrgetter("time"))
 
     def settle(self) -> None:

@@ -6,7 +6,7 @@ from typing import Any
 
 
 class ROSBagException(Exception):
-    """Base class of what can be wrong with a bag."""
+    """Base class of the errors of a bag."""
 
     __module__ = "rosbag.bag"
 
@@ -19,7 +19,7 @@ class ROSBagException(Exception):
 
 
 class ROSBagFormatException(ROSBagException):
-    """The file is not what the format says."""
+    """The file violates the format."""
 
     __module__ = "rosbag.bag"
 

@@ -16,10 +16,10 @@ from .errors import ROSBagFormatException, ROSBagUnindexedException
 
 
 def position(header: Mapping[str, bytes]) -> int:
-    """Where the index is, as the header of the file says.
+    """Return the position of the index from the header of the file.
 
     Raises:
-        ROSBagUnindexedException: there is none.
+        ROSBagUnindexedException: there is no index.
     """
     found = records.uint64_field(header, "index_pos")
     if found == 0:
@@ -28,14 +28,14 @@ def position(header: Mapping[str, bytes]) -> int:
 
 
 def read_index(file: BinaryIO, header: Mapping[str, bytes]) -> Contents:
-    """Connections and chunks, from the end of the file.
+    """Return connections and chunks from the end of the file.
 
     Args:
         file: the bag.
-        header: that of the file.
+        header: header of the file.
 
     Raises:
-        ROSBagException: there is no index, or it is broken.
+        ROSBagException: the index is missing or broken.
     """
     file.seek(position(header))
     contents = Contents()
@@ -61,7 +61,7 @@ def read_entries(file: BinaryIO, contents: Contents) -> None:
 
 
 def read_connection(file: BinaryIO) -> Connection:
-    """A connection's record."""
+    """Return a connection's record."""
     fields = records.read_header(file, records.OP_CONNECTION)
     header = records.read_header(file)
     return Connection(records.uint32_field(fields, "conn"), records.text_field(fields, "topic"), header)
@@ -82,7 +82,7 @@ def _read_chunk_info(file: BinaryIO) -> Chunk:
 
 
 def read_chunk_header(file: BinaryIO, chunk: Chunk) -> None:
-    """How the data of a chunk are kept; the file then stands at the data."""
+    """Read the compression and sizes of a chunk. The file then stands at the data."""
     fields = records.read_header(file, records.OP_CHUNK)
     chunk.compression = records.text_field(fields, "compression")
     chunk.size = records.uint32_field(fields, "size")
@@ -91,7 +91,7 @@ def read_chunk_header(file: BinaryIO, chunk: Chunk) -> None:
 
 
 def read_chunk_entries(file: BinaryIO, chunk_pos: int) -> tuple[int, list[Entry]]:
-    """Number of a connection, and where its messages are in a chunk.
+    """Return the number of a connection, and where its messages are in a chunk.
 
     The length of the data is not looked at: ROS's first writers got it wrong.
     """
@@ -124,7 +124,7 @@ def write_connection(file: BinaryIO, connection: Connection) -> None:
 
 
 def write_entries(file: BinaryIO, connection: int, entries: list[tuple[int, int]]) -> None:
-    """Where a connection's messages are in the chunk before: time in ns and offset of each."""
+    """Write the positions of a connection's messages in the chunk before: time in ns and offset of each."""
     fields = {
         "op": records.pack_uint8(records.OP_INDEX_DATA),
         "conn": records.pack_uint32(connection),

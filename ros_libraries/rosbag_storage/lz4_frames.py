@@ -30,11 +30,11 @@ class LZ4Compressor:
         self._begun = False
 
     def compress(self, data: bytes) -> bytes:
-        """Take a piece; returns what is ready."""
+        """Add a piece. Returns the bytes that are ready."""
         return self._begin() + bytes(self._frame.compress(data))
 
     def flush(self) -> bytes:
-        """The rest of the frame."""
+        """Return the rest of the frame."""
         return self._begin() + bytes(self._frame.flush())
 
     def _begin(self) -> bytes:
@@ -50,7 +50,7 @@ class LZ4Decompressor:
         self._frame: Any = _frame.LZ4FrameDecompressor()
 
     def decompress(self, data: bytes) -> bytes:
-        """Take a piece; returns what is ready."""
+        """Add a piece. Returns the bytes that are ready."""
         return bytes(self._frame.decompress(data))
 
     @property
@@ -60,17 +60,17 @@ class LZ4Decompressor:
 
 
 def compress(data: bytes) -> bytes:
-    """A frame with all the data."""
+    """Return a frame with all the data."""
     compressor = LZ4Compressor()
     return compressor.compress(data) + compressor.flush()
 
 
 def decompress(data: bytes, most: int = -1) -> bytes:
-    """The data of a frame.
+    """Return the data of a frame.
 
     Args:
         data: the frame.
-        most: bytes that it may become; what is behind them is left out. Negative for any number.
+        most: maximum bytes of the result; the rest is left out. Negative for any number.
 
     Raises:
         RuntimeError: it is damaged.
@@ -79,19 +79,19 @@ def decompress(data: bytes, most: int = -1) -> bytes:
 
 
 def unpacked(data: bytes, most: int) -> tuple[bytes, bool]:
-    """As `decompress`; and whether the frame has come to its end."""
+    """Return the result of `decompress`, and whether the frame is complete."""
     frame = _frame.LZ4FrameDecompressor()
     return bytes(frame.decompress(data, most)), bool(frame.eof)
 
 
 def beginning(data: bytes, most: int) -> bytes:
-    """What can be unpacked of a frame that is damaged or cut off, up to there; no checksum is looked at.
+    """Return the data of a damaged or truncated frame up to the damage. No checksum is verified.
 
-    Blocks that are whole are unpacked by the package lz4, and of the first one that is not, all that is there.
+    The package lz4 decompresses complete blocks. Of the first incomplete one, all available data is decompressed.
 
     Args:
         data: the frame.
-        most: bytes that it may become.
+        most: maximum bytes of the result.
     """
     if len(data) < _HEAD:
         return b""
@@ -114,7 +114,7 @@ def beginning(data: bytes, most: int) -> bytes:
 
 
 def _of_block(block: bytes, window: bytes, most: int) -> tuple[bytes, bool]:
-    """What a block has become, and whether it is whole."""
+    """Return the data of a block, and whether it is complete."""
     try:
         return bytes(_block.decompress(block, uncompressed_size=most, dict=window)), True
     except _block.LZ4BlockError:
@@ -122,7 +122,7 @@ def _of_block(block: bytes, window: bytes, most: int) -> tuple[bytes, bool]:
 
 
 def _beginning_of_block(block: bytes, window: bytes, most: int) -> bytes:
-    """What a block becomes up to where it ends or makes no sense; `window` is what was before it."""
+    """Return the data of a block up to its end or its first invalid token; `window` is the data before it."""
     found, at, end = bytearray(window), 0, len(window) + most
     while at < len(block) and len(found) < end:
         token = block[at]
@@ -142,7 +142,10 @@ def _beginning_of_block(block: bytes, window: bytes, most: int) -> bytes:
 
 
 def _length(block: bytes, at: int, length: int) -> tuple[int, int]:
-    """A length that a token begins, and where the block goes on: behind its end, if the length is cut off."""
+    """Return a length that a token begins, and the next position.
+
+    If the length is truncated, that is behind the block's end.
+    """
     if length < 15:
         return length, at
     while at < len(block):

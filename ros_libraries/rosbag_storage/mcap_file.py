@@ -17,8 +17,8 @@ _SCHEMAS_AND_CHANNELS = (mcap.SCHEMA, mcap.CHANNEL)
 class McapFile(BagFile):
     """An MCAP file, read as a bag.
 
-    The file is gone through once from its beginning; its own index is not needed. What is no topic of ROS 1 is
-    in `channels` alone.
+    The file is read once from its beginning; its own index is not needed. Channels other than ROS 1 topics are in
+    `channels` only.
 
     Args:
         file: opened for reading.
@@ -105,7 +105,7 @@ class McapFile(BagFile):
             self.contents.indexes[channel.id] = []
 
     def _index(self, at: int, record: mcap.ChunkRecord, data: bytes, place: int) -> None:
-        """Take in what a chunk has, or the message that stands at the place of one."""
+        """Add the contents of a chunk, or the message that stands in its place."""
         chunk = Chunk(at, 0, 0, compression=record.kind, size=record.size, stored_size=record.stored_size)
         for op, offset, body in _within(data, place):
             if op in _SCHEMAS_AND_CHANNELS:
@@ -144,10 +144,10 @@ class McapFile(BagFile):
         content = data[start + mcap.MESSAGE_HEAD.size : start + size]
         return Message(self.contents.connections[number], time, content)
 
-    # -- what an MCAP file is not ------------------------------------------------------------------------------------
+    # -- operations that an MCAP file does not support ---------------------------------------------------------------
 
     def reindex(self) -> Iterator[int]:
-        """An MCAP file needs none: see `cfepy bag recover`."""
+        """Refuse: an MCAP file needs no index, see `cfepy bag recover`."""
         _only_read()
 
     def create(self) -> None:
@@ -167,7 +167,10 @@ class McapFile(BagFile):
 
 
 def _within(data: bytes, place: int) -> Iterator[tuple[int, int, mcap.Body]]:
-    """(opcode, offset, body) of the records of a chunk; the body of a message that stands alone may be its head."""
+    """Yield (opcode, offset, body) of the records of a chunk.
+
+    The body of a message outside of a chunk may be its head only.
+    """
     at = 0
     while at < len(data):
         if len(data) - at < mcap.PREFIX.size:
@@ -183,7 +186,7 @@ def _only_read() -> NoReturn:
 
 
 def opened(file: BinaryIO) -> BagFile:
-    """What reads a file: as an MCAP file if it begins as one, else as a bag.
+    """Return the reader of a file: an MCAP file if it begins as one, otherwise a bag.
 
     Args:
         file: opened for reading; it stands at its beginning, and does so afterwards.

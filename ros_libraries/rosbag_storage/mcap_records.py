@@ -1,7 +1,7 @@
 """Records of an MCAP file (mcap.dev/spec): an opcode, a length and a body, all in little endian.
 
-They are read from bytes, by own code: it says at which byte a file is not what the format demands, believes no length
-that it has not seen, and goes on behind what is damaged. Imports what the package has.
+They are read from bytes by own code. It reports the byte at which a file violates the format, trusts no length before
+verifying it, and continues after damaged parts. Imports what the package has.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ ATTACHMENT, ATTACHMENT_INDEX, STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFS
 PREFIX = struct.Struct("<BQ")
 MESSAGE_HEAD = struct.Struct("<HIQQ")
 CHUNK_HEAD = struct.Struct("<QQQII")
-LARGEST_TEXT = 64 << 20  # bytes of a record that is no message, chunk or attachment
+LARGEST_TEXT = 64 << 20  # bytes of a record other than a message, chunk or attachment
 _uint16, _uint32, _uint64 = struct.Struct("<H"), struct.Struct("<I"), struct.Struct("<Q")
 _KINDS = {"": compression.NONE, "lz4": compression.LZ4, "zstd": compression.ZSTD}
 
@@ -35,7 +35,7 @@ _LATCHING_BACK = {value: key for key, value in _LATCHING.items()}
 
 
 class McapSchema(NamedTuple):
-    """What the messages of a channel are: a name, how the definition is written, and the definition."""
+    """The type of a channel's messages: a name, the encoding of the definition, and the definition."""
 
     name: str
     encoding: str
@@ -52,10 +52,10 @@ class RecordedChannel:
     Attributes:
         id: number in the file.
         topic: name.
-        encoding: of its messages, such as "ros1" or "json".
-        schema: of its messages.
-        metadata: what else is known of it; of a topic of ROS 1 the fields of the connection header.
-        connection: the connection of ROS 1 that it is; None when it is of another kind.
+        encoding: encoding of its messages, such as "ros1" or "json".
+        schema: schema of its messages.
+        metadata: further data; for a topic of ROS 1 the fields of the connection header.
+        connection: its connection of ROS 1, or None if it is of another kind.
     """
 
     id: int
@@ -104,7 +104,7 @@ class Body:
         self.at = 0
 
     def wrong(self, what: str) -> ROSBagFormatException:
-        """The error that something is wrong here."""
+        """Return an error with this position."""
         return ROSBagFormatException(f"{what} at byte {self.place + self.at:,}")
 
     def take(self, size: int) -> bytes:
@@ -120,19 +120,19 @@ class Body:
         return int(layout.unpack(self.take(layout.size))[0])
 
     def uint16(self) -> int:
-        """A number of two bytes."""
+        """Return a number of two bytes."""
         return self._number(_uint16)
 
     def uint32(self) -> int:
-        """A number of four bytes."""
+        """Return a number of four bytes."""
         return self._number(_uint32)
 
     def uint64(self) -> int:
-        """A number of eight bytes."""
+        """Return a number of eight bytes."""
         return self._number(_uint64)
 
     def text(self) -> str:
-        """A text."""
+        """Return a text."""
         data = self.take(self.uint32())
         try:
             return data.decode()
@@ -140,7 +140,7 @@ class Body:
             raise self.wrong("a text is not UTF-8") from None
 
     def texts(self) -> dict[str, str]:
-        """A map of texts."""
+        """Return a map of texts."""
         end = self.uint32() + self.at
         found: dict[str, str] = {}
         while self.at < end:
@@ -152,13 +152,13 @@ class Body:
 
 
 def schema_of(body: Body) -> tuple[int, McapSchema]:
-    """Number and content of a record SCHEMA."""
+    """Return the number and content of a record SCHEMA."""
     number, name, encoding = body.uint16(), body.text(), body.text()
     return number, McapSchema(name, encoding, body.take(body.uint32()))
 
 
 def channel_of(body: Body, schemas: Mapping[int, McapSchema]) -> RecordedChannel:
-    """A record CHANNEL.
+    """Return a record CHANNEL.
 
     Args:
         body: of the record.
@@ -179,7 +179,7 @@ def channel_of(body: Body, schemas: Mapping[int, McapSchema]) -> RecordedChannel
 
 
 def _header_of(channel: RecordedChannel) -> dict[str, bytes | str]:
-    """The connection header that a channel tells of; fields are in the order in which rosbag has them."""
+    """Return the connection header in a channel. Fields are in rosbag's order."""
     about: dict[str, bytes | str] = {**channel.metadata, "topic": channel.metadata.get("topic", channel.topic)}
     about |= {"type": channel.schema.name, "message_definition": channel.schema.data}
     if "latching" in channel.metadata:
@@ -190,7 +190,7 @@ def _header_of(channel: RecordedChannel) -> dict[str, bytes | str]:
 
 
 def channel_of_connection(connection: Connection) -> RecordedChannel:
-    """The channel that a connection of a bag is: what of its header is no type and no definition is in its metadata."""
+    """Return the channel of a bag's connection. Header fields other than type and definition are in its metadata."""
     header = {
         name: value if isinstance(value, str) else value.decode(errors="replace")
         for name, value in connection.header.items()
@@ -205,7 +205,7 @@ def channel_of_connection(connection: Connection) -> RecordedChannel:
 
 
 def chunk_of(body: Body) -> ChunkRecord:
-    """The head of a record CHUNK.
+    """Return the head of a record CHUNK.
 
     Raises:
         ROSBagFormatException: it is none, or compressed in a way that is not known.
@@ -219,7 +219,7 @@ def chunk_of(body: Body) -> ChunkRecord:
 
 
 def unpacked(chunk: ChunkRecord, stored: bytes, place: int) -> bytes:
-    """The records of a chunk.
+    """Return the records of a chunk.
 
     Raises:
         ROSBagFormatException: they are damaged.
@@ -238,6 +238,6 @@ def unpacked(chunk: ChunkRecord, stored: bytes, place: int) -> bytes:
 
 
 def statistics_of(body: Body) -> dict[int, int]:
-    """How many messages each channel has, as a record STATISTICS says."""
+    """Return the number of messages of each channel from a record STATISTICS."""
     body.take(8 + 2 + 4 + 4 + 4 + 4 + 8 + 8)
     return {body.uint16(): body.uint64() for _ in range(body.uint32() // 10)}

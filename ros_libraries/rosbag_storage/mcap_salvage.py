@@ -1,4 +1,4 @@
-"""What is left of an MCAP file; see `Salvage`. Imports what the package has."""
+"""Recovers a damaged MCAP file; see `Salvage`. Imports what the package has."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _AT_THE_TOP = frozenset((*range(mcap.HEADER, mcap.DATA_END + 1), *range(0x80, 0x
 
 
 def _is_text(schema: mcap.McapSchema | None) -> bool:
-    """Whether there is a schema, and its definition can be read."""
+    """Return whether there is a schema, and its definition can be read."""
     try:
         return schema is not None and schema.data.decode() is not None
     except UnicodeDecodeError:
@@ -28,7 +28,7 @@ def _is_text(schema: mcap.McapSchema | None) -> bool:
 
 
 class McapSalvage(Salvage):
-    """What is left of an MCAP file; see `Salvage`."""
+    """Recovery of a damaged MCAP file; see `Salvage`."""
 
     def __init__(self, data: Bytes) -> None:
         super().__init__(data)
@@ -70,7 +70,7 @@ class McapSalvage(Salvage):
         return found
 
     def _read_summary(self) -> None:
-        """Channels, and how many messages there are, as the end of the file says, if there is one."""
+        """Read channels and numbers of messages from the end of the file, if it is present."""
         data = self.data
         end = len(data) - len(mcap.MAGIC)
         footer = end - _FOOTER_BYTES
@@ -94,7 +94,7 @@ class McapSalvage(Salvage):
             self.finished = at == footer
         else:
             self.expected = None
-        if not is_sound:  # what the chunks say comes first
+        if not is_sound:  # data of the chunks takes precedence
             self._of_summary, self.channels, self._schemas = self.channels, {}, {}
 
     def _prefix(self, data: Bytes, at: int) -> tuple[int, int]:
@@ -104,10 +104,10 @@ class McapSalvage(Salvage):
         return int(op), int(size)
 
     def _take(self, op: int, body: mcap.Body) -> None:
-        """Take in a record that is no message and no chunk."""
+        """Process a record other than a message or a chunk."""
         if op == mcap.SCHEMA:
             number, schema = mcap.schema_of(body)
-            if not _is_text(self._schemas.get(number)):  # one of the summary may be damaged where its text is
+            if not _is_text(self._schemas.get(number)):  # a schema of the summary may have a damaged text
                 self._schemas[number] = schema
         elif op == mcap.CHANNEL:
             channel = mcap.channel_of(body, self._schemas)
@@ -119,7 +119,7 @@ class McapSalvage(Salvage):
             self.attachments.append((*times, body.text(), body.text(), body.take(body.uint64())))
 
     def _chunk(self, at: int, size: int) -> Generator[mcap.RecordedMessage, None, int]:
-        """The messages of a chunk; returns where the next record begins."""
+        """Yield the messages of a chunk. Returns the position of the next record."""
         data, end = self.data, len(self.data)
         start = at + mcap.PREFIX.size
         chunk = mcap.chunk_of(mcap.Body(data[start : start + 64], start))
@@ -127,7 +127,7 @@ class McapSalvage(Salvage):
         said = (start + size, first + chunk.stored_size)
         ends = [each for each in said if self._follows(data, each, end, _AT_THE_TOP)]
         if said[0] == said[1] <= end:
-            ends = [said[0]]  # what stands there twice is right, and what follows may be damaged
+            ends = [said[0]]  # a length that occurs twice is right, and the bytes that follow may be damaged
         self.chunks[chunk.kind] += 1
         lost = len(self.losses)
         if chunk.kind == compression.NONE:
@@ -156,12 +156,12 @@ class McapSalvage(Salvage):
     def _walk(
         self, data: Bytes, at: int, stop: int, in_file: bool, is_doubtful: bool
     ) -> Generator[mcap.RecordedMessage, None, int]:
-        """The messages in the records of a chunk; returns where they end.
+        """Yield the messages in the records of a chunk. Returns where they end.
 
         Args:
-            data: where they are: the chunk, or the file if they are not packed.
+            data: the bytes: of the chunk, or of the file if they are not compressed.
             at: where they begin.
-            stop: where they are said to end; negative when that is not known.
+            stop: where they should end; negative if that is unknown.
             in_file: the data are the file.
             is_doubtful: the checksum is wrong.
         """
@@ -205,10 +205,11 @@ class McapSalvage(Salvage):
         return mcap.RecordedMessage(self.channels[number], time, content, publish_time, sequence)
 
     def _follows(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> bool:
-        """Whether the file ends at a byte, or a record of some kinds begins there, which may be cut off or damaged.
+        """Return whether the file ends at a byte, or a record of some kinds begins there, possibly truncated or
+        damaged.
 
-        One whose kind is damaged is known by its length, at whose end another record begins; one whose length is
-        damaged by its kind.
+        A record with a damaged kind is recognised by its length, at whose end another record begins. A record with a
+        damaged length is recognised by its kind.
         """
         if at >= end:
             return at == end
@@ -229,20 +230,21 @@ class McapSalvage(Salvage):
         return bool(size < _LONGEST) or (op == mcap.MESSAGE and self._is_of_channel(data, at + mcap.PREFIX.size, end))
 
     def _begins(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> bool:
-        """Whether a record of some kinds begins at a byte, and is neither cut off nor damaged."""
+        """Return whether a record of some kinds begins at a byte, and is neither cut off nor damaged."""
         return end - at >= mcap.PREFIX.size and data[at] in kinds and self._follows(data, at, end, kinds)
 
     @staticmethod
     def _is_cut_off(rest: bytes, kinds: frozenset[int]) -> bool:
-        """Whether what the file ends with is the beginning of a record of some kinds, or of its last eight bytes."""
+        """Return whether the last bytes of the file are the beginning of a record of some kinds, or of its last
+        eight bytes."""
         return (rest[0] in kinds and not any(rest[6:])) or (kinds is _AT_THE_TOP and mcap.MAGIC.startswith(rest))
 
     def _is_of_channel(self, data: Bytes, start: int, end: int) -> bool:
-        """Whether the content of a message, whose length is damaged, names a channel that there is."""
+        """Return whether the content of a message with a damaged length names an existing channel."""
         return start + 2 <= end and int.from_bytes(data[start : start + 2], "little") in self.channels
 
     def _next(self, data: Bytes, at: int, end: int, kinds: frozenset[int]) -> int:
-        """Where the next record of some kinds begins that is followed by another; `end` when there is none."""
+        """Return where the next record of some kinds begins that is followed by another, or `end` if there is none."""
         for match in _CANDIDATE.finditer(data, at, end):
             found = match.start()
             if not self._follows(data, found, end, kinds):

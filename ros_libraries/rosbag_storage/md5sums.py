@@ -1,6 +1,6 @@
-"""The md5sum of a message type out of its full definition, as ROS makes it (wiki.ros.org/ROS/Technical Overview).
+"""The md5sum of a message type from its full definition, as ROS computes it (wiki.ros.org/ROS/Technical Overview).
 
-Recordings of others may leave it out, and a topic cannot be connected without it. Imports the standard library only.
+Foreign recordings may lack it, and a topic cannot be connected without it. Imports the standard library only.
 """
 
 from __future__ import annotations
@@ -15,11 +15,11 @@ _SECTION = re.compile(r"^=+\s*\nMSG:\s*(\S+)[^\n]*\n?", re.MULTILINE)
 
 
 def md5sum_of(type: str, definition: str) -> str:
-    """The md5sum of a type; "*", which stands for any, when its definition is none.
+    """Return the md5sum of a type, or "*", which stands for any, if its definition is invalid.
 
     Args:
         type: such as "sensor_msgs/JointState".
-        definition: with those of the types in it, as a bag has it.
+        definition: with the definitions of the types in it, as in a bag.
     """
     parts = _SECTION.split(definition)
     texts = {type: parts[0], **dict(zip(parts[1::2], parts[2::2], strict=True))}

@@ -1,4 +1,4 @@
-"""The options of `rosbag play`, for the node and for command lines that are to start it. Imports argparse only."""
+"""The options of `rosbag play`, for the node and for command lines that start it. Imports argparse only."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, NoReturn
 
 
 class PlayParser(argparse.ArgumentParser):
-    """Reads the words that follow `rosbag play`; see `argparse.ArgumentParser` for the arguments."""
+    """Parses the words that follow `rosbag play`; see `argparse.ArgumentParser` for the arguments."""
 
     def __init__(self, **said: Any) -> None:
         super().__init__(**said)
@@ -36,7 +36,7 @@ class PlayParser(argparse.ArgumentParser):
         self.add_argument("--bags", nargs="+", default=[], metavar="BAG", help="the bags, after --topics")
 
     def parse_play(self, words: Sequence[str]) -> argparse.Namespace:
-        """The options that the words say, with the bags of both kinds in `bags`.
+        """Return the parsed options, with the bags of both kinds in `bags`.
 
         Args:
             words: without remappings such as /a:=/b.
@@ -51,7 +51,7 @@ class PlayParser(argparse.ArgumentParser):
 
 
 class CheckedPlayParser(PlayParser):
-    """As `PlayParser`, but for one who only wants to know whether the words are right."""
+    """A `PlayParser` that only checks the words."""
 
     def error(self, message: str) -> NoReturn:
         """Raises ValueError, where a parser ends the process."""

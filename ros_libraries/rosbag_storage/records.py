@@ -1,6 +1,6 @@
 """Records of a bag: a header of named fields, and data; both with their length in front, in little endian.
 
-The helpers carry the names under which rosbag's own tools use them, without the underscore. Imports the errors only.
+The helpers have the names of rosbag's own tools, without the underscore. Imports the errors only.
 """
 
 from __future__ import annotations
@@ -52,12 +52,12 @@ _uint64 = struct.Struct("<Q")
 
 
 def pack_time(ns: int) -> bytes:
-    """A time in ns as seconds and nanoseconds."""
+    """Return a time in ns as seconds and nanoseconds."""
     return _pack_time(ns // NS_PER_S, ns % NS_PER_S)
 
 
 def pack_header(fields: Fields) -> bytes:
-    """A header without its length: each field as length, name, "=" and value."""
+    """Return a header without its length: each field as length, name, "=" and value."""
     parts = []
     for name, value in fields.items():
         content = (name if isinstance(name, bytes) else name.encode()) + b"=" + _bytes(value)
@@ -83,10 +83,10 @@ def write_record(file: BinaryIO, fields: Fields, data: bytes | str = b"", padded
     """Write a record.
 
     Args:
-        file: where to.
-        fields: of the header.
-        data: what follows it.
-        padded_size: bytes that header and data are to take; the data are filled up with spaces.
+        file: the file to write to.
+        fields: fields of the header.
+        data: data after the header.
+        padded_size: total bytes of header and data; the data are filled up with spaces.
     """
     header = write_header(file, fields)
     content = _bytes(data)
@@ -138,7 +138,7 @@ def skip_record(file: BinaryIO) -> None:
 
 
 def read_record_data(file: BinaryIO) -> bytes:
-    """Read the data of a record whose header was read."""
+    """Read the data of a record after its header."""
     try:
         return read_sized(file)
     except ROSBagException as error:
@@ -149,11 +149,11 @@ def read_header(file: BinaryIO, op: int | None = None) -> dict[str, bytes]:
     """Read a header.
 
     Args:
-        file: where from.
-        op: the kind of record that is expected; None takes any.
+        file: the file to read from.
+        op: the kind of record that is expected; None accepts any.
 
     Raises:
-        ROSBagFormatException: it is no header, or another kind of record.
+        ROSBagFormatException: it is not a header, or another kind of record.
     """
     try:
         header = read_sized(file)
@@ -168,7 +168,7 @@ def read_header(file: BinaryIO, op: int | None = None) -> dict[str, bytes]:
 
 
 def split_header(header: bytes) -> dict[str, bytes]:
-    """The fields of a header, in its order.
+    """Return the fields of a header, in its order.
 
     Raises:
         ROSBagFormatException: a field has no name, or is longer than the header.
@@ -192,7 +192,7 @@ def split_header(header: bytes) -> dict[str, bytes]:
 
 
 def peek_op(file: BinaryIO) -> int:
-    """The kind of the record that comes next."""
+    """Return the kind of the record that comes next."""
     at = file.tell()
     fields = read_header(file)
     file.seek(at)
@@ -203,10 +203,10 @@ def peek_op(file: BinaryIO) -> int:
 
 
 def field(fields: Mapping[str, bytes], name: str) -> bytes:
-    """The bytes of a field.
+    """Return the bytes of a field.
 
     Raises:
-        ROSBagFormatException: there is none of that name.
+        ROSBagFormatException: there is no field of that name.
     """
     if name not in fields:
         raise ROSBagFormatException(f'expected "{name}" field in record')
@@ -221,27 +221,27 @@ def _number(fields: Mapping[str, bytes], name: str, layout: struct.Struct) -> in
 
 
 def uint8_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A number of one byte."""
+    """Return a number of one byte."""
     return _number(fields, name, _uint8)
 
 
 def uint32_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A number of four bytes."""
+    """Return a number of four bytes."""
     return _number(fields, name, _uint32)
 
 
 def uint64_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A number of eight bytes."""
+    """Return a number of eight bytes."""
     return _number(fields, name, _uint64)
 
 
 def text_field(fields: Mapping[str, bytes], name: str) -> str:
-    """A text."""
+    """Return a text."""
     return text(field(fields, name))
 
 
 def time_field(fields: Mapping[str, bytes], name: str) -> int:
-    """A time, in ns."""
+    """Return a time, in ns."""
     value = field(fields, name)
     if len(value) != pair.size:
         raise ROSBagFormatException(f'error reading field "{name}": a time has 8 bytes, not {len(value)}')
@@ -250,7 +250,7 @@ def time_field(fields: Mapping[str, bytes], name: str) -> int:
 
 
 def text(value: bytes | str) -> str:
-    """A value of a header as text."""
+    """Return a value of a header as text."""
     return value if isinstance(value, str) else value.decode()
 
 

@@ -1,7 +1,7 @@
-"""What is left of a recording: its messages in the order of the file, and what of it could not be read.
+"""Recovers a damaged recording: its messages in the order of the file, and the parts that could not be read.
 
-Nothing that a file says is believed before it is seen to fit: after a record that is damaged or cut off, the next one
-is looked for byte by byte. `BagSalvage` does so for bags. Imports what the package has.
+Nothing in the file is trusted before it is verified. After a damaged or truncated record, the next one is searched byte
+by byte. `BagSalvage` does so for bags. Imports what the package has.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from .md5sums import md5sum_of
 Bytes = bytes | mmap
 BROKEN = (ROSBagException, ValueError, LookupError, OSError, EOFError)
 CUT_OFF = "the data of a chunk are cut off"
-_PIECE = 1024  # bytes that are unpacked at once: what can become of them fits into memory
+_PIECE = 1024  # bytes that are decompressed at once: the result fits into memory
 _LONGEST_HEADER = 1 << 16
 _NAMES = (b"op=", b"conn=", b"time=", b"ver=", b"count=", b"topic=", b"compression=", b"size=")
 """Of fields of headers: in one that is damaged in one place, the first or the second one stands where it is to be."""
@@ -39,12 +39,12 @@ _FARTHEST_OP = 128  # bytes of a header before its field `op`; writers have at m
 
 @dataclass
 class Loss:
-    """Something of a file that could not be read.
+    """A part of a file that could not be read.
 
     Attributes:
         at: the byte at which it begins.
-        size: in bytes; of a chunk that is packed, of what is packed.
-        why: what is wrong.
+        size: in bytes; for a compressed chunk, of the compressed data.
+        why: the reason.
         after, before: times in ns of the last message before it and of the first one behind it; None without one.
     """
 
@@ -56,19 +56,19 @@ class Loss:
 
 
 class Salvage(ABC):
-    """Goes through a recording, whatever its state.
+    """Reads a recording in any state.
 
     Args:
         data: the whole file.
 
     Attributes:
-        losses: what could not be read, so far.
+        losses: the unreadable parts so far.
         counts: messages so far, by channel.
-        expected: messages that the file's own index says there are, by number of the channel; None without one.
+        expected: number of messages according to the file's own index, by number of the channel; None without one.
         doubtful: messages of chunks whose checksum is wrong: they can be read, and may be altered.
         finished: the file has its end and its index.
         chunks: how many there are, by compression.
-        metadata, attachments: what an MCAP file has beside messages.
+        metadata, attachments: other contents of an MCAP file.
     """
 
     def __init__(self, data: Bytes) -> None:
@@ -84,7 +84,7 @@ class Salvage(ABC):
         self.attachments: list[tuple[int, int, str, str, bytes]] = []
 
     def messages(self) -> Iterator[RecordedMessage]:
-        """The messages that are left, in the order of the file; what is counted is right when they have ended."""
+        """Yield the recovered messages in the order of the file. The counts are right after the last one."""
         last: int | None = None
         told = 0
         for message in self._messages():
@@ -98,10 +98,10 @@ class Salvage(ABC):
 
     @abstractmethod
     def _messages(self) -> Iterator[RecordedMessage]:
-        """Those that are left; what is lost, counted and doubtful is noted."""
+        """Yield the recovered messages, and record losses, counts and doubtful messages."""
 
     def _lose(self, at: int, end: int, why: object) -> None:
-        """Note that bytes could not be read; those that follow each other are one loss."""
+        """Record bytes that could not be read. Adjacent ones are one loss."""
         before = self.losses[-1] if self.losses else None
         if before is not None and before.size and before.at + before.size == at:
             before.size += end - at
@@ -110,10 +110,10 @@ class Salvage(ABC):
 
 
 def beginning_of(kind: str, stored: bytes) -> tuple[bytes, str]:
-    """What can be unpacked of the data of a chunk, and why no more can be; "" when that is all.
+    """Return the decompressible part of a chunk's data, and why the rest is unreadable, or "" if it is complete.
 
     Raises:
-        ImportError: what unpacks it is not installed.
+        ImportError: its decompressor is not installed.
     """
     if kind == compression.NONE:
         return stored, ""
@@ -136,7 +136,7 @@ def beginning_of(kind: str, stored: bytes) -> tuple[bytes, str]:
 
 
 def _beginning_of_lz4(stored: bytes) -> tuple[bytes, str]:
-    """As `beginning_of`; also of a block that is not whole."""
+    """Return the same as `beginning_of`, and include an incomplete block."""
     from . import lz4_frames
 
     try:
@@ -172,10 +172,10 @@ class _Record(NamedTuple):
 
 
 def _record_at(data: Bytes, at: int) -> _Record:
-    """The record that begins at a byte; its data may be said to end behind what there is.
+    """Return the record that begins at a byte. Its data may extend behind the end of the file.
 
     Raises:
-        ROSBagException: there is none.
+        ROSBagException: there is no record.
     """
     head = int.from_bytes(data[at : at + 4], "little")
     header_end = at + 4 + head
@@ -187,14 +187,14 @@ def _record_at(data: Bytes, at: int) -> _Record:
 
 
 def _fits(connection: Connection) -> int:
-    """How many parts of a connection bear each other out: its topic and its type are in it twice."""
+    """Return how many parts of a connection bear each other out: its topic and its type are in it twice."""
     topics = (None, connection.topic, connection.topic.encode())
     sums = ("*", connection.md5sum)
     return (connection.header.get("topic") in topics) + (md5sum_of(connection.datatype, connection.msg_def) in sums)
 
 
 class BagSalvage(Salvage):
-    """What is left of a bag; see `Salvage`."""
+    """Recovery of a damaged bag; see `Salvage`."""
 
     def __init__(self, data: Bytes) -> None:
         super().__init__(data)
@@ -225,14 +225,14 @@ class BagSalvage(Salvage):
                 at = self._resync(at, error)
 
     def _resync(self, at: int, why: object) -> int:
-        """Where the next record begins that can be told from other bytes."""
+        """Return the next position where a record certainly begins."""
         ops = (records.OP_CHUNK, records.OP_INDEX_DATA, records.OP_CONNECTION, records.OP_CHUNK_INFO)
         found = _next_record(self.data, at + 1, len(self.data), ops)
         self._lose(at, found, why)
         return found
 
     def _read_index(self) -> None:
-        """Connections, and how many messages there are, as the end of the file says, if there is one."""
+        """Read connections and numbers of messages from the end of the file, if it is present."""
         data = self.data
         try:
             head = _record_at(data, len(records.VERSION))
@@ -257,9 +257,9 @@ class BagSalvage(Salvage):
         self.finished = at == len(data)
 
     def _connect(self, data: Bytes, record: _Record, is_of_index: bool = False) -> None:
-        """Take in a connection. Of two that have one number, that of a chunk counts, unless the other fits better.
+        """Add a connection. If two have the same number, the chunk's counts, unless the other fits better.
 
-        Nothing else tells which one is damaged: bags have no checksums.
+        No checksum shows which one is damaged, because bags have none.
         """
         number, topic = records.uint32_field(record.fields, "conn"), records.text_field(record.fields, "topic")
         connection = Connection(number, topic, records.split_header(data[record.data_at : record.end]))
@@ -270,7 +270,7 @@ class BagSalvage(Salvage):
             self.channels[number] = channel_of_connection(connection)
 
     def _chunk(self, record: _Record) -> Generator[RecordedMessage, None, int]:
-        """The messages of a chunk; returns where the next record begins."""
+        """Yield the messages of a chunk. Returns the position of the next record."""
         data, end = self.data, len(self.data)
         kind = records.text_field(record.fields, "compression")
         size = records.uint32_field(record.fields, "size")
@@ -287,7 +287,7 @@ class BagSalvage(Salvage):
         stored = data[record.data_at : min(record.end, end)]
         unpacked, why = beginning_of(kind, stored)
         lost = len(self.losses)
-        is_doubtful = kind == compression.LZ4 and why not in ("", CUT_OFF)  # what is left of bz2 has been checked
+        is_doubtful = kind == compression.LZ4 and why not in ("", CUT_OFF)  # data recovered from bz2 has been checked
         yield from self._walk(unpacked, 0, len(unpacked), None, is_doubtful)
         if why or len(unpacked) != size or len(self.losses) > lost:
             why = why or f"a chunk of {size:,} bytes is damaged"
@@ -299,13 +299,13 @@ class BagSalvage(Salvage):
     def _walk(
         self, data: Bytes, at: int, stop: int, place: int | None, is_doubtful: bool = False
     ) -> Generator[RecordedMessage, None, int]:
-        """The messages in the records of a chunk; returns where they end.
+        """Yield the messages in the records of a chunk. Returns where they end.
 
         Args:
-            data: where they are: the chunk, or the file if they are not packed.
+            data: the bytes: of the chunk, or of the file if they are not compressed.
             at: where they begin.
-            stop: where they are said to end.
-            place: where they begin in the file; None for those that are packed.
+            stop: where they should end.
+            place: where they begin in the file; None if they are compressed.
             is_doubtful: a checksum is wrong.
         """
         end = len(data)
@@ -314,7 +314,7 @@ class BagSalvage(Salvage):
                 record = _record_at(data, at)
                 if record.op not in (records.OP_CONNECTION, records.OP_MSG_DATA):
                     if place is not None and _FIELD_OF.get(record.op) in record.fields and record.end <= end:
-                        break  # the chunk is shorter than it says
+                        break  # the chunk is shorter than its header claims
                     raise ROSBagException(f"a record of the kind {record.op} in a chunk, at byte {at:,}")
                 if record.end > end:
                     raise ROSBagException(f"a message is cut off, at byte {at:,}")
@@ -353,7 +353,7 @@ def _is_record(data: Bytes, at: int) -> bool:
 
 
 def _begins_record(data: Bytes, at: int) -> bool:
-    """Whether a record begins at a byte, which may be cut off or damaged: then by what is there of its header."""
+    """Return whether a record begins at a byte. A truncated or damaged one is recognised by the rest of its header."""
     if _is_record(data, at):
         return True
     rest = bytes(data[at : at + _FARTHEST_OP])
@@ -376,7 +376,7 @@ def _is_header(header: bytes) -> bool:
 
 
 def _is_beginning(header: bytes) -> bool:
-    """Whether bytes are the beginning of a header: fields, of which the last one may be cut off."""
+    """Return whether bytes are the beginning of a header: fields, of which the last may be truncated."""
     while len(header) > 4:
         size = int.from_bytes(header[:4], "little")
         name = header[4 : 4 + size].partition(b"=")[0]
@@ -387,7 +387,7 @@ def _is_beginning(header: bytes) -> bool:
 
 
 def _next_record(data: Bytes, at: int, end: int, ops: tuple[int, ...] | list[int]) -> int:
-    """Where the next record of some kinds begins; `end` when there is none."""
+    """Return where the next record of some kinds begins, or `end` if there is none."""
     field = at
     while (field := data.find(b"\x04\0\0\0op=", field, end)) >= 0:
         for start in range(field - 4, max(at, field - _FARTHEST_OP) - 1, -1):

@@ -12,24 +12,24 @@ from .errors import ROSBagException
 
 
 def scan(file: BinaryIO, contents: Contents, start: int) -> Generator[int, None, int]:
-    """Fill in what a bag holds.
+    """Fill in the contents of a bag.
 
     Args:
         file: the bag.
-        contents: what is found is put in here.
+        contents: gets the results.
         start: where its chunks begin.
 
     Yields:
         The position of each chunk.
 
     Returns:
-        The end of the last sound chunk with its index.
+        The end of the last valid chunk with its index.
     """
     end = file.seek(0, 2)
     at = sound = start
     try:
         file.seek(start)
-        _skip_index(file, end)  # what a later version may have put before the first chunk
+        _skip_index(file, end)  # records that a later version may have put before the first chunk
         while (at := file.tell()) < end:
             sound = at
             yield at
@@ -37,7 +37,7 @@ def scan(file: BinaryIO, contents: Contents, start: int) -> Generator[int, None,
             _read_chunk(file, contents, at, end)
         sound = at
     except (ROSBagException, OSError, EOFError, ValueError):
-        pass  # what follows is not sound, and is left out
+        pass  # the rest is invalid, and is left out
     contents.settle()
     return sound
 
@@ -65,7 +65,7 @@ def _read_chunk(file: BinaryIO, contents: Contents, at: int, end: int) -> None:
 
 
 def _messages(data: bytes, at: int, contents: Contents) -> tuple[list[Connection], list[tuple[int, Entry]]]:
-    """The connections that a chunk tells of, and its messages with the numbers of theirs."""
+    """Return the connections in a chunk, and its messages with the numbers of their connections."""
     connections: list[Connection] = []
     entries: list[tuple[int, Entry]] = []
     known = set(contents.connections)
@@ -90,7 +90,7 @@ def _messages(data: bytes, at: int, contents: Contents) -> tuple[list[Connection
 
 
 def _skip_index(file: BinaryIO, end: int) -> int | None:
-    """Pass over what is behind a chunk; how many messages it indexes, None when another chunk follows."""
+    """Skip the index of a chunk. Returns how many messages it has, or None if another chunk follows."""
     total = 0
     while file.tell() < end:
         op = records.peek_op(file)

@@ -1,6 +1,6 @@
-"""rosgraph: the ROS graph as programs see it beside rospy, i.e. the master, names, addresses, the environment.
+"""rosgraph: the ROS graph for programs without rospy, i.e. the master, names, addresses, the environment.
 
-Source: wiki.ros.org/rosgraph. It stands on `xmlrpc.client` and the node's environment.
+Source: wiki.ros.org/rosgraph. It uses `xmlrpc.client` and the node's environment.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ __all__ = [
 
 
 def myargv(argv: Sequence[str] | None = None) -> list[str]:
-    """A command line without the arguments that are ROS's.
+    """Return a command line without ROS's arguments.
 
     Args:
         argv: the command line; sys.argv by default.

@@ -1,4 +1,5 @@
-"""rosgraph.masterapi: the master's methods as functions that give the value or raise (wiki.ros.org/ROS/Master_API)."""
+"""rosgraph.masterapi: the master's methods as functions that return the value or raise
+(wiki.ros.org/ROS/Master_API)."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from rosgraph.rosenv import get_master_uri
 
 
 class MasterException(Exception):
-    """The master did not do what was asked."""
+    """The master did not execute the request."""
 
 
 class MasterFailure(MasterException):
@@ -19,7 +20,7 @@ class MasterFailure(MasterException):
 
 
 class MasterError(MasterException):
-    """The master found an error in what was asked."""
+    """The master found an error in the request."""
 
 
 ROSMasterException = MasterException
@@ -28,10 +29,10 @@ Failure = MasterFailure
 
 
 def is_online(master_uri: str | None = None) -> bool:
-    """Whether a master answers.
+    """Return whether a master answers.
 
     Args:
-        master_uri: which one; that of the environment by default.
+        master_uri: the master's URI; by default from the environment.
     """
     return Master("rosgraph", master_uri=master_uri).is_online()
 
@@ -40,11 +41,11 @@ class Master:
     """The master.
 
     Args:
-        caller_id: name of who asks.
-        master_uri: which master; that of the environment by default.
+        caller_id: name of the caller.
+        master_uri: the master's URI; by default from the environment.
 
-    Every method but `is_online` raises `MasterError` or `MasterFailure`, with the master's text, when it does not
-    answer success, and what `xmlrpc.client` raises when nobody answers.
+    Every method except `is_online` raises `MasterError` or `MasterFailure`, with the master's text, if it does not
+    answer success, and the error of `xmlrpc.client` if there is no answer.
     """
 
     def __init__(self, caller_id: str, master_uri: str | None = None) -> None:
@@ -63,7 +64,7 @@ class Master:
         self.handle: Any = ServerProxy(master_uri)
 
     def is_online(self) -> bool:
-        """Whether the master answers."""
+        """Return whether the master answers."""
         try:
             self.getPid()
         except Exception:
@@ -71,7 +72,7 @@ class Master:
         return True
 
     def _succeed(self, args: Any) -> Any:
-        """The value of an answer."""
+        """Return the value of an answer."""
         code, text, value = args
         if code == 1:
             return value
@@ -81,11 +82,11 @@ class Master:
         return self._succeed(getattr(self.handle, method)(self.caller_id, *args))
 
     def getPid(self) -> int:
-        """The master's process number."""
+        """Return the master's process number."""
         return int(self._ask("getPid"))
 
     def getUri(self) -> str:
-        """The master's URI as it knows it."""
+        """Return the master's URI as it knows it."""
         return str(self._ask("getUri"))
 
     # -- parameters --------------------------------------------------------------------------------------------------
@@ -95,31 +96,31 @@ class Master:
         return self._ask("deleteParam", key)
 
     def setParam(self, key: str, value: Any) -> Any:
-        """Set a parameter; a dictionary replaces a namespace."""
+        """Set a parameter. A dictionary replaces a namespace."""
         return self._ask("setParam", key, value)
 
     def getParam(self, key: str) -> Any:
-        """The value of a parameter."""
+        """Return the value of a parameter."""
         return self._ask("getParam", key)
 
     def searchParam(self, key: str) -> Any:
-        """The full name of the nearest parameter of that name."""
+        """Return the full name of the nearest parameter of that name."""
         return self._ask("searchParam", key)
 
     def hasParam(self, key: str) -> Any:
-        """Whether there is a parameter."""
+        """Return whether there is a parameter."""
         return self._ask("hasParam", key)
 
     def getParamNames(self) -> Any:
-        """The names of all parameters."""
+        """Return the names of all parameters."""
         return self._ask("getParamNames")
 
     def subscribeParam(self, caller_api: str, key: str) -> Any:
-        """The value of a parameter; changes are told to the URI `caller_api`."""
+        """Return the value of a parameter. The master reports changes to the URI `caller_api`."""
         return self._ask("subscribeParam", caller_api, key)
 
     def unsubscribeParam(self, caller_api: str, key: str) -> Any:
-        """Want no changes of a parameter any more."""
+        """End the notifications about a parameter."""
         return self._ask("unsubscribeParam", caller_api, key)
 
     # -- registrations -----------------------------------------------------------------------------------------------
@@ -129,37 +130,37 @@ class Master:
         return self._ask("registerService", service, service_api, caller_api)
 
     def unregisterService(self, service: str, service_api: str) -> Any:
-        """Unregister a service; how many."""
+        """Unregister a service. Returns how many were unregistered."""
         return self._ask("unregisterService", service, service_api)
 
     def registerSubscriber(self, topic: str, topic_type: str, caller_api: str) -> Any:
-        """Register a subscriber; the URIs of the publishers."""
+        """Register a subscriber. Returns the URIs of the publishers."""
         return self._ask("registerSubscriber", topic, topic_type, caller_api)
 
     def unregisterSubscriber(self, topic: str, caller_api: str) -> Any:
-        """Unregister a subscriber; how many."""
+        """Unregister a subscriber. Returns how many were unregistered."""
         return self._ask("unregisterSubscriber", topic, caller_api)
 
     def registerPublisher(self, topic: str, topic_type: str, caller_api: str) -> Any:
-        """Register a publisher; the URIs of the subscribers."""
+        """Register a publisher. Returns the URIs of the subscribers."""
         return self._ask("registerPublisher", topic, topic_type, caller_api)
 
     def unregisterPublisher(self, topic: str, caller_api: str) -> Any:
-        """Unregister a publisher; how many."""
+        """Unregister a publisher. Returns how many were unregistered."""
         return self._ask("unregisterPublisher", topic, caller_api)
 
     # -- the graph ---------------------------------------------------------------------------------------------------
 
     def lookupNode(self, node_name: str) -> Any:
-        """The URI of a node."""
+        """Return the URI of a node."""
         return self._ask("lookupNode", node_name)
 
     def lookupService(self, service: str) -> Any:
-        """The URI of a service."""
+        """Return the URI of a service."""
         return self._ask("lookupService", service)
 
     def getPublishedTopics(self, subgraph: str) -> Any:
-        """[topic, type] of all topics below a namespace that somebody publishes."""
+        """Return [topic, type] of all published topics below a namespace."""
         return self._ask("getPublishedTopics", subgraph)
 
     def getTopicTypes(self) -> Any:
@@ -167,5 +168,5 @@ class Master:
         return self._ask("getTopicTypes")
 
     def getSystemState(self) -> Any:
-        """Publishers, subscribers, providers of services: three lists of [name, [node, ...]]."""
+        """Return publishers, subscribers, providers of services: three lists of [name, [node, ...]]."""
         return self._ask("getSystemState")

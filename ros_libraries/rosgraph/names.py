@@ -26,35 +26,35 @@ REMAP_PATTERN = re.compile(r"^([\~\/A-Za-z]|_|__)[\w\/]*" + REMAP + ".*")
 
 
 def isstring(s: object) -> bool:
-    """Whether something is a text."""
+    """Return whether something is a text."""
     return isinstance(s, str)
 
 
-# -- what kind of name -----------------------------------------------------------------------------------------------
+# -- kinds of names --------------------------------------------------------------------------------------------------
 
 
 def is_global(name: str) -> bool:
-    """Whether a name begins at the root."""
+    """Return whether a name begins at the root."""
     return bool(name) and name.startswith(SEP)
 
 
 def is_private(name: str) -> bool:
-    """Whether a name is one of a node's own, `~name`."""
+    """Return whether a name is private to a node, `~name`."""
     return bool(name) and name.startswith(PRIV_NAME)
 
 
 def is_legal_name(name: str | None) -> bool:
-    """Whether a name follows ROS's rules; the empty one does."""
+    """Return whether a name follows ROS's rules. The empty name does."""
     return name == "" or (name is not None and _matches(NAME_LEGAL_CHARS_P, name) and "//" not in name)
 
 
 def is_legal_base_name(name: str | None) -> bool:
-    """Whether a name follows the rules of names without a namespace."""
+    """Return whether a name follows the rules of names without a namespace."""
     return name is not None and _matches(BASE_NAME_LEGAL_CHARS_P, name)
 
 
 def is_legal_remap(arg: str | None) -> bool:
-    """Whether an argument of a command line is a remapping or a parameter of ROS's."""
+    """Return whether an argument of a command line is a remapping or a parameter of ROS's."""
     return arg is not None and _matches(REMAP_PATTERN, arg)
 
 
@@ -67,7 +67,7 @@ def _matches(pattern: re.Pattern[str], text: str) -> bool:
 
 
 def canonicalize_name(name: str) -> str:
-    """A name without doubled or trailing slashes."""
+    """Return a name without doubled or trailing slashes."""
     if not name or name == SEP:
         return name
     plain = SEP.join(part for part in name.split(SEP) if part)
@@ -75,7 +75,7 @@ def canonicalize_name(name: str) -> str:
 
 
 def namespace(name: str) -> str:
-    """The namespace of a name, ending in a slash.
+    """Return the namespace of a name, ending in a slash.
 
     Raises:
         ValueError: None.
@@ -89,14 +89,14 @@ def namespace(name: str) -> str:
 
 
 def ns_join(ns: str, name: str) -> str:
-    """A name in a namespace; global and private names stay as they are."""
+    """Return a name in a namespace. Global and private names stay unchanged."""
     if is_private(name) or is_global(name) or not ns:
         return name
     return ns + name if ns == PRIV_NAME or ns.endswith(SEP) else ns + SEP + name
 
 
 def make_global_ns(name: str) -> str:
-    """A name with a slash before and behind it.
+    """Return a name with a slash before and behind it.
 
     Raises:
         ValueError: a private name.
@@ -111,7 +111,7 @@ def make_global_ns(name: str) -> str:
 
 
 def get_ros_namespace(env: Mapping[str, str] | None = None, argv: Sequence[str] | None = None) -> str:
-    """The namespace of a program: `__ns:=` on the command line, or ROS_NAMESPACE.
+    """Return the namespace of a program: `__ns:=` on the command line, or ROS_NAMESPACE.
 
     Args:
         env: os.environ by default.
@@ -124,16 +124,16 @@ def get_ros_namespace(env: Mapping[str, str] | None = None, argv: Sequence[str] 
 
 
 def make_caller_id(name: str) -> str:
-    """The name that a program gives itself towards the master, ending in a slash."""
+    """Return the name that a program uses towards the master, ending in a slash."""
     return make_global_ns(ns_join(get_ros_namespace(), name))
 
 
 def script_resolve_name(script_name: str, name: str) -> str:
-    """The global name that a name means to a script; remappings are not applied.
+    """Return the global name of a script's name. Remappings are not applied.
 
     Args:
         script_name: without a namespace.
-        name: what to resolve; empty for the namespace.
+        name: name to resolve; empty for the namespace.
     """
     if not name:
         return get_ros_namespace()
@@ -145,10 +145,10 @@ def script_resolve_name(script_name: str, name: str) -> str:
 
 
 def resolve_name(name: str, namespace_: str, remappings: Mapping[str, str] | None = None) -> str:
-    """The global name that a name means to a node.
+    """Return the global name of a node's name.
 
     Args:
-        name: what to resolve; empty for the node's namespace.
+        name: name to resolve; empty for the node's namespace.
         namespace_: the node's name.
         remappings: by resolved name.
     """
@@ -165,7 +165,7 @@ def resolve_name(name: str, namespace_: str, remappings: Mapping[str, str] | Non
 
 
 def load_mappings(argv: Sequence[str]) -> dict[str, str]:
-    """The `from:=to` arguments of a command line, without parameters (`_name:=value`)."""
+    """Return the `from:=to` arguments of a command line, without parameters (`_name:=value`)."""
     found: dict[str, str] = {}
     for argument in filter(is_legal_remap, argv):
         parts = [part.strip() for part in argument.split(REMAP)]
@@ -177,6 +177,6 @@ def load_mappings(argv: Sequence[str]) -> dict[str, str]:
 
 
 def anonymous_name(id: Any) -> str:
-    """A legal name that nobody else has; it begins with `id`."""
+    """Return a legal, unique name that begins with `id`."""
     name = f"{id}_{socket.gethostname()}_{os.getpid()}_{random.randint(0, sys.maxsize)}"
     return re.sub(r"[.:-]", "_", name)

@@ -18,10 +18,10 @@ _SIZE = struct.Struct("<I")
 
 
 def parse_http_host_and_port(url: str) -> tuple[str, int]:
-    """Host and port of a URL; the port is 80 when it does not say.
+    """Return host and port of a URL. The default port is 80.
 
     Raises:
-        ValueError: no URL with a scheme and a host.
+        ValueError: not a URL with a scheme and a host.
     """
     parts = urlparse(url) if url else None
     if parts is None or not parts.scheme or not parts.hostname:
@@ -34,7 +34,7 @@ def _is_unix_like_platform() -> bool:
 
 
 def get_address_override() -> str | None:
-    """The address that `__hostname:=` or `__ip:=`, ROS_HOSTNAME or ROS_IP ask for, or None.
+    """Return the address that `__hostname:=` or `__ip:=`, ROS_HOSTNAME or ROS_IP ask for, or None.
 
     Raises:
         ValueError: an argument with two ":=".
@@ -52,7 +52,7 @@ def get_address_override() -> str | None:
 
 
 def _checked(variable: str, address: str) -> str:
-    """The address as it is; a warning when it cannot be one."""
+    """Return the address unchanged. Warn if it is not a valid one."""
     is_ip = variable == ROS_IP
     problem = None
     if not address:
@@ -69,28 +69,28 @@ def _checked(variable: str, address: str) -> str:
 
 
 def use_ipv6() -> bool:
-    """Whether ROS_IPV6 is on."""
+    """Return whether ROS_IPV6 is on."""
     return os.environ.get(ROS_IPV6) == "on"
 
 
 def get_local_addresses() -> list[str]:
-    """Addresses of this machine."""
+    """Return addresses of this machine."""
     return ["127.0.0.1"]
 
 
 def get_local_address() -> str:
-    """The address of this machine that ROS uses."""
+    """Return the address of this machine that ROS uses."""
     return get_address_override() or ("::1" if use_ipv6() else get_local_addresses()[0])
 
 
 def is_local_address(hostname: str) -> bool:
-    """Whether a name or address is this machine's."""
+    """Return whether a name or address is this machine's."""
     own = {"localhost", "::1", socket.gethostname(), *get_local_addresses()}
     return hostname in own or hostname.startswith("127.")
 
 
 def get_bind_address(address: str | None = None) -> str:
-    """The address that a server binds to: all of them, unless `address` or ROS_IP is the loopback."""
+    """Return the address that a server binds to: all addresses, unless `address` or ROS_IP is the loopback."""
     address = get_address_override() if address is None else address
     if address and (address in ("localhost", "::1") or address.startswith("127.")):
         if use_ipv6():
@@ -100,12 +100,12 @@ def get_bind_address(address: str | None = None) -> str:
 
 
 def get_host_name() -> str:
-    """The name of this machine in URIs."""
+    """Return the name of this machine in URIs."""
     return get_address_override() or socket.gethostname()
 
 
 def create_local_xmlrpc_uri(port: int) -> str:
-    """The URI of a server of this machine."""
+    """Return the URI of a server of this machine."""
     return f"http://{get_host_name()}:{port}/"
 
 
@@ -117,13 +117,13 @@ class ROSHandshakeException(Exception):
 
 
 def decode_ros_handshake_header(header_str: bytes) -> dict[str, str]:
-    """The fields of a header.
+    """Return the fields of a header.
 
     Args:
         header_str: the header; more may follow.
 
     Raises:
-        ROSHandshakeException: it is cut off, or a field has a mistake.
+        ROSHandshakeException: it is truncated, or a field has a mistake.
     """
     (size,) = _SIZE.unpack_from(header_str)
     end, at = size + 4, 4
@@ -146,7 +146,7 @@ def decode_ros_handshake_header(header_str: bytes) -> dict[str, str]:
 
 
 def encode_ros_handshake_header(header: Mapping[Any, Any]) -> bytes:
-    """A header of some fields."""
+    """Return a header of some fields."""
     fields = sorted((_encoded(key), _encoded(value)) for key, value in header.items())
     body = b"".join(_SIZE.pack(len(key) + len(value) + 1) + key + b"=" + value for key, value in fields)
     return _SIZE.pack(len(body)) + body
@@ -161,7 +161,7 @@ def read_ros_handshake_header(sock: Any, b: BytesIO, buff_size: int) -> dict[str
 
     Args:
         sock: the socket.
-        b: takes what follows the header.
+        b: gets the bytes after the header.
         buff_size: bytes to read at a time.
 
     Raises:
@@ -185,7 +185,7 @@ def read_ros_handshake_header(sock: Any, b: BytesIO, buff_size: int) -> dict[str
 
 
 def write_ros_handshake_header(sock: Any, header: Mapping[Any, Any]) -> int:
-    """Write a header to a socket; how many bytes."""
+    """Write a header to a socket. Returns the number of bytes."""
     data = encode_ros_handshake_header(header)
     sock.sendall(data)
     return len(data)

@@ -19,7 +19,7 @@ _ON_COMMAND_LINE = "__master:="
 
 
 def get_master_uri(env: Mapping[str, str] | None = None, argv: Sequence[str] | None = None) -> str:
-    """Where the master answers: `__master:=` on the command line, or ROS_MASTER_URI, or the default.
+    """Return where the master answers: `__master:=` on the command line, or ROS_MASTER_URI, or the default.
 
     Args:
         env: os.environ by default.

@@ -31,13 +31,13 @@ class RospyLogger(logging.Logger):
 def configure_logging(
     logname: str, level: int = logging.INFO, filename: str | None = None, env: Mapping[str, str] | None = None
 ) -> str:
-    """Set the level of the root logger, and show what the logger "rosout" gets on the console.
+    """Set the level of the root logger, and print records of the logger "rosout" on the console.
 
     Args:
-        logname: of the program.
-        level: of the records that count.
-        filename: of the log file.
-        env: environment that says where log files lie; os.environ by default.
+        logname: name of the program.
+        level: minimum level of records.
+        filename: name of the log file.
+        env: environment with the folder of log files; os.environ by default.
 
     Returns:
         the path that the log file has on ROS; nothing is written to it.

@@ -1,4 +1,4 @@
-"""rosgraph.xmlrpc: servers for a program's own XML-RPC API. They need sockets, which the program may not have."""
+"""rosgraph.xmlrpc: servers for a program's own XML-RPC API. They need sockets, which may not be available."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from rosgraph.network import create_local_xmlrpc_uri, get_bind_address
 
 
 def isstring(s: object) -> bool:
-    """Whether something is a text."""
+    """Return whether something is a text."""
     return isinstance(s, str)
 
 
@@ -63,8 +63,8 @@ class XmlRpcNode:
     """A program's XML-RPC server.
 
     Args:
-        port: to bind; 0 for any.
-        rpc_handler: whose methods are offered.
+        port: port to bind; 0 for any.
+        rpc_handler: the object whose methods are offered.
         on_run_error: called with the exception that ended the server.
     """
 

@@ -1,7 +1,7 @@
-"""roslaunch for nodes: starting other nodes and launch files while the mission runs.
+"""roslaunch for nodes: starts other nodes and launch files while the mission runs.
 
-Source: wiki.ros.org/roslaunch/API%20Usage. What is started becomes an application of the same mission; the tool itself
-is `cfepy launch`. Remote machines, servers and process monitors are not there: everything is on one computer.
+Source: wiki.ros.org/roslaunch/API%20Usage. A started node becomes an application of the same mission. The tool itself
+is `cfepy launch`. Remote machines, servers and process monitors are not supported: everything is on one computer.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What can be launched, and the errors of doing so (roslaunch.core)."""
+"""Launchable nodes, and the errors of launching (roslaunch.core)."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def printerrlog(msg: str) -> None:
 
 
 def generate_run_id() -> str:
-    """An identifier for a launch."""
+    """Return an identifier for a launch."""
     import uuid
 
     return str(uuid.uuid1())
@@ -50,10 +50,10 @@ class Node:
     Args:
         package: its package.
         node_type: the file's name.
-        name: without a namespace; the file's name when None.
-        namespace: that its names are in.
+        name: without a namespace; the file's name if None.
+        namespace: namespace of its names.
         machine_name: accepted.
-        args: of its command line, as one text.
+        args: arguments of its command line, as one text.
         respawn: start it again when it ends.
         respawn_delay: in s.
         remap_args: (from, to) each.
@@ -62,10 +62,10 @@ class Node:
         cwd: "node", "cwd", "ROS_HOME" or None.
         launch_prefix: accepted.
         required: its end is the end of the run.
-        filename: where it was read from.
+        filename: the file that defines it.
 
     Raises:
-        ValueError: a field that cannot be.
+        ValueError: an invalid field.
     """
 
     def __init__(
@@ -111,7 +111,7 @@ class Node:
         self.filename = filename
 
     def fields(self) -> dict[str, Any]:
-        """What the mission is told of it."""
+        """Return its description for the mission."""
         return {
             "package": self.package,
             "type": self.type,

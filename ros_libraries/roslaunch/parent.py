@@ -20,7 +20,7 @@ class ROSLaunchParent:
     Args:
         run_id: accepted.
         roslaunch_files: paths, or pairs of a path and its arguments as `name:=value`.
-        more, options: what else roslaunch takes; accepted.
+        more, options: roslaunch's further arguments; accepted.
     """
 
     def __init__(self, run_id: str | None, roslaunch_files: Sequence[Any], *more: Any, **options: Any) -> None:

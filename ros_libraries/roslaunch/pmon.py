@@ -1,4 +1,4 @@
-"""A node that was started, as a process to look after (roslaunch.pmon)."""
+"""A node that was started, as a process to monitor (roslaunch.pmon)."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ class Process:
     """A node that was started.
 
     Args:
-        name: what it is called in texts.
+        name: its name in texts.
         app: the name of its application.
     """
 
@@ -20,7 +20,7 @@ class Process:
         self._app = app
 
     def is_alive(self) -> bool:
-        """Whether it still runs."""
+        """Return whether it still runs."""
         return bool(_processes.is_alive(self._app))
 
     def stop(self, errors: list[str] | None = None) -> None:

@@ -9,18 +9,18 @@ from roslaunch.core import RLException, generate_run_id
 
 
 def get_or_generate_uuid(options_runid: str | None, options_wait_for_master: bool) -> str:
-    """The run's identifier: the one that is given, the one of the parameter server, or a new one."""
+    """Return the run's identifier: the given one, the one of the parameter server, or a new one."""
     import rospy
 
     return options_runid or str(rospy.get_param("/run_id", None) or generate_run_id())
 
 
 def configure_logging(uuid: str) -> None:
-    """Logging goes to the mission's console, so there is no file to open."""
+    """Do nothing: logging goes to the mission's console, so there is no file to open."""
 
 
 def resolve_launch_arguments(args: Sequence[str]) -> list[str]:
-    """Paths of launch files: a path as it is, or a package and the name of a file in it.
+    """Return paths of launch files from arguments: a path, or a package and the name of a file in it.
 
     Raises:
         RLException: there is no such file.

@@ -1,4 +1,4 @@
-"""`ROSLaunch`: nodes one by one, from a program (roslaunch.scriptapi)."""
+"""`ROSLaunch`: launches nodes one by one from a program (roslaunch.scriptapi)."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class ROSLaunch:
         self.parent.roslaunch_files.append(f)
 
     def start(self) -> None:
-        """Start what was loaded; nodes can be launched from now on."""
+        """Start the loaded nodes. From now on, nodes can be launched."""
         self.parent.start()
         self.started = True
 
@@ -55,6 +55,6 @@ class ROSLaunch:
         self.parent.spin()
 
     def spin_once(self) -> Any:
-        """Whether a node still runs."""
+        """Return whether a node still runs."""
         rospy.sleep(0.1)
         return any(process.is_alive() for process in self.parent.processes)

@@ -1,4 +1,4 @@
-"""`resolve_args`: $(find ...), $(env ...) and the like in texts (roslaunch.substitution_args)."""
+"""`resolve_args`: $(find ...), $(env ...) and similar substitutions in texts (roslaunch.substitution_args)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class ArgException(SubstitutionException):
 def resolve_args(
     arg_str: str | None, context: dict[str, Any] | None = None, resolve_anon: bool = True, filename: str | None = None
 ) -> str | None:
-    """A text with its substitutions made.
+    """Return a text with its substitutions made.
 
     Args:
         arg_str: the text.
@@ -27,7 +27,7 @@ def resolve_args(
         filename: the launch file, for $(dirname).
 
     Raises:
-        SubstitutionException: one cannot be made.
+        SubstitutionException: a substitution is not possible.
     """
     if not arg_str:
         return arg_str

@@ -1,4 +1,4 @@
-"""roslib: what old ROS programs begin with (`load_manifest`), and looking up messages, packages and files by name."""
+"""roslib: the start of old ROS programs (`load_manifest`), and lookup of messages, packages and files by name."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ _is_interactive = False
 
 
 def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
-    """Make the code of a package, and of those that it depends on, importable; see `roslib.launcher`.
+    """Make the code of a package and of its dependencies importable; see `roslib.launcher`.
 
-    Programs begin with it and name their own package. One that has no manifest near it is no error: what lies beside a
-    program can be imported anyhow.
+    Programs begin with it and name their own package. A package without a manifest is not an error: the modules beside
+    a program can be imported in any case.
 
     Args:
         package_name: the package.
@@ -28,11 +28,11 @@ def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
 
 
 def set_interactive(interactive: bool) -> None:
-    """Say whether a person sits before the program."""
+    """Set whether the program has an interactive user."""
     global _is_interactive
     _is_interactive = interactive
 
 
 def is_interactive() -> bool:
-    """What `set_interactive` has said last."""
+    """Return the last value given to `set_interactive`."""
     return _is_interactive

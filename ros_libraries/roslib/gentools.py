@@ -1,4 +1,4 @@
-"""roslib.gentools: md5sums and full texts of definitions, with what they need. It stands on genmsg."""
+"""roslib.gentools: md5sums and full texts of definitions, with their dependencies. It uses genmsg."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Dependencies = dict[str, Any]
 
 
 def get_file_dependencies(f: str, stdout: Any = None, stderr: Any = None, rospack: Any = None) -> Dependencies:
-    """What the definition in a .msg or .srv file needs.
+    """Return the dependencies of the definition in a .msg or .srv file.
 
     Args:
         f: the file.
@@ -27,7 +27,7 @@ def get_file_dependencies(f: str, stdout: Any = None, stderr: Any = None, rospac
         rospack: accepted.
 
     Raises:
-        Exception: the file ends otherwise.
+        Exception: the file has another extension.
         KeyError: a nested type is unknown.
     """
     loaders: dict[str, Any] = {msgs.EXT: msgs.load_from_file, srvs.EXT: srvs.load_from_file}
@@ -41,7 +41,7 @@ def get_file_dependencies(f: str, stdout: Any = None, stderr: Any = None, rospac
 def get_dependencies(
     spec: Any, package: str, compute_files: bool = True, stdout: Any = None, stderr: Any = None, rospack: Any = None
 ) -> Dependencies:
-    """What a definition needs.
+    """Return the dependencies of a definition.
 
     Args:
         spec: the definition.
@@ -79,7 +79,7 @@ def _context(get_deps_dict: Dependencies) -> MsgContext:
 
 
 def compute_md5_text(get_deps_dict: Dependencies, spec: Any, rospack: Any = None) -> str:
-    """The text that is hashed."""
+    """Return the text that is hashed."""
     return genmsg.gentools.compute_md5_text(_context(get_deps_dict), spec)
 
 
@@ -92,7 +92,7 @@ compute_md5_v2 = compute_md5
 
 
 def compute_full_text(get_deps_dict: Dependencies) -> str:
-    """The text of that definition, followed by those of all nested types, each once."""
+    """Return the text of that definition, followed by the texts of all nested types, each once."""
     parts = [get_deps_dict["spec"].text + "\n"]
     for name in get_deps_dict["uniquedeps"]:
         parts.append(f"{'=' * 80}\nMSG: {name}\n{msgs.get_registered(name).text}\n")

@@ -1,4 +1,4 @@
-"""roslib.launcher: makes the code of rosbuild packages importable; that of catkin packages is so anyhow."""
+"""roslib.launcher: makes the code of rosbuild packages importable. Code of catkin packages already is."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _bootstrapped: list[str] = []
 
 
 def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
-    """Put the code folders of a package, and of those that it depends on, into sys.path.
+    """Put the code folders of a package and of its dependencies into sys.path.
 
     Args:
         package_name: the package.

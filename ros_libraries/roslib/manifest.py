@@ -1,4 +1,4 @@
-"""roslib.manifest: older names of what rospkg.manifest has."""
+"""roslib.manifest: older names of rospkg.manifest."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ ManifestException = InvalidManifest
 
 
 def manifest_file(package: str, required: bool = True, env: Mapping[str, str] | None = None) -> str | None:
-    """The path of a package's manifest.
+    """Return the path of a package's manifest.
 
     Args:
         package: its name.
-        required: raise when there is none; otherwise give None.
+        required: raise if there is none; otherwise return None.
         env: accepted.
 
     Raises:
@@ -48,7 +48,7 @@ def manifest_file(package: str, required: bool = True, env: Mapping[str, str] | 
 
 
 def load_manifest(package: str) -> Manifest:
-    """The manifest of a package.
+    """Return the manifest of a package.
 
     Raises:
         InvalidROSPkgException: there is no such package.
@@ -61,8 +61,8 @@ def parse_file(file: str) -> Manifest:
     """Read a manifest.
 
     Raises:
-        InvalidManifest: it is no manifest.
-        IOError: there is none.
+        InvalidManifest: it is not a manifest.
+        IOError: the file does not exist.
     """
     return parse_manifest_file(os.path.dirname(file), os.path.basename(file))
 
@@ -71,6 +71,6 @@ def parse(string: str, filename: str = "string") -> Manifest:
     """Read the text of a manifest.xml.
 
     Raises:
-        InvalidManifest: it is no manifest.
+        InvalidManifest: it is not a manifest.
     """
     return parse_manifest(MANIFEST_FILE, string, filename)

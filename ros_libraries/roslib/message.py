@@ -1,4 +1,4 @@
-"""roslib.message: classes of messages and services by name; the rest is genpy's."""
+"""roslib.message: classes of messages and services by name; the other names are genpy's."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = [
 
 
 def get_message_class(message_type: str, reload_on_error: bool = False) -> Any:
-    """The class of a message, or None.
+    """Return the class of a message, or None.
 
     Args:
         message_type: full name, such as `std_msgs/String`.
@@ -38,7 +38,7 @@ def get_message_class(message_type: str, reload_on_error: bool = False) -> Any:
 
 
 def get_service_class(service_type: str, reload_on_error: bool = False) -> Any:
-    """The class of a service, or None; see `get_message_class`."""
+    """Return the class of a service, or None; see `get_message_class`."""
     return _find("srv", service_type)
 
 

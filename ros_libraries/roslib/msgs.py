@@ -1,4 +1,4 @@
-"""roslib.msgs: message definitions taken apart (`MsgSpec`), by name or from a text. It stands on genmsg."""
+"""roslib.msgs: parses message definitions (`MsgSpec`), by name or from a text. It uses genmsg."""
 
 from __future__ import annotations
 
@@ -78,21 +78,21 @@ _UNNAMED = "Unnamed"
 
 
 def set_verbose(v: bool) -> None:
-    """Say whether to print what is read; only `is_verbose` goes by it."""
+    """Set whether to print the files that are read. Only `is_verbose` uses the value."""
     global VERBOSE
     VERBOSE = v
 
 
 def is_verbose() -> bool:
-    """What `set_verbose` has said last."""
+    """Return the last value given to `set_verbose`."""
     return VERBOSE
 
 
 def parse_type(type_: str) -> tuple[str, bool, int | None]:
-    """Base type, whether it is an array, and the length of one of fixed length.
+    """Return the base type, whether it is an array, and the length of a fixed array.
 
     Raises:
-        MsgSpecException: no type.
+        MsgSpecException: not a type.
     """
     try:
         return _parse_type(type_)
@@ -101,13 +101,13 @@ def parse_type(type_: str) -> tuple[str, bool, int | None]:
 
 
 class MsgSpec(_MsgSpec):
-    """A definition; see genmsg.MsgSpec, which has the last two arguments the other way round.
+    """A definition; see genmsg.MsgSpec, which has the last two arguments in the other order.
 
     Args:
-        types: of the fields.
-        names: of the fields.
+        types: types of the fields.
+        names: names of the fields.
         constants: its constants.
-        text: as it is written.
+        text: its text.
         full_name: with the package.
         short_name: without it.
         package: its package.
@@ -138,12 +138,12 @@ def register(msg_type_name: str, msg_spec: Any) -> None:
 
 
 def is_registered(msg_type_name: str) -> bool:
-    """Whether a definition is known under a full name."""
+    """Return whether a definition is known under a full name."""
     return msg_type_name in REGISTERED_TYPES
 
 
 def get_registered(msg_type_name: str, default_package: str | None = None) -> Any:
-    """A definition by name; one that nobody has registered is looked up.
+    """Return a definition by name. An unregistered one is looked up.
 
     Raises:
         KeyError: there is no such message.
@@ -158,7 +158,7 @@ def get_registered(msg_type_name: str, default_package: str | None = None) -> An
 
 
 def msg_file(package: str, type_: str) -> str:
-    """The path of a definition, whether it is there or not.
+    """Return the path of a definition, even if it does not exist.
 
     Raises:
         InvalidROSPkgException: there is no such package.
@@ -167,7 +167,7 @@ def msg_file(package: str, type_: str) -> str:
 
 
 def list_msg_types(package: str, include_depends: bool) -> list[str]:
-    """Names of the messages of a package; with `include_depends` also those of the packages that it depends on."""
+    """Return the names of the messages of a package; with `include_depends`, also those of its dependencies."""
     import rospkg
 
     found = [name.partition(SEP)[2] for name in rosmsg.list_msgs(package)]
@@ -176,7 +176,7 @@ def list_msg_types(package: str, include_depends: bool) -> list[str]:
 
 
 def get_pkg_msg_specs(package: str) -> tuple[list[tuple[str, MsgSpec]], list[str]]:
-    """Names and definitions of a package's messages, and the names of those that cannot be read."""
+    """Return names and definitions of a package's messages, and the names of unreadable ones."""
     found: list[tuple[str, MsgSpec]] = []
     failed: list[str] = []
     for name in list_msg_types(package, False):
@@ -188,7 +188,7 @@ def get_pkg_msg_specs(package: str) -> tuple[list[tuple[str, MsgSpec]], list[str
 
 
 def load_by_type(msgtype: str, package_context: str = "") -> tuple[str, MsgSpec]:
-    """Full name and definition of a message.
+    """Return the full name and definition of a message.
 
     Args:
         msgtype: its name.
@@ -207,7 +207,7 @@ def load_by_type(msgtype: str, package_context: str = "") -> tuple[str, MsgSpec]
 
 
 def load_from_file(file_path: str, package_context: str = "") -> tuple[str, MsgSpec]:
-    """Name and definition in a file; the name is a full one if the package is given.
+    """Return the name and definition in a file. The name is a full one if the package is given.
 
     Args:
         file_path: the file.
@@ -223,7 +223,7 @@ def load_from_file(file_path: str, package_context: str = "") -> tuple[str, MsgS
 
 
 def load_from_string(text: str, package_context: str = "", full_name: str = "", short_name: str = "") -> MsgSpec:
-    """The definition in a text.
+    """Return the definition in a text.
 
     Raises:
         MsgSpecException: a mistake in it.

@@ -1,4 +1,4 @@
-"""roslib.names: names of packages' resources (`std_msgs/String`); those of the graph are rosgraph.names's."""
+"""roslib.names: names of packages' resources (`std_msgs/String`). Graph names are in rosgraph.names."""
 
 from __future__ import annotations
 
@@ -64,29 +64,29 @@ BASE_RESOURCE_NAME_LEGAL_CHARS_P = re.compile(r"^[A-Za-z][\w_]*$")
 
 
 def resource_name(res_pkg_name: str, name: str, my_pkg: str | None = None) -> str:
-    """The full name of a package's resource; only its own name as seen from that package.
+    """Return the full name of a package's resource, or only its own name if seen from that package.
 
     Args:
         res_pkg_name: the package.
         name: the resource.
-        my_pkg: from which package it is seen.
+        my_pkg: the package from which it is seen.
     """
     return name if not res_pkg_name or res_pkg_name == my_pkg else f"{res_pkg_name}{PRN_SEPARATOR}{name}"
 
 
 def resource_name_base(name: str) -> str:
-    """A resource's name without its package."""
+    """Return a resource's name without its package."""
     return name.rpartition(PRN_SEPARATOR)[2]
 
 
 def resource_name_package(name: str) -> str | None:
-    """The package of a resource's name, or None."""
+    """Return the package of a resource's name, or None."""
     package, separator, _ = name.partition(PRN_SEPARATOR)
     return package if separator else None
 
 
 def package_resource_name(name: str) -> tuple[str, str]:
-    """Package and own name of a resource; the package may be empty.
+    """Return the package and own name of a resource; the package may be empty.
 
     Raises:
         ValueError: a name with more than two parts.
@@ -98,10 +98,10 @@ def package_resource_name(name: str) -> tuple[str, str]:
 
 
 def is_legal_resource_name(name: str | None) -> bool:
-    """Whether a name follows the rules for resources, with or without a package."""
+    """Return whether a name follows the rules for resources, with or without a package."""
     return name is not None and bool(RESOURCE_NAME_LEGAL_CHARS_P.fullmatch(name)) and "//" not in name
 
 
 def is_legal_resource_base_name(name: str | None) -> bool:
-    """Whether a name follows the rules for resources without a package."""
+    """Return whether a name follows the rules for resources without a package."""
     return name is not None and bool(BASE_RESOURCE_NAME_LEGAL_CHARS_P.fullmatch(name))

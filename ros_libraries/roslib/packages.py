@@ -45,7 +45,7 @@ class MultipleNodesException(ROSPkgException):
 
 
 def get_dir_pkg(d: str) -> tuple[str | None, str | None]:
-    """Folder and name of the package that a folder lies in, or None twice."""
+    """Return the folder and name of the package that a folder lies in, or None twice."""
     folder = os.path.realpath(d)
     while not any(os.path.exists(os.path.join(folder, name)) for name in (MANIFEST_FILE, PACKAGE_FILE)):
         if os.path.dirname(folder) == folder:
@@ -57,13 +57,13 @@ def get_dir_pkg(d: str) -> tuple[str | None, str | None]:
 def get_pkg_dir(
     package: str, required: bool = True, ros_root: str | None = None, ros_package_path: str | None = None
 ) -> str | None:
-    """The folder of a package.
+    """Return the folder of a package.
 
     Args:
         package: its name.
-        required: raise when there is none; otherwise give None.
+        required: raise if there is none; otherwise return None.
         ros_root: accepted.
-        ros_package_path: folders to look in; those of the node by default.
+        ros_package_path: folders to search; by default those of the node.
 
     Raises:
         InvalidROSPkgException: there is no such package.
@@ -85,13 +85,13 @@ def _rospack(path: str | None) -> rospkg.RosPack:
 def get_pkg_subdir(
     package: str, subdir: str, required: bool = True, env: Mapping[str, str] | None = None
 ) -> str | None:
-    """A folder in a package, made if it is missing.
+    """Return a folder in a package, and create it if it is missing.
 
     Args:
         package: name of the package.
         subdir: name of the folder.
-        required: make it; raise when that fails.
-        env: whose ROS_PACKAGE_PATH counts.
+        required: create it; raise if that fails.
+        env: environment with ROS_PACKAGE_PATH.
 
     Raises:
         InvalidROSPkgException: there is no such package.
@@ -110,7 +110,7 @@ def _get_pkg_subdir_by_dir(
 
 
 def resource_file(package: str, subdir: str, resource_name: str) -> str:
-    """The path of a file in a folder of a package, whether it is there or not.
+    """Return the path of a file in a folder of a package, even if it does not exist.
 
     Raises:
         InvalidROSPkgException: there is no such package.
@@ -124,7 +124,7 @@ def resource_file(package: str, subdir: str, resource_name: str) -> str:
 def list_pkgs_by_path(
     path: str, packages: list[str] | None = None, cache: dict[str, Any] | None = None, env: Any = None
 ) -> list[str]:
-    """Names of the packages in a folder at any depth.
+    """Return the names of the packages in a folder at any depth.
 
     Args:
         path: the folder.
@@ -141,12 +141,12 @@ def list_pkgs_by_path(
 
 
 def find_node(pkg: str, node_type: str, rospack: Any = None) -> list[str]:
-    """Paths of the executables of a package with a name.
+    """Return paths of the executables of a package with a name.
 
     Args:
         pkg: name of the package.
-        node_type: of the executable.
-        rospack: where to look for the package.
+        node_type: name of the executable.
+        rospack: finds the package.
 
     Raises:
         rospkg.ResourceNotFound: there is no such package.
@@ -157,13 +157,13 @@ def find_node(pkg: str, node_type: str, rospack: Any = None) -> list[str]:
 def find_resource(
     pkg: str, resource_name: str, filter_fn: Callable[[str], bool] | None = None, rospack: Any = None
 ) -> list[str]:
-    """Paths of the files of a package with a name.
+    """Return paths of the files of a package with a name.
 
     Args:
         pkg: name of the package.
-        resource_name: of the file.
-        filter_fn: takes a path and says whether it counts.
-        rospack: where to look for the package.
+        resource_name: name of the file.
+        filter_fn: takes a path and returns whether it counts.
+        rospack: finds the package.
 
     Raises:
         rospkg.ResourceNotFound: there is no such package.

@@ -17,11 +17,11 @@ Filter = Callable[[str], bool]
 def list_package_resources(
     package: str, include_depends: bool, subdir: str, rfilter: Filter = os.path.isfile
 ) -> list[str]:
-    """Names of the files in a folder of a package.
+    """Return the names of the files in a folder of a package.
 
     Args:
         package: its name.
-        include_depends: also those of the packages that it depends on, with the packages' names.
+        include_depends: also files of its dependencies, with the packages' names.
         subdir: the folder.
         rfilter: which files count.
 

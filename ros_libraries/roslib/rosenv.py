@@ -1,4 +1,4 @@
-"""roslib.rosenv: older names of what rospkg.environment and rosgraph.rosenv have."""
+"""roslib.rosenv: older names of rospkg.environment and rosgraph.rosenv."""
 
 from __future__ import annotations
 
@@ -65,10 +65,10 @@ def get_ros_package_path(required: bool = False, env: Mapping[str, str] | None =
 def get_master_uri(
     required: bool = True, env: Mapping[str, str] | None = None, argv: Sequence[str] | None = None
 ) -> str | None:
-    """Where the master answers, as the environment or an argument `__master:=` says.
+    """Return the master's URI from the environment or an argument `__master:=`.
 
     Raises:
-        ROSEnvException: it is required, and neither says so; or the argument is wrong.
+        ROSEnvException: it is required but missing, or the argument is wrong.
     """
     words = sys.argv if argv is None else argv
     said = ROS_MASTER_URI in (os.environ if env is None else env) or any(

@@ -1,4 +1,4 @@
-"""roslib.scriptutil: the bare master, for programs that are no nodes."""
+"""roslib.scriptutil: the bare master, for programs that are not nodes."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ __all__ = ["get_master", "get_param_server", "script_resolve_name"]
 
 
 def get_master() -> Any:
-    """The master, as a ServerProxy."""
+    """Return the master, as a ServerProxy."""
     return ServerProxy(get_master_uri())
 
 
 def get_param_server() -> Any:
-    """The parameter server, as a ServerProxy."""
+    """Return the parameter server, as a ServerProxy."""
     return get_master()

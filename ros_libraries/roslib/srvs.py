@@ -1,4 +1,4 @@
-"""roslib.srvs: service definitions taken apart (`SrvSpec`), from a text or a file. It stands on genmsg."""
+"""roslib.srvs: parses service definitions (`SrvSpec`), from a text or a file. It uses genmsg."""
 
 from __future__ import annotations
 
@@ -23,18 +23,18 @@ VERBOSE = False
 
 
 def set_verbose(v: bool) -> None:
-    """Say whether to print what is read; only `is_verbose` goes by it."""
+    """Set whether to print the files that are read. Only `is_verbose` uses the value."""
     global VERBOSE
     VERBOSE = v
 
 
 def is_verbose() -> bool:
-    """What `set_verbose` has said last."""
+    """Return the last value given to `set_verbose`."""
     return VERBOSE
 
 
 def list_srv_types(package: str, include_depends: bool) -> list[str]:
-    """Names of the services of a package; with `include_depends` also those of the packages that it depends on."""
+    """Return the names of the services of a package; with `include_depends`, also those of its dependencies."""
     import rospkg
 
     found = [name.partition(SEP)[2] for name in rosmsg.list_srvs(package)]
@@ -43,7 +43,7 @@ def list_srv_types(package: str, include_depends: bool) -> list[str]:
 
 
 def srv_file(package: str, type_: str) -> str:
-    """The path of a definition, whether it is there or not.
+    """Return the path of a definition, even if it does not exist.
 
     Raises:
         InvalidROSPkgException: there is no such package.
@@ -52,7 +52,7 @@ def srv_file(package: str, type_: str) -> str:
 
 
 def load_from_file(file_name: str, package_context: str = "") -> tuple[str, SrvSpec]:
-    """Name and definition in a file; see roslib.msgs.load_from_file."""
+    """Return the name and definition in a file; see roslib.msgs.load_from_file."""
     short = os.path.basename(file_name).removesuffix(EXT)
     package_context = package_context.rstrip("/")
     name = resource_name(package_context, short)
@@ -61,11 +61,11 @@ def load_from_file(file_name: str, package_context: str = "") -> tuple[str, SrvS
 
 
 def load_from_string(text: str, package_context: str = "", full_name: str = "", short_name: str = "") -> SrvSpec:
-    """The definition in a text.
+    """Return the definition in a text.
 
     Raises:
-        SrvSpecException: no line `---`.
-        MsgSpecException: a mistake in a half of it.
+        SrvSpecException: the line `---` is missing.
+        MsgSpecException: a mistake in one of its halves.
     """
     lines = text.splitlines(keepends=True)
     fence = next((number for number, line in enumerate(lines) if line.startswith(IODELIM)), None)

@@ -1,4 +1,4 @@
-"""roslib.stacks: older names of what rospkg.RosStack has."""
+"""roslib.stacks: older names of rospkg.RosStack."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def _stacks(env: Env) -> rospkg.RosStack:
 
 
 def stack_of(pkg: str, env: Env = None) -> str | None:
-    """Name of the stack that a package lies in, or None.
+    """Return the name of the stack that contains a package, or None.
 
     Raises:
         rospkg.ResourceNotFound: there is no such package.
@@ -50,7 +50,7 @@ def stack_of(pkg: str, env: Env = None) -> str | None:
 
 
 def get_stack_dir(stack: str, env: Env = None) -> str:
-    """The folder of a stack.
+    """Return the folder of a stack.
 
     Raises:
         InvalidROSStackException: there is no such stack.
@@ -62,12 +62,12 @@ def get_stack_dir(stack: str, env: Env = None) -> str:
 
 
 def list_stacks(env: Env = None) -> list[str]:
-    """Names of all stacks."""
+    """Return the names of all stacks."""
     return _stacks(env).list()
 
 
 def list_stacks_by_path(path: str, stacks: list[str] | None = None, cache: dict[str, str] | None = None) -> list[str]:
-    """Names of the stacks in a folder at any depth.
+    """Return the names of the stacks in a folder at any depth.
 
     Args:
         path: the folder.
@@ -80,7 +80,7 @@ def list_stacks_by_path(path: str, stacks: list[str] | None = None, cache: dict[
 
 
 def get_stack_version(stack: str, env: Env = None) -> str | None:
-    """Version of a stack, or None.
+    """Return the version of a stack, or None.
 
     Raises:
         rospkg.ResourceNotFound: there is no such stack.
@@ -89,5 +89,5 @@ def get_stack_version(stack: str, env: Env = None) -> str | None:
 
 
 def expand_to_packages(names: Sequence[str], env: Env = None) -> tuple[list[str], list[str]]:
-    """Packages of a list of packages and stacks, and the names that are neither."""
+    """Return packages of a list of packages and stacks, and the names that are neither."""
     return rospkg.expand_to_packages(names, rospkg.RosPack(), _stacks(env))

@@ -56,12 +56,12 @@ def _kind(mode: str) -> str:
 
 
 def packages() -> list[str]:
-    """Names of all packages that have messages or services."""
+    """Return the names of all packages that have messages or services."""
     return list(_definitions.packages())
 
 
 def list_types(package: str, mode: str = MODE_MSG, rospack: Any = None) -> list[str]:
-    """Full names of the messages or services of a package, sorted.
+    """Return the full names of the messages or services of a package, sorted.
 
     Args:
         package: its name.
@@ -79,20 +79,20 @@ def list_types(package: str, mode: str = MODE_MSG, rospack: Any = None) -> list[
 
 
 def list_msgs(package: str, rospack: Any = None) -> list[str]:
-    """Full names of the messages of a package; see `list_types`."""
+    """Return the full names of the messages of a package; see `list_types`."""
     return list_types(package, MODE_MSG, rospack)
 
 
 def list_srvs(package: str, rospack: Any = None) -> list[str]:
-    """Full names of the services of a package; see `list_types`."""
+    """Return the full names of the services of a package; see `list_types`."""
     return list_types(package, MODE_SRV, rospack)
 
 
 def iterate_packages(rospack: Any, mode: str) -> Iterator[tuple[str, str]]:
-    """Packages that have messages or services, each with the folder of them; `""` for one that cfepy brings along.
+    """Yield packages with messages or services, each with their folder, or `""` for a package that cfepy brings along.
 
     Args:
-        rospack: knows where packages lie.
+        rospack: knows the folders of packages.
         mode: MODE_MSG or MODE_SRV.
 
     Raises:
@@ -106,21 +106,21 @@ def iterate_packages(rospack: Any, mode: str) -> Iterator[tuple[str, str]]:
 
 
 def rosmsg_search(rospack: Any, mode: str, base_type: str) -> Iterator[str]:
-    """Full names of all messages or services that are called `base_type`."""
+    """Yield the full names of all messages or services that are called `base_type`."""
     for package, _ in iterate_packages(rospack, mode):
         if base_type in _definitions.names(package, _kind(mode)):
             yield f"{package}/{base_type}"
 
 
-# -- what they are ---------------------------------------------------------------------------------------------------
+# -- definitions -----------------------------------------------------------------------------------------------------
 
 
 def get_msg_text(type_: str, raw: bool = False, rospack: Any = None) -> str:
-    """The definition of a message, with those of its fields indented below them.
+    """Return the definition of a message, with its fields' definitions indented below them.
 
     Args:
         type_: full name.
-        raw: as it was written, without those of its fields.
+        raw: as written, without the definitions of its fields.
         rospack: accepted.
 
     Raises:
@@ -138,7 +138,7 @@ def get_msg_text(type_: str, raw: bool = False, rospack: Any = None) -> str:
 
 
 def get_srv_text(type_: str, raw: bool = False, rospack: Any = None) -> str:
-    """The definition of a service; see `get_msg_text`.
+    """Return the definition of a service; see `get_msg_text`.
 
     Raises:
         ROSMsgException: there is no such service.
@@ -155,7 +155,7 @@ def get_srv_text(type_: str, raw: bool = False, rospack: Any = None) -> str:
 
 
 def rosmsg_md5(mode: str, type_: str) -> str:
-    """The md5sum of a message or service.
+    """Return the md5sum of a message or service.
 
     Raises:
         IOError: there is no such type.
@@ -185,7 +185,7 @@ def rosmsgmain(mode: str = MODE_MSG) -> None:
 
 
 def __getattr__(name: str) -> Any:
-    """The commands one by one, by the names that tests and tools call them: `rosmsg_cmd_list(mode, full, argv)`."""
+    """Return a command by the name that tests and tools use: `rosmsg_cmd_list(mode, full, argv)`."""
     from rosmsg.command import COMMANDS, usage
 
     if name == "fullusage":

@@ -33,7 +33,7 @@ def usage(mode: str) -> str:
 
 
 def run(mode: str) -> None:
-    """Run the command line of sys.argv; errors are printed and end the program."""
+    """Run the command line of sys.argv. Errors are printed and end the program."""
     command = COMMANDS.get(sys.argv[1]) if len(sys.argv) > 1 else None
     if command is None:
         print(usage(mode))
@@ -71,7 +71,7 @@ def _parsed(parser: OptionParser, args: list[str], most: int = 1) -> tuple[Any, 
 
 
 def _named(mode: str, name: str) -> list[str]:
-    """Full names of the types that a name stands for."""
+    """Return the full names of the types that a name stands for."""
     name = name.removesuffix(mode)
     return [name] if "/" in name else list(rosmsg.rosmsg_search(rospkg.RosPack(), mode, name))
 
@@ -95,7 +95,7 @@ def _show(mode: str, args: list[str]) -> int:
 
 
 def _in_bag(file: str, name: str) -> list[Any]:
-    """The class of a message that a bag has, made of its definition there; empty when it has none of that name.
+    """Return a list with the class of a message, made from its definition in a bag, or an empty list.
 
     Raises:
         rosmsg.ROSMsgException: there is no such bag, or it is broken.

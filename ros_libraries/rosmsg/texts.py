@@ -1,4 +1,4 @@
-"""Definitions with those of nested types indented below the fields, from the full text that message classes carry."""
+"""Definitions with nested types' definitions indented below the fields, from the full text in message classes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _BUILTIN = frozenset(
 
 
 def expanded(message_class: Any) -> str:
-    """The definition of a message, constants first, as `rosmsg show` prints it.
+    """Return the definition of a message, constants first, as `rosmsg show` prints it.
 
     Args:
         message_class: its class.
@@ -66,7 +66,7 @@ def _brackets(kind: str) -> str:
 
 
 def _nested(kind: str, package: str, parts: dict[str, str]) -> str | None:
-    """Full name of the message type of a field; None for a plain one."""
+    """Return the full name of the message type of a field; None for a plain one."""
     base = kind.partition("[")[0]
     if base in _BUILTIN:
         return None

@@ -1,4 +1,4 @@
-"""Messages as YAML, as tools show them to be filled in (`rosmsg` prototypes)."""
+"""Messages as YAML, as tools show them for filling in (`rosmsg` prototypes)."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _SHORT = {"time": "std_msgs/Time", "duration": "std_msgs/Duration", "Header": "s
 
 
 def get_array_type_instance(field_type: str, default_package: str | None = None) -> Any:
-    """A value of the type of an array's elements; None when the type is unknown.
+    """Return a value of the type of an array's elements, or None if the type is unknown.
 
     Args:
         field_type: the array's type.
-        default_package: of a message type without a package.
+        default_package: package of a message type without a package.
     """
     base = field_type.strip().partition("[")[0]
     if base in _PLAIN:
@@ -47,7 +47,7 @@ def get_array_type_instance(field_type: str, default_package: str | None = None)
 
 
 def create_names_filter(names: Iterable[str]) -> Callable[[Any], list[str]]:
-    """A filter of fields that leaves some out."""
+    """Return a filter of fields that leaves some out."""
     left_out = list(names)
     return lambda message: [field for field in message.__slots__ if field not in left_out]
 
@@ -61,7 +61,7 @@ def get_yaml_for_msg(
     flow_style_: bool | None = None,
     fill_arrays_: bool = False,
 ) -> str:
-    """A message as YAML.
+    """Return a message as YAML.
 
     Args:
         msg: the message.

@@ -1,4 +1,4 @@
-"""rosnode: which nodes there are, whether they answer, what they publish, and how to end them (wiki.ros.org/rosnode).
+"""rosnode: lists nodes, checks whether they answer, shows their topics, and ends them (wiki.ros.org/rosnode).
 
 It asks the master, and the nodes themselves at their URIs.
 """
@@ -32,7 +32,7 @@ class ROSNodeIOException(ROSNodeException):
 
 
 def _succeed(args: Any) -> Any:
-    """The value of an answer.
+    """Return the value of an answer.
 
     Raises:
         ROSNodeException: the answer is not success.
@@ -54,10 +54,10 @@ def _state(master: rosgraph.Master) -> Any:
 
 
 def get_api_uri(master: rosgraph.Master, caller_id: str, skip_cache: bool = False) -> str | None:
-    """The URI of a node; None for one that is unknown.
+    """Return the URI of a node, or None if the node is unknown.
 
     Args:
-        master: whom to ask.
+        master: the master to ask.
         caller_id: name of the node.
         skip_cache: ask even if it is known from before.
 
@@ -75,7 +75,7 @@ def get_api_uri(master: rosgraph.Master, caller_id: str, skip_cache: bool = Fals
 
 
 def lookup_uri(master: rosgraph.Master, system_state: Any, topic: str, uri: str) -> str:
-    """A URI together with the name of the node on a topic that has it; the bare URI if there is none."""
+    """Return a URI with the name of the node on a topic that has it, or the bare URI if there is none."""
     for entries in system_state[:2]:
         for name, nodes in entries:
             for node in nodes if name == topic else ():
@@ -85,7 +85,7 @@ def lookup_uri(master: rosgraph.Master, system_state: Any, topic: str, uri: str)
 
 
 def get_node_names(namespace: str | None = None) -> list[str]:
-    """Names of all nodes, or of those in a namespace.
+    """Return the names of all nodes, or of those in a namespace.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -102,7 +102,7 @@ def _names(state: Any) -> list[str]:
 
 
 def get_machines_by_nodes() -> list[str]:
-    """Names of the machines that nodes run on.
+    """Return the names of the machines that nodes run on.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -111,7 +111,7 @@ def get_machines_by_nodes() -> list[str]:
 
 
 def get_nodes_by_machine(machine: str) -> list[str]:
-    """Names of the nodes that run on a machine.
+    """Return the names of the nodes that run on a machine.
 
     Raises:
         ROSNodeException: the machine is unknown.
@@ -136,11 +136,11 @@ def _machines() -> Iterable[tuple[str, str]]:
 
 
 def rosnode_ping(node_name: str, max_count: int | None = None, verbose: bool = False, skip_cache: bool = False) -> bool:
-    """Whether a node answers.
+    """Return whether a node answers.
 
     Args:
-        node_name: of the node.
-        max_count: how often to ask, once a second; None for ever.
+        node_name: name of the node.
+        max_count: how often to ask, once a second; None forever.
         verbose: print each answer.
         skip_cache: ask the master for the URI even if it is known from before.
 
@@ -178,7 +178,7 @@ def rosnode_ping(node_name: str, max_count: int | None = None, verbose: bool = F
 
 
 def rosnode_ping_all(verbose: bool = False, skip_cache: bool = False) -> tuple[list[str], list[str]]:
-    """The nodes that answer and those that do not.
+    """Return the nodes that answer and those that do not.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -194,7 +194,7 @@ def rosnode_ping_all(verbose: bool = False, skip_cache: bool = False) -> tuple[l
 
 
 def kill_nodes(node_names: Iterable[str]) -> tuple[list[str], list[str]]:
-    """Ask nodes to shut down; those that were asked, and those that are unknown.
+    """Ask nodes to shut down. Returns the nodes that were asked, and the unknown ones.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -218,7 +218,7 @@ def cleanup_master_blacklist(master: rosgraph.Master, blacklist: Sequence[str]) 
 
 
 def cleanup_master_whitelist(master: rosgraph.Master, whitelist: Sequence[str]) -> None:
-    """Remove all registrations but those of some nodes from the master."""
+    """Remove all registrations from the master, except for those of the listed nodes."""
     for name in _names(master.getSystemState()):
         if name not in whitelist:
             _unregister(master, name)
@@ -239,11 +239,11 @@ def _unregister(master: rosgraph.Master, node: str) -> None:
             its_master.unregisterService(service, master.lookupService(service))
 
 
-# -- what they do ----------------------------------------------------------------------------------------------------
+# -- connections of nodes --------------------------------------------------------------------------------------------
 
 
 def get_node_info_description(node_name: str) -> str:
-    """A text that lists what a node publishes, subscribes to and offers.
+    """Return a text that lists a node's publications, subscriptions and services.
 
     Raises:
         ROSNodeIOException: the master does not answer.
@@ -264,11 +264,11 @@ def _listed(title: str, lines: Sequence[str]) -> str:
 
 
 def get_node_connection_info_description(node_api: str, master: rosgraph.Master) -> str:
-    """A text that lists a node's connections.
+    """Return a text that lists a node's connections.
 
     Args:
         node_api: the node's URI.
-        master: whom to ask for names.
+        master: the master to ask for names.
 
     Raises:
         ROSNodeIOException: the node does not answer.
@@ -289,10 +289,10 @@ def get_node_connection_info_description(node_api: str, master: rosgraph.Master)
 
 
 def rosnode_info(node_name: str, quiet: bool = False) -> None:
-    """Print what there is to know of a node.
+    """Print all information about a node.
 
     Args:
-        node_name: of the node.
+        node_name: name of the node.
         quiet: ask the master only.
     """
     master = rosgraph.Master(ID)
@@ -311,7 +311,7 @@ rosnode_debugnode = rosnode_info
 
 
 def _sub_rosnode_listnodes(namespace: str | None = None, list_uri: bool = False, list_all: bool = False) -> str:
-    """The lines that `rosnode list` prints."""
+    """Return the lines that `rosnode list` prints."""
     master = rosgraph.Master(ID)
     lines = []
     for name in sorted(get_node_names(namespace)):
@@ -356,5 +356,5 @@ def rosnodemain(argv: Sequence[str] | None = None) -> None:
 
 
 def __getattr__(name: str) -> Any:
-    """The commands one by one, under the names by which tests and tools call them: `_rosnode_cmd_list(argv)`."""
+    """Return a command by the name that tests and tools use: `_rosnode_cmd_list(argv)`."""
     return command_of("rosnode", name)

@@ -33,7 +33,7 @@ def print_usage(return_error: bool = True) -> NoReturn:
 
 
 def run(argv: list[str]) -> None:
-    """Run a command line; errors are printed and end the program."""
+    """Run a command line. Errors are printed and end the program."""
     command = argv[1] if len(argv) > 1 else ""
     try:
         if command in COMMANDS:

@@ -56,7 +56,7 @@ def _no_master() -> RosParamIOException:
 
 
 def get_param_server() -> rosgraph.Master:
-    """The parameter server."""
+    """Return the parameter server."""
     return rosgraph.Master(make_caller_id(f"rosparam-{os.getpid()}"))
 
 
@@ -64,12 +64,12 @@ def get_param_server() -> rosgraph.Master:
 
 
 def load_file(filename: str, default_namespace: str | None = None, verbose: bool = False) -> list[tuple[Any, str]]:
-    """The documents of a YAML file, each with its namespace. Nothing is set; see `upload_params`.
+    """Return the documents of a YAML file, each with its namespace. Nothing is set; see `upload_params`.
 
     Args:
         filename: the file; `-` or nothing for stdin.
-        default_namespace: of documents that do not say (`_ns`).
-        verbose: print what is read.
+        default_namespace: namespace of documents without one (`_ns`).
+        verbose: print the file name and the documents' namespaces.
 
     Raises:
         RosParamException: there is no such file.
@@ -89,13 +89,13 @@ def load_file(filename: str, default_namespace: str | None = None, verbose: bool
 def load_str(
     str: str, filename: str, default_namespace: str | None = None, verbose: bool = False
 ) -> list[tuple[Any, str]]:
-    """As `load_file`, from a text.
+    """Return the same as `load_file`, from a text.
 
     Args:
         str: the text.
-        filename: where it comes from.
-        default_namespace: of documents that do not say (`_ns`).
-        verbose: print what is read.
+        filename: its origin.
+        default_namespace: namespace of documents without one (`_ns`).
+        verbose: print the namespaces that documents give.
     """
     found = []
     default = default_namespace or get_ros_namespace()
@@ -139,7 +139,7 @@ def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
         verbose: print the values.
 
     Raises:
-        RosParamException: a mere value for the root, or a name that is no text.
+        RosParamException: a single value for the root, or a name that is not a text.
         RosParamIOException: the parameter server does not answer.
     """
     if ns == GLOBALNS and type(values) is not dict:
@@ -153,7 +153,7 @@ def upload_params(ns: str, values: Any, verbose: bool = False) -> None:
 
 
 def get_param(param: str) -> Any:
-    """The value of a parameter, or a namespace.
+    """Return the value of a parameter, or a namespace.
 
     Raises:
         rosgraph.MasterError: it is not set.
@@ -172,15 +172,15 @@ def set_param(param: str, value: str, verbose: bool = False) -> None:
 
 
 def set_param_raw(param: str, value: Any, verbose: bool = False) -> None:
-    """Set a parameter; a dictionary sets those it names and leaves the others of the namespace alone.
+    """Set a parameter. A dictionary sets its own names and keeps the others of the namespace.
 
     Args:
         param: its name.
         value: its value.
-        verbose: print what is set.
+        verbose: print the name and the new value.
 
     Raises:
-        RosParamException: a name that is no text.
+        RosParamException: a name that is not a text.
         OverflowError: an integer of more than 32 bits.
         RosParamIOException: the parameter server does not answer.
     """
@@ -217,7 +217,7 @@ def delete_param(param: str, verbose: bool = False) -> None:
 
 
 def list_params(ns: str) -> list[str]:
-    """Names of the parameters in a namespace, sorted.
+    """Return the names of the parameters in a namespace, sorted.
 
     Raises:
         RosParamIOException: the parameter server does not answer.

@@ -32,7 +32,7 @@ def print_usage() -> NoReturn:
 
 
 def run(argv: list[str]) -> None:
-    """Run a command line; errors are printed and end the program."""
+    """Run a command line. Errors are printed and end the program."""
     commands = {"get": _get, "dump": _dump, "set": _set, "load": _load, "delete": _delete, "list": _list}
     command = commands.get(argv[1]) if len(argv) > 1 else None
     if command is None:

@@ -1,6 +1,6 @@
 """YAML as rosparam reads and writes it: binary data as XML-RPC's Binary, angles as deg(...) and rad(...).
 
-PyYAML is shared by all programs of a simulated computer, so its own loaders are left as they are.
+All programs of a simulated computer share PyYAML, so its own loaders are left unchanged.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ def represent_xml_binary(loader: Any, data: Binary) -> Any:
 
 
 def construct_angle_radians(loader: Any, node: Any) -> float:
-    """`rad(expression)` or `!radians expression`; the expression may have `pi` in it.
+    """Return the value of `rad(expression)` or `!radians expression`. The expression may contain `pi`.
 
     Raises:
-        RosParamException: no such expression.
+        RosParamException: not such an expression.
     """
     text = loader.construct_scalar(node).strip()
     try:
@@ -80,10 +80,10 @@ def _dumper() -> Any:
 
 
 def documents(text: str) -> list[Any]:
-    """The documents of a YAML text."""
+    """Return the documents of a YAML text."""
     return list(yaml.load_all(text, Loader=_loader()))
 
 
 def text_of(value: Any) -> str:
-    """A value in YAML."""
+    """Return a value in YAML."""
     return str(yaml.dump(value, Dumper=_dumper()))

@@ -1,4 +1,4 @@
-"""rospkg: ROS packages on disk, where they lie and what their manifests say (docs.ros.org/en/independent/api/rospkg).
+"""rospkg: ROS packages on disk, their folders and manifests (docs.ros.org/en/independent/api/rospkg).
 
 A node sees the packages near its script, those on ROS_PACKAGE_PATH and those in the share folders of CMAKE_PREFIX_PATH.
 """
@@ -49,4 +49,4 @@ __all__ = [
     "on_ros_path",
     "parse_manifest_file",
 ]
-__version__ = "1.4.0"  # the release whose functions these are
+__version__ = "1.4.0"  # the release that has these functions

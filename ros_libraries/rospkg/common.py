@@ -1,4 +1,4 @@
-"""rospkg.common: names of manifest files, and the error of packages that are not there."""
+"""rospkg.common: names of manifest files, and the error of missing packages."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ class ResourceNotFound(Exception):
 
     Args:
         msg: its name.
-        ros_paths: where it was looked for.
+        ros_paths: the folders that were searched.
     """
 
     def __init__(self, msg: str, ros_paths: Sequence[str] | None = None) -> None:

@@ -1,4 +1,4 @@
-"""rospkg.distro: which distribution of ROS this is. Of rospkg's module there is what roslaunch asks for."""
+"""rospkg.distro: the name of this distribution of ROS. It only has the part of rospkg's module that roslaunch uses."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ import os
 
 
 def current_distro_codename() -> str | None:
-    """The code name of the distribution, such as "noetic", from ROS_DISTRO; None when that is not set."""
+    """Return the code name of the distribution, such as "noetic", from ROS_DISTRO, or None if that is not set."""
     return os.environ.get("ROS_DISTRO")

@@ -32,33 +32,33 @@ def get_ros_package_path(env: Env = None) -> str | None:
 
 
 def get_ros_paths(env: Env = None) -> list[str]:
-    """The folders in which packages are looked for, the first one counts."""
+    """Return the folders to search for packages; the first match counts."""
     path = get_ros_package_path(env) or ""
     return [each for each in (get_ros_root(env), *path.split(os.pathsep)) if each and each.strip()]
 
 
 def on_ros_path(p: str, env: Env = None) -> bool:
-    """Whether a folder is one of those, or below one."""
+    """Return whether a folder is one of the searched folders, or below one."""
     place = os.path.realpath(os.path.expanduser(p))
     roots = (os.path.realpath(os.path.expanduser(path)) for path in get_ros_paths(env))
     return any(place == root or place.startswith(root + os.sep) for root in roots)
 
 
 def get_ros_home(env: Env = None) -> str:
-    """The folder of what ROS keeps for a user."""
+    """Return the folder of a user's ROS data."""
     return _environment(env).get(ROS_HOME) or os.path.join(os.path.expanduser("~"), ".ros")
 
 
 def get_log_dir(env: Env = None) -> str:
-    """The folder of log files."""
+    """Return the folder of log files."""
     return _environment(env).get(ROS_LOG_DIR) or os.path.join(get_ros_home(env), "log")
 
 
 def get_test_results_dir(env: Env = None) -> str:
-    """The folder of test results."""
+    """Return the folder of test results."""
     return _environment(env).get(ROS_TEST_RESULTS_DIR) or os.path.join(get_ros_home(env), "test_results")
 
 
 def get_etc_ros_dir(env: Env = None) -> str:
-    """The folder of ROS's settings."""
+    """Return the folder of ROS's settings."""
     return _environment(env).get(ROS_ETC_DIR, "/etc/ros")

@@ -1,4 +1,4 @@
-"""rospkg.manifest: what a package's package.xml, or rosbuild's manifest.xml, says (wiki.ros.org/Manifest)."""
+"""rospkg.manifest: the content of a package's package.xml, or of rosbuild's manifest.xml (wiki.ros.org/Manifest)."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ class InvalidManifest(Exception):
 
 
 class Depend:
-    """A package that another one needs.
+    """A dependency of a package.
 
     Args:
-        name: of it.
+        name: name of the needed package.
         type_: "package" or "stack".
     """
 
@@ -61,7 +61,7 @@ class RosDep:
 
 
 class Export:
-    """What a package offers to tools.
+    """An export of a package for tools.
 
     Args:
         tag: name of the element.
@@ -75,16 +75,16 @@ class Export:
         self.str = str
 
     def get(self, attr: str) -> str | None:
-        """An attribute, or None."""
+        """Return an attribute, or None."""
         return self.attrs.get(attr)
 
 
 class Platform:
-    """A system that a package is known to work on.
+    """A system on which a package is known to work.
 
     Args:
         os_: its name.
-        version: of it.
+        version: its version.
         notes: remarks.
     """
 
@@ -119,7 +119,7 @@ class Manifest:
         self.unknown_tags: list[Any] = []
 
     def get_export(self, tag: str, attr: str, convert: bool = True) -> list[str]:
-        """Values of an attribute in exports.
+        """Return values of an attribute in exports.
 
         Args:
             tag: name of the export's element.
@@ -142,12 +142,12 @@ def parse_manifest_file(dirpath: str, manifest_name: str, rospack: Any = None) -
 
     Args:
         dirpath: the package's folder.
-        manifest_name: manifest.xml or stack.xml; package.xml counts where there is none.
+        manifest_name: manifest.xml or stack.xml; without such a file, package.xml counts.
         rospack: knows which dependencies are packages; the others are the system's.
 
     Raises:
-        InvalidManifest: it is no manifest.
-        IOError: there is none.
+        InvalidManifest: it is not a manifest.
+        IOError: the file does not exist.
     """
     for name in (manifest_name, PACKAGE_FILE):
         filename = os.path.join(dirpath, name)
@@ -162,7 +162,7 @@ def parse_manifest(manifest_name: str, string: str, filename: str = "string") ->
     """Read a manifest.xml or stack.xml.
 
     Raises:
-        InvalidManifest: it is no manifest.
+        InvalidManifest: it is not a manifest.
     """
     kind = "stack" if manifest_name == STACK_FILE else "package"
     root = _root(string, filename, kind)

@@ -1,4 +1,4 @@
-"""rospkg.rospack: finding packages and stacks by name, and what they depend on (`rospack find`, `rospack depends`)."""
+"""rospkg.rospack: finds packages and stacks by name, and their dependencies (`rospack find`, `rospack depends`)."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _IGNORED = ("CATKIN_IGNORE", "rospack_nosubdirs")
 
 
 class ManifestManager:
-    """Packages or stacks by name; what it has found it keeps.
+    """Packages or stacks by name. Results are cached.
 
     Args:
         manifest_name: manifest.xml for packages, stack.xml for stacks.
@@ -33,7 +33,7 @@ class ManifestManager:
 
     @classmethod
     def get_instance(cls, ros_paths: Sequence[str] | None = None) -> Any:
-        """The instance for some folders, made when first asked for."""
+        """Return the instance for some folders, made when first asked for."""
         instances: dict[str, Any] = vars(cls).get("_instances") or {}
         if not instances:
             cls._instances = instances  # type: ignore[attr-defined]
@@ -43,7 +43,7 @@ class ManifestManager:
         return instances[key]
 
     def get_ros_paths(self) -> list[str]:
-        """The folders that packages are looked for in."""
+        """Return the folders in which packages are searched."""
         return self._ros_paths[:]
 
     ros_paths = property(get_ros_paths)
@@ -58,11 +58,11 @@ class ManifestManager:
         return self._places
 
     def list(self) -> list[str]:
-        """Names of all."""
+        """Return the names of all."""
         return [*self._folders()]
 
     def get_path(self, name: str) -> str:
-        """The folder of a package.
+        """Return the folder of a package.
 
         Raises:
             ResourceNotFound: there is no such package.
@@ -72,7 +72,7 @@ class ManifestManager:
         return self._folders()[name]
 
     def get_manifest(self, name: str) -> Manifest:
-        """The manifest of a package.
+        """Return the manifest of a package.
 
         Raises:
             ResourceNotFound: there is no such package.
@@ -82,17 +82,17 @@ class ManifestManager:
             self._manifests[name] = parse_manifest_file(self.get_path(name), self._manifest_name, rospack=self)
         return self._manifests[name]
 
-    _load_manifest = get_manifest  # rospkg's name for reading one; FlexBE looks for its behaviors with it
+    _load_manifest = get_manifest  # rospkg's name for it; FlexBE looks for its behaviors with it
 
     def get_depends(self, name: str, implicit: bool = True) -> Sequence[str]:
-        """Names of what a package depends on.
+        """Return the names of a package's dependencies.
 
         Args:
-            name: of the package.
-            implicit: also what those depend on.
+            name: name of the package.
+            implicit: include indirect dependencies.
 
         Raises:
-            ResourceNotFound: it, or one of them, is not there.
+            ResourceNotFound: the package or a dependency is missing.
             InvalidManifest: a manifest cannot be read.
         """
         found: dict[str, None] = {}
@@ -105,11 +105,11 @@ class ManifestManager:
         return [*found]
 
     def get_depends_on(self, name: str, implicit: bool = True) -> Sequence[str]:
-        """Names of what depends on a package.
+        """Return the names of packages that depend on a package.
 
         Args:
-            name: of the package.
-            implicit: also by way of others.
+            name: name of the package.
+            implicit: include indirect dependencies.
         """
         return [each for each in self.list() if each != name and name in self._known_depends(each, implicit)]
 
@@ -120,7 +120,7 @@ class ManifestManager:
             return []
 
     def get_custom_cache(self, key: str, default: Any = None) -> Any:
-        """What a tool has kept here."""
+        """Return a value that a tool has stored here."""
         return self._custom_cache.get(key, default)
 
     def set_custom_cache(self, key: str, value: Any) -> None:
@@ -139,20 +139,20 @@ class RosPack(ManifestManager):
         super().__init__(MANIFEST_FILE, ros_paths)
 
     def get_rosdeps(self, package: str, implicit: bool = True) -> Sequence[str]:
-        """Names of what a package needs of the system.
+        """Return the names of a package's system dependencies.
 
         Args:
             package: its name.
-            implicit: also what the packages need that it depends on.
+            implicit: include those of the packages that it depends on.
 
         Raises:
-            ResourceNotFound: it, or one of them, is not there.
+            ResourceNotFound: the package or a dependency is missing.
         """
         packages = [package, *(self.get_depends(package) if implicit else [])]
         return [*dict.fromkeys(each.name for name in packages for each in self.get_manifest(name).rosdeps)]
 
     def stack_of(self, package: str) -> str | None:
-        """Name of the stack that a package lies in, or None.
+        """Return the name of the stack that contains a package, or None.
 
         Raises:
             ResourceNotFound: there is no such package.
@@ -179,7 +179,7 @@ class RosStack(ManifestManager):
         return found
 
     def packages_of(self, stack: str) -> Sequence[str]:
-        """Names of the packages in a stack.
+        """Return the names of the packages in a stack.
 
         Raises:
             ResourceNotFound: there is no such stack.
@@ -187,7 +187,7 @@ class RosStack(ManifestManager):
         return list_by_path(MANIFEST_FILE, self.get_path(stack), {})
 
     def get_stack_version(self, stack: str) -> str | None:
-        """Version of a stack, or None.
+        """Return the version of a stack, or None.
 
         Raises:
             ResourceNotFound: there is no such stack.
@@ -196,12 +196,12 @@ class RosStack(ManifestManager):
 
 
 def list_by_path(manifest_name: str, path: str, cache: dict[str, str] | None) -> list[str]:
-    """Names of the packages, or stacks, in a folder at any depth; none inside another.
+    """Return the names of the packages, or stacks, in a folder at any depth, but not those inside another.
 
     Args:
-        manifest_name: of what is looked for.
+        manifest_name: file name that identifies them.
         path: the folder.
-        cache: takes the folder of each.
+        cache: gets the folder of each.
     """
     found: dict[str, str] = {}
     for folder, below, files in os.walk(os.path.abspath(path), followlinks=True):
@@ -217,7 +217,7 @@ def list_by_path(manifest_name: str, path: str, cache: dict[str, str] | None) ->
 
 
 def _resource(folder: str, files: Iterable[str], manifest_name: str) -> str | None:
-    """The name of the package or stack that a folder is; None if it is none."""
+    """Return the name of a folder's package or stack, or None if the folder is neither."""
     if "CATKIN_IGNORE" in files:
         return None
     if PACKAGE_FILE in files:
@@ -229,7 +229,7 @@ def _resource(folder: str, files: Iterable[str], manifest_name: str) -> str | No
 
 
 def expand_to_packages(names: Sequence[str], rospack: RosPack, rosstack: RosStack) -> tuple[list[str], list[str]]:
-    """Packages of a list of packages and stacks, and the names that are neither.
+    """Return packages of a list of packages and stacks, and the names that are neither.
 
     Raises:
         ValueError: no list.
@@ -248,7 +248,7 @@ def expand_to_packages(names: Sequence[str], rospack: RosPack, rosstack: RosStac
 
 
 def get_stack_version_by_dir(stack_dir: str) -> str | None:
-    """Version of the stack in a folder, or None."""
+    """Return the version of the stack in a folder, or None."""
     file = os.path.join(stack_dir, STACK_FILE)
     if not os.path.isfile(file):
         return None
@@ -257,7 +257,7 @@ def get_stack_version_by_dir(stack_dir: str) -> str | None:
 
 
 def get_package_name(path: str) -> str | None:
-    """Name of the package that a file or folder lies in, or None."""
+    """Return the name of the package that a file or folder lies in, or None."""
     for folder in _upwards(os.path.realpath(path)):
         if _has(folder, MANIFEST_FILE):
             return os.path.basename(folder)
@@ -267,7 +267,7 @@ def get_package_name(path: str) -> str | None:
 
 
 def _upwards(folder: str) -> Iterable[str]:
-    """A folder and those above it."""
+    """Return a folder and those above it."""
     while folder and os.path.dirname(folder) != folder:
         yield folder
         folder = os.path.dirname(folder)

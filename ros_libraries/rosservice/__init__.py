@@ -1,4 +1,4 @@
-"""rosservice: which services there are, of which type, and calling one by its name (wiki.ros.org/rosservice)."""
+"""rosservice: lists services and their types, and calls one by its name (wiki.ros.org/rosservice)."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def _no_master() -> ROSServiceIOException:
 
 
 def _succeed(args: Any) -> Any:
-    """The value of an answer.
+    """Return the value of an answer.
 
     Raises:
         ROSServiceException: the answer is not success.
@@ -53,12 +53,12 @@ def _succeed(args: Any) -> Any:
 
 
 def get_service_list(node: str | None = None, namespace: str | None = None, include_nodes: bool = False) -> list[Any]:
-    """Names of services, or [name, [node]] for each.
+    """Return names of services, or [name, [node]] for each.
 
     Args:
         node: only those that it offers.
         namespace: only those in it.
-        include_nodes: say who offers them.
+        include_nodes: include the nodes that offer them.
 
     Raises:
         ROSServiceIOException: the master does not answer.
@@ -76,13 +76,13 @@ def get_service_list(node: str | None = None, namespace: str | None = None, incl
 
 
 def get_service_node(service_name: str) -> str | None:
-    """Name of the node that offers a service, or None."""
+    """Return the name of the node that offers a service, or None."""
     found = dict(get_service_list(include_nodes=True)).get(service_name)
     return found[0] if found else None
 
 
 def get_service_uri(service_name: str) -> str | None:
-    """URI of a service, or None.
+    """Return the URI of a service, or None.
 
     Raises:
         ROSServiceIOException: the master does not answer.
@@ -96,15 +96,15 @@ def get_service_uri(service_name: str) -> str | None:
 
 
 def get_service_headers(service_name: str, service_uri: str) -> dict[str, str]:
-    """What a service says of itself: type, md5sum, types of request and response, name of its node.
+    """Return a service's description of itself: type, md5sum, types of request and response, name of its node.
 
     Args:
         service_name: the service.
-        service_uri: `rosrpc://host:port`, as the master gives it; there the service's node is asked.
+        service_uri: `rosrpc://host:port`, as the master gives it; the service's node is asked there.
 
     Raises:
-        ROSServiceException: no such URI, or the service is not there.
-        ROSServiceIOException: nobody answers there.
+        ROSServiceException: an invalid URI, or the service does not exist.
+        ROSServiceIOException: the node does not answer.
     """
     parts = urlparse(service_uri)
     if parts.scheme != "rosrpc" or not parts.hostname or not parts.port:
@@ -119,7 +119,7 @@ def get_service_headers(service_name: str, service_uri: str) -> dict[str, str]:
 
 
 def get_service_type(service_name: str) -> str | None:
-    """Type of a service, or None.
+    """Return the type of a service, or None.
 
     Raises:
         ROSServiceIOException: the master or the service's node does not answer.
@@ -129,7 +129,7 @@ def get_service_type(service_name: str) -> str | None:
 
 
 def rosservice_find(service_type: str) -> list[str]:
-    """Names of the services of a type.
+    """Return the names of the services of a type.
 
     Raises:
         ROSServiceIOException: the master does not answer.
@@ -146,7 +146,7 @@ def rosservice_find(service_type: str) -> list[str]:
 
 
 def get_service_class_by_name(service_name: str) -> Any:
-    """Class of a service.
+    """Return the class of a service.
 
     Raises:
         ROSServiceException: the service, its type or its class cannot be found.
@@ -167,12 +167,12 @@ def get_service_class_by_name(service_name: str) -> Any:
 
 
 def has_service_args(service_name: str, service_class: Any = None) -> bool:
-    """Whether a service's request has fields."""
+    """Return whether a service's request has fields."""
     return len(_class_of(service_name, service_class)._request_class.__slots__) > 0
 
 
 def get_service_args(service_name: str) -> str:
-    """Names of the fields of a service's request."""
+    """Return the names of the fields of a service's request."""
     return str(genpy.message.get_printable_message_args(_class_of(service_name, None)._request_class))
 
 
@@ -182,7 +182,7 @@ def _class_of(service_name: str, service_class: Any) -> Any:
 
 
 def call_service(service_name: str, service_args: Sequence[Any], service_class: Any = None) -> tuple[Any, Any]:
-    """Call a service; the request and the response.
+    """Call a service. Returns the request and the response.
 
     Args:
         service_name: the service.
@@ -237,5 +237,5 @@ def rosservicemain(argv: Sequence[str] | None = None) -> None:
 
 
 def __getattr__(name: str) -> Any:
-    """The commands one by one, under the names by which tests and tools call them: `_rosservice_cmd_list(argv)`."""
+    """Return a command by the name that tests and tools use: `_rosservice_cmd_list(argv)`."""
     return command_of("rosservice", name)

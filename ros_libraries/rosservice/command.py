@@ -34,7 +34,7 @@ def print_usage() -> NoReturn:
 
 
 def run(argv: list[str]) -> None:
-    """Run a command line; errors are printed and end the program."""
+    """Run a command line. Errors are printed and end the program."""
     argv = rospy.myargv(argv)
     command, args = (argv[1] if len(argv) > 1 else ""), argv[2:]
     try:
@@ -62,7 +62,7 @@ def _one_service(command: str, args: list[str]) -> str:
 
 
 def _printer(command: str, ask: Callable[[str], str | None]) -> Callable[[list[str]], None]:
-    """A command that prints one thing about a service."""
+    """Return a command that prints one thing about a service."""
 
     def print_it(args: list[str]) -> None:
         name = _one_service(command, args)

@@ -1,4 +1,4 @@
-"""rostest: the main routine of tests that run as nodes, and questions about who is on the graph.
+"""rostest: the main routine of tests that run as nodes, and queries about the publishers and subscribers of a topic.
 
 Source: wiki.ros.org/rostest. The tool itself, which reads launch files, is `cfepy rostest`.
 """
@@ -19,14 +19,14 @@ _PUBLISHERS, _SUBSCRIBERS = 0, 1  # of a master's state
 
 
 def get_master() -> Any:
-    """An XML-RPC handle of the master."""
+    """Return an XML-RPC handle of the master."""
     from xmlrpc.client import ServerProxy
 
     return ServerProxy(rosgraph.get_master_uri())
 
 
 def is_subscriber(topic: str, subscriber_id: str) -> bool:
-    """Whether a node subscribes to a topic.
+    """Return whether a node subscribes to a topic.
 
     Args:
         topic: its resolved name.
@@ -39,7 +39,7 @@ def is_subscriber(topic: str, subscriber_id: str) -> bool:
 
 
 def is_publisher(topic: str, publisher_id: str) -> bool:
-    """Whether a node publishes a topic; see `is_subscriber`."""
+    """Return whether a node publishes a topic; see `is_subscriber`."""
     return _is_member(_PUBLISHERS, topic, publisher_id)
 
 
@@ -51,10 +51,10 @@ def _is_member(side: int, topic: str, node: str) -> bool:
 
 
 def rosrun(package: str, test_name: str, test: Any, sysargs: Sequence[str] | None = None) -> None:
-    """Run a test that is a node; ends the program when one of its tests fails.
+    """Run a test that is a node. Ends the program if one of its tests fails.
 
     Args:
-        package: of the test.
+        package: package of the test.
         test_name: its name.
         test: a TestCase class, or a dotted name.
         sysargs: command line instead of sys.argv: `--text`, `--gtest_output=xml:FILE`.

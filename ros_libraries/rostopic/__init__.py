@@ -1,4 +1,4 @@
-"""rostopic: which topics there are, of which type, who is on them; watching and publishing (wiki.ros.org/rostopic).
+"""rostopic: lists topics with their types and nodes, prints messages and publishes them (wiki.ros.org/rostopic).
 
 Topics may be named down to a field: `/odom/pose/pose/position/x`, `/scan/ranges[0]`.
 """
@@ -103,14 +103,14 @@ def _topic_types(master: rosgraph.Master | None = None) -> list[list[str]]:
 
 
 def get_topic_type(topic: str, blocking: bool = False) -> tuple[str | None, str | None, Any]:
-    """The type of a topic; or None three times, when it has none.
+    """Return the type of a topic, or None three times if it has none.
 
     Args:
         topic: its name, or the name of a field of it.
-        blocking: wait until the topic is there.
+        blocking: wait until the topic exists.
 
     Returns:
-        its type, its name, and a function that gives the field of a message; None when no field is named.
+        its type, its name, and a function that returns the field of a message, or None without a field.
 
     Raises:
         ROSTopicIOException: the master does not answer.
@@ -136,7 +136,10 @@ def _get_topic_type(topic: str) -> tuple[str | None, str | None, Any]:
 
 
 def _has_field(kind: str, path: str) -> bool:
-    """Whether messages of a type have the first fields of a path, up to one with an index; also if nobody knows."""
+    """Return whether messages of a type have the first fields of a path, up to one with an index.
+
+    Unknown counts as true.
+    """
     message_class = roslib.message.get_message_class(kind)
     value = message_class() if message_class else None
     for field in path.rstrip("/").partition("[")[0].split("/") if value is not None else ():
@@ -147,7 +150,7 @@ def _has_field(kind: str, path: str) -> bool:
 
 
 def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None, Any]:
-    """As `get_topic_type`, with the message class in place of the type.
+    """Return the same as `get_topic_type`, with the message class in place of the type.
 
     Raises:
         ROSTopicException: the class cannot be found.
@@ -163,7 +166,7 @@ def get_topic_class(topic: str, blocking: bool = False) -> tuple[Any, str | None
 
 
 def find_by_type(topic_type: str) -> list[str]:
-    """Names of the topics of a type.
+    """Return the names of the topics of a type.
 
     Raises:
         ROSTopicIOException: the master does not answer.
@@ -171,11 +174,11 @@ def find_by_type(topic_type: str) -> list[str]:
     return [name for name, kind in _topic_types() if kind == topic_type]
 
 
-# -- who is on a topic -----------------------------------------------------------------------------------------------
+# -- nodes of a topic ------------------------------------------------------------------------------------------------
 
 
 def get_api(master: rosgraph.Master, caller_id: str) -> str:
-    """The URI of a node, or a text that says that it is unknown.
+    """Return the URI of a node, or a text saying that it is unknown.
 
     Raises:
         ROSTopicIOException: the master does not answer.
@@ -191,10 +194,10 @@ def get_api(master: rosgraph.Master, caller_id: str) -> str:
 
 
 def get_topic_list(master: rosgraph.Master | None = None) -> tuple[list[Row], list[Row]]:
-    """Published and subscribed topics: name, type and nodes of each.
+    """Return published and subscribed topics: name, type and nodes of each.
 
     Args:
-        master: whom to ask; that of the environment by default.
+        master: the master to ask; by default from the environment.
     """
     master = master or rosgraph.Master(ID)
     types = dict(_topic_types(master))
@@ -205,10 +208,10 @@ def get_topic_list(master: rosgraph.Master | None = None) -> tuple[list[Row], li
 
 
 def get_info_text(topic: str) -> str:
-    """A text with the type of a topic and the nodes on it.
+    """Return a text with the type of a topic and its nodes.
 
     Raises:
-        ROSTopicException: nobody is on the topic.
+        ROSTopicException: the topic has no nodes.
         ROSTopicIOException: the master does not answer.
     """
     master = rosgraph.Master(ID)
@@ -229,7 +232,7 @@ def get_info_text(topic: str) -> str:
 def _rostopic_list_group_by_host(
     master: rosgraph.Master, pubs: Sequence[Row], subs: Sequence[Row]
 ) -> tuple[dict[str, list[Row]], dict[str, list[Row]]]:
-    """Rows by the machine that the nodes run on."""
+    """Return rows by the machine that the nodes run on."""
     sides: tuple[dict[str, list[Row]], dict[str, list[Row]]] = ({}, {})
     for side, rows in zip(sides, (pubs, subs), strict=True):
         for topic, kind, nodes in rows:
@@ -253,5 +256,5 @@ def rostopicmain(argv: Sequence[str] | None = None) -> None:
 
 
 def __getattr__(name: str) -> Any:
-    """The commands one by one, under the names by which tests and tools call them: `_rostopic_cmd_list(argv)`."""
+    """Return a command by the name that tests and tools use: `_rostopic_cmd_list(argv)`."""
     return command_of("rostopic", name)

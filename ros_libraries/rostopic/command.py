@@ -40,7 +40,7 @@ def print_usage() -> NoReturn:
 
 
 def run(argv: list[str]) -> None:
-    """Run a command line; errors are printed and end the program."""
+    """Run a command line. Errors are printed and end the program."""
     argv = rospy.myargv(argv)
     command = COMMANDS.get(argv[1]) if len(argv) > 1 else None
     if command is None:
@@ -91,7 +91,7 @@ def _watch(report: Callable[[], None]) -> None:
 
 
 def _condition(expression: str | None) -> Callable[[Any], Any] | None:
-    """A filter of messages from an expression in which `m` is the message."""
+    """Return a filter of messages from an expression in which `m` is the message."""
     return None if expression is None else lambda m: eval(expression, {"m": m})
 
 
@@ -123,7 +123,7 @@ def _type(args: list[str]) -> None:
 
 
 def _field_type(kind: str, path: str) -> str | None:
-    """The type of a field; None when there is none such."""
+    """Return the type of a field, or None if there is no such field."""
     found: str | None = kind
     for field in path.split("/") if path else ():
         message_class = roslib.message.get_message_class(found.partition("[")[0]) if found else None

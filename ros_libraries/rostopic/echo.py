@@ -17,18 +17,18 @@ CLEAR = "\033[2J\033[;H"
 
 
 class CallbackEcho:
-    """Prints messages; its `callback` is one for subscribers.
+    """Prints messages. Its `callback` is one for subscribers.
 
     Args:
         topic: the topic, or a field of it.
-        msg_eval: gives what to print of a message; None for all of it.
+        msg_eval: returns the part of a message to print; None for all of it.
         plot: print lines of comma separated values.
-        filter_fn: takes a message and says whether to print it.
+        filter_fn: takes a message and returns whether to print it.
         echo_clear: clear the screen before each message.
         echo_all_topics: print messages of other topics as well.
-        offset_time: print times as the time that has gone by since.
-        count: stop after so many messages.
-        field_filter_fn: says which fields to print.
+        offset_time: print times as the time elapsed since then.
+        count: stop after this many messages.
+        field_filter_fn: returns the fields to print.
         fixed_numeric_width: characters of a number.
         value_transform_fn: changes a message before it is printed.
     """
@@ -75,7 +75,7 @@ class CallbackEcho:
         fixed_numeric_width: int | None = None,
         value_transform: Callable[..., Any] | None = None,
     ) -> str:
-        """A message as YAML."""
+        """Return a message as YAML."""
         if type_information and type_information.startswith("uint8["):
             val = list(val)
         if value_transform is not None:
@@ -91,12 +91,12 @@ class CallbackEcho:
         return text
 
     def callback(self, data: Any, callback_args: dict[str, Any], current_time: Any = None) -> None:
-        """A message has come.
+        """Handle a message.
 
         Args:
             data: the message.
             callback_args: "topic", its topic, and "type_information", the type of the field.
-            current_time: when it came; None for now.
+            current_time: time of arrival; None for now.
         """
         if self.filter_fn is not None and not self.filter_fn(data):
             return
@@ -138,7 +138,7 @@ class CallbackEcho:
 
 
 def create_field_filter(echo_nostr: bool, echo_noarr: bool) -> Filter:
-    """What tells the fields of a message that are to be printed.
+    """Return a function that selects the fields of a message to print.
 
     Args:
         echo_nostr: leave texts out.
@@ -154,7 +154,7 @@ def create_field_filter(echo_nostr: bool, echo_noarr: bool) -> Filter:
 
 
 def create_value_transform(echo_nostr: bool, echo_noarr: bool) -> Callable[..., Any]:
-    """What makes of a message one in which texts or arrays are replaced by their type and length.
+    """Return a function that replaces texts or arrays of a message by their type and length.
 
     Args:
         echo_nostr: replace texts.

@@ -14,12 +14,12 @@ Filter = Callable[[Any], Iterable[str]]
 
 
 def msgevalgen(pattern: str) -> Callable[[Any], Any] | None:
-    """A function that gives a field of a message; None when the path is empty or has a mistake.
+    """Return a function that returns a field of a message, or None if the path is empty or has a mistake.
 
     Args:
         pattern: such as `/pose/position/x`, `/points[0]/x`, `/points[1:3]/x`.
 
-    The function prints on stderr what is wrong and gives None, when a message has no such field.
+    If a message has no such field, the function prints the error on stderr and returns None.
     """
     steps: list[tuple[str, Any]] = []
     for part in filter(None, pattern.split("/")):
@@ -65,7 +65,7 @@ def _field(value: Any, steps: list[tuple[str, Any]], pattern: str) -> Any:
 
 
 def _str_plot_fields(val: Any, f: str, field_filter: Filter | None) -> str:
-    """The title line: names of all plain values in a message, `f` before each."""
+    """Return the title line: names of all plain values in a message, `f` before each."""
     return "time," + ",".join(name for name, _ in _plain(val, f, field_filter))
 
 
@@ -78,11 +78,11 @@ def _str_plot(
     fixed_numeric_width: int | None = None,
     value_transform: Any = None,
 ) -> str:
-    """A line: the time in ns, then all plain values in a message.
+    """Return a line: the time in ns, then all plain values in a message.
 
     Args:
         val: the message.
-        time_offset: taken off all times.
+        time_offset: subtracted from all times.
         current_time: the line's time; None for the header's, or now.
         field_filter: which fields count.
         type_information: accepted.
@@ -105,7 +105,7 @@ def _text(value: Any, time_offset: Any) -> str:
 
 
 def _plain(value: Any, name: str, field_filter: Filter | None) -> Iterable[tuple[str, Any]]:
-    """The plain values in a message, with their names."""
+    """Return the plain values in a message, with their names."""
     if hasattr(value, "_slot_types") and not isinstance(value, genpy.TVal):
         types = dict(zip(value.__slots__, value._slot_types, strict=False))
         for field in value.__slots__ if field_filter is None else field_filter(value):

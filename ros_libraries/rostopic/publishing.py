@@ -1,4 +1,4 @@
-"""Publishing by name: a publisher from the names of topic and type, messages from plain values (`rostopic pub`)."""
+"""Publishes by name: a publisher from the names of topic and type, messages from plain values (`rostopic pub`)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ SUBSCRIBER_TIMEOUT = 5.0
 
 
 def create_publisher(topic_name: str, topic_type: str, latch: bool, disable_rostime: bool = True) -> tuple[Any, Any]:
-    """A publisher and its message class. The program becomes a node, if it is none yet.
+    """Return a publisher and its message class. The program becomes a node, if it is none yet.
 
     Args:
         topic_name: the topic.
@@ -49,7 +49,7 @@ def create_publisher(topic_name: str, topic_type: str, latch: bool, disable_rost
 
 
 def _fillMessageArgs(msg: Any, pub_args: Any) -> None:
-    """Fill a message from plain values; `now` and `auto` stand for the time and a header with it."""
+    """Fill a message from plain values. `now` and `auto` stand for the time and for a header with it."""
     from std_msgs.msg import Header
 
     now = rospy.get_rostime()
@@ -75,10 +75,10 @@ def publish_message(
         pub: the publisher.
         msg_class: its message class.
         pub_args: values of the fields, or one dictionary of them.
-        rate: publish so often a second until the end; None for once.
+        rate: publish at this rate in Hz until the end; None for once.
         once: return; otherwise wait for the end.
         verbose: print the message.
-        substitute_keywords: put in the time anew for each message.
+        substitute_keywords: insert the time anew for each message.
 
     Raises:
         ROSTopicException: the values do not fit.
@@ -128,7 +128,10 @@ def argv_publish(
     verbose: bool,
     substitute_keywords: bool = False,
 ) -> None:
-    """As `publish_message`; with `once` it stays for three seconds, so that others can get the message."""
+    """Publish as `publish_message` does.
+
+    With `once` it stays for three seconds, so that others can receive the message.
+    """
     publish_message(pub, msg_class, pub_args, rate, once, verbose, substitute_keywords)
     end = time.time() + _ONCE_DELAY
     while once and not rospy.is_shutdown() and time.time() < end:
@@ -136,7 +139,7 @@ def argv_publish(
 
 
 def wait_for_subscriber(pub: Any, timeout: float) -> None:
-    """Wait until somebody subscribes, for some seconds at most."""
+    """Wait until there is a subscriber, for some seconds at most."""
     end = time.time() + timeout
     while pub.get_num_connections() == 0 and time.time() < end:
         rospy.rostime.wallsleep(0.01)
@@ -146,7 +149,7 @@ def wait_for_subscriber(pub: Any, timeout: float) -> None:
 
 
 def file_yaml_arg(filename: str) -> Callable[[], Iterator[Any]]:
-    """A function that gives the documents of a YAML file, each in a list.
+    """Return a function that gives the documents of a YAML file, each in a list.
 
     Raises:
         ROSTopicException: no such file, or (the function) no YAML.
@@ -167,7 +170,7 @@ def file_yaml_arg(filename: str) -> Callable[[], Iterator[Any]]:
 
 
 def stdin_yaml_arg() -> Iterator[Any]:
-    """The YAML documents of stdin, each ended by a line `---`."""
+    """Yield the YAML documents of stdin, each ended by a line `---`."""
     import yaml
 
     lines: list[str] = []
@@ -195,7 +198,7 @@ def stdin_publish(
     Args:
         pub: the publisher.
         msg_class: its message class.
-        rate: messages a second; the only message of a file is published again and again.
+        rate: messages per second; the only message of a file is published repeatedly.
         once: end after the first.
         filename: the file; None for stdin.
         verbose: print the messages.

@@ -1,4 +1,4 @@
-"""How often messages come, how late and how much: what `rostopic hz`, `delay` and `bw` count."""
+"""Statistics of messages: rate, delay and size, as in `rostopic hz`, `delay` and `bw`."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def _figures(values: Sequence[float]) -> tuple[float, float, float, float]:
 
 
 class _Series:
-    """What has come on one topic: the time of the first and the last message, and the times between messages."""
+    """Messages of one topic: the time of the first and the last one, and the intervals between them."""
 
     def __init__(self) -> None:
         self.first = -1.0
@@ -36,9 +36,9 @@ class ROSTopicHz:
     """Rates of topics.
 
     Args:
-        window_size: how many messages count; below 0 very many.
-        filter_expr: takes a message and says whether it counts.
-        use_wtime: go by the wall clock.
+        window_size: how many messages count; a negative number means very many.
+        filter_expr: takes a message and returns whether it counts.
+        use_wtime: use the wall clock.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class ROSTopicHz:
         return self._of(None).values
 
     def get_times(self, topic: str | None = None) -> list[float]:
-        """Times between messages, in seconds."""
+        """Return times between messages, in seconds."""
         return self._of(topic).values
 
     def set_times(self, value: list[float], topic: str | None = None) -> None:
@@ -67,7 +67,7 @@ class ROSTopicHz:
         self._of(topic).values = value
 
     def get_msg_t0(self, topic: str | None = None) -> float:
-        """Time of the first message; -1 before it."""
+        """Return the time of the first message; -1 before it."""
         return self._of(topic).first
 
     def set_msg_t0(self, value: float, topic: str | None = None) -> None:
@@ -75,7 +75,7 @@ class ROSTopicHz:
         self._of(topic).first = value
 
     def get_msg_tn(self, topic: str | None = None) -> float:
-        """Time of the last message."""
+        """Return the time of the last message."""
         return self._of(topic).last
 
     def set_msg_tn(self, value: float, topic: str | None = None) -> None:
@@ -83,7 +83,7 @@ class ROSTopicHz:
         self._of(topic).last = value
 
     def get_last_printed_tn(self, topic: str | None = None) -> float:
-        """Time of the message that was the last one when `get_hz` was called last."""
+        """Return the time of the message that was the last one when `get_hz` was called last."""
         return self._of(topic).shown
 
     def set_last_printed_tn(self, value: float, topic: str | None = None) -> None:
@@ -91,7 +91,7 @@ class ROSTopicHz:
         self._of(topic).shown = value
 
     def callback_hz(self, m: Any, topic: str | None = None) -> None:
-        """A message has come; callback for a subscriber."""
+        """Count a message; callback for a subscriber."""
         if self.filter_expr is not None and not self.filter_expr(m):
             return
         with self.lock:
@@ -111,10 +111,10 @@ class ROSTopicHz:
                 series.values.pop(0)
 
     def get_hz(self, topic: str | None = None) -> Figures | None:
-        """Rate in 1/s; shortest, longest time between messages and standard deviation in s; number of messages.
+        """Return the rate in 1/s; shortest, longest interval and standard deviation in s; number of messages.
 
         Returns:
-            None when nothing new has come.
+            None if there is no new message.
         """
         series = self._of(topic)
         if not series.values or series.last == series.shown:
@@ -149,10 +149,10 @@ def _table(header: list[str], rows: list[list[str]]) -> str:
 
 
 class ROSTopicDelay:
-    """How old messages are when they come, by the time in their header.
+    """Age of messages at their arrival, by the time in their header.
 
     Args:
-        window_size: how many messages count; below 0 very many.
+        window_size: how many messages count; a negative number means very many.
     """
 
     def __init__(self, window_size: int) -> None:
@@ -164,7 +164,7 @@ class ROSTopicDelay:
         self.delays: list[float] = []
 
     def callback_delay(self, msg: Any) -> None:
-        """A message has come; callback for a subscriber."""
+        """Count a message; callback for a subscriber."""
         if not msg._has_header:
             rospy.logerr("msg does not have header")
             return
@@ -184,7 +184,10 @@ class ROSTopicDelay:
                 self.delays.pop(0)
 
     def get_delay(self) -> Figures | None:
-        """Mean, least, largest delay, standard deviation in s; number of messages. None when nothing new has come."""
+        """Return mean, least, largest delay, standard deviation in s; number of messages.
+
+        None if there is no new message.
+        """
         if self.msg_tn == self.last_msg_tn or not self.delays:
             return None
         with self.lock:
@@ -216,7 +219,7 @@ class ROSTopicBandwidth:
         self.sizes: list[int] = []
 
     def callback(self, data: Any) -> None:
-        """A message has come, as an AnyMsg; callback for a subscriber."""
+        """Count a message, given as an AnyMsg; callback for a subscriber."""
         with self.lock:
             self.times.append(time.time())
             self.sizes.append(len(data._buff))
@@ -225,7 +228,7 @@ class ROSTopicBandwidth:
                 self.sizes.pop(0)
 
     def get_bw(self) -> tuple[float, float, int, int, int] | None:
-        """Bytes per second; mean, least, largest size; number of messages. None before the second message."""
+        """Return bytes per second; mean, least, largest size; number of messages. None before the second message."""
         if len(self.times) < 2:
             return None
         with self.lock:

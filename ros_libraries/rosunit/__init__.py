@@ -1,7 +1,7 @@
-"""rosunit: Python unit tests that leave their results as JUnit XML, as ROS's build tools want them.
+"""rosunit: Python unit tests that write their results as JUnit XML for ROS's build tools.
 
-Source: wiki.ros.org/rosunit. `unitrun` is the main routine of a test that needs no graph; `rostest.rosrun`, for tests
-that do, stands on the same runner.
+Source: wiki.ros.org/rosunit. `unitrun` is the main routine of a test without a graph. `rostest.rosrun`, for tests
+with one, uses the same runner.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Summaries of tests, as people read them (rosunit.baretest)."""
+"""Readable summaries of tests (rosunit.baretest)."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ def print_unittest_summary(result: unittest.TestResult) -> None:
 def print_runner_summary(
     runner_results: unittest.TestResult, junit_results: Result, runner_name: str = "ROSUNIT"
 ) -> None:
-    """Print what came of test programs and of the tests in them.
+    """Print the results of test programs and of their tests.
 
     Args:
-        runner_results: whether the programs ran as they should.
-        junit_results: what they wrote.
-        runner_name: of the tool that ran them.
+        runner_results: whether the programs ran correctly.
+        junit_results: their written results.
+        runner_name: name of the tool that ran them.
     """
     errors = junit_results.num_errors + len(runner_results.errors)
     failures = junit_results.num_failures + len(runner_results.failures)
@@ -41,5 +41,5 @@ def print_runner_summary(
 
 
 def _names(problems: Iterable[tuple[Any, str]]) -> list[str]:
-    """Names of tests; what has none, such as a module that cannot be imported, says what it is."""
+    """Return names of tests. An object without a name, such as a failed import, gives its description."""
     return [getattr(test, "_testMethodName", None) or f"{getattr(test, 'description', test)}" for test, _ in problems]

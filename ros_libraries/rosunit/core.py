@@ -1,4 +1,4 @@
-"""Where results of tests go, and the runner that writes them (rosunit.core)."""
+"""Files of test results, and the runner that writes them (rosunit.core)."""
 
 from __future__ import annotations
 
@@ -35,13 +35,13 @@ def makedirs_with_parent_perms(p: str) -> None:
 def xml_results_file(
     test_pkg: str, test_name: str, is_rostest: bool = False, env: Mapping[str, str] | None = None
 ) -> str:
-    """The file for the results of a test; its folder is made.
+    """Return the file for the results of a test, and create its folder.
 
     Args:
         test_pkg: package of the test.
         test_name: its name.
         is_rostest: the results are rostest's own.
-        env: environment to look at instead of the node's.
+        env: environment to use instead of the node's.
 
     Raises:
         IOError: the folder cannot be made.
@@ -58,7 +58,7 @@ def xml_results_file(
 
 
 def rostest_name_from_path(pkg_dir: str, test_file: str) -> str:
-    """The name of a test file's results: its path in the package, with "_" for "/" and without its ending."""
+    """Return the name of a test file's results: its path in the package, with "_" for "/" and without its ending."""
     path = os.path.abspath(test_file)
     if path.startswith(pkg_dir):
         test_file = path[len(pkg_dir) :].lstrip(os.sep)
@@ -68,12 +68,12 @@ def rostest_name_from_path(pkg_dir: str, test_file: str) -> str:
 def create_xml_runner(
     test_pkg: str, test_name: str, results_file: str | None = None, is_rostest: bool = False
 ) -> XMLTestRunner:
-    """A runner that writes its results to a file.
+    """Return a runner that writes its results to a file.
 
     Args:
         test_pkg: package of the test.
         test_name: its name.
-        results_file: where to; None takes `xml_results_file`.
+        results_file: path of the file; None takes `xml_results_file`.
         is_rostest: the results are rostest's own.
 
     Raises:

@@ -1,5 +1,5 @@
 # ruff: noqa: PT028  # names of ROS that begin with test_, not tests
-"""JUnit XML: reading and adding up results of tests (rosunit.junitxml)."""
+"""JUnit XML: reads and adds up results of tests (rosunit.junitxml)."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from xml.sax.saxutils import escape, quoteattr
 
 
 class TestInfo:
-    """What went wrong in a test.
+    """The failure of a test.
 
     Args:
-        type_: of the exception.
-        text: what it says.
+        type_: type of the exception.
+        text: its text.
     """
 
     kind = "failure"
@@ -22,7 +22,7 @@ class TestInfo:
         self.text = text
 
     def xml(self) -> str:
-        """The tag, as text."""
+        """Return the tag, as text."""
         return f"<{self.kind} type={quoteattr(self.type)}>{escape(self.text)}</{self.kind}>"
 
 
@@ -37,7 +37,7 @@ class TestFailure(TestInfo):
 
 
 class TestCaseResult:
-    """What came of one test.
+    """Result of one test.
 
     Args:
         name: classname and method.
@@ -57,7 +57,7 @@ class TestCaseResult:
 
     @property
     def description(self) -> str:
-        """The test in a line, and what went wrong below it."""
+        """The test in a line, and its failures below it."""
         if self.passed:
             return f"[{self.name}][passed]\n"
         problems = [(info, "ERROR" if info in self.errors else "FAILURE") for info in (*self.errors, *self.failures)]
@@ -73,17 +73,17 @@ class TestCaseResult:
         self.errors.append(error)
 
     def xml(self) -> str:
-        """The tag, as text."""
+        """Return the tag, as text."""
         inner = "".join(info.xml() for info in (*self.failures, *self.errors))
         names = f"classname={quoteattr(self.classname)} name={quoteattr(self.name)}"
         return f'<testcase {names} time="{self.time}">{inner}</testcase>'
 
 
 class Result:
-    """What came of a suite.
+    """Results of a suite.
 
     Args:
-        name: of the suite.
+        name: name of the suite.
         num_errors, num_failures, num_tests: how many.
     """
 
@@ -112,7 +112,7 @@ class Result:
         self.test_case_results.append(r)
 
     def xml(self) -> str:
-        """The suite, as text."""
+        """Return the suite, as text."""
         counts = (
             f'tests="{self.num_tests}" failures="{self.num_failures}" time="{self.time}" errors="{self.num_errors}"'
         )
@@ -121,11 +121,11 @@ class Result:
 
 
 def read(test_file: str, test_name: str) -> Result:
-    """The results in a file; an error if it is not XML, none if it has no suite.
+    """Return the results in a file: an error if it is not XML, none if it has no suite.
 
     Args:
         test_file: its path.
-        test_name: what to call the results.
+        test_name: name of the results.
     """
     result = Result(test_name)
     try:
@@ -167,7 +167,7 @@ def test_failure_junit_xml(
     class_name: str = "Results",
     testcase_name: str = "test_ran",
 ) -> str:
-    """A file that says that a test program did not run as it should."""
+    """Return the text of a file that reports a failed test program."""
     out = "" if stdout is None else f"<system-out>{escape(stdout)}</system-out>"
     return (
         f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuite tests="1" failures="1" time="1" errors="0" '
@@ -177,7 +177,7 @@ def test_failure_junit_xml(
 
 
 def test_success_junit_xml(test_name: str, class_name: str = "Results", testcase_name: str = "test_ran") -> str:
-    """A file that says that a test program ran as it should."""
+    """Return the text of a file that reports a successful test program."""
     return (
         f'<?xml version="1.0" encoding="UTF-8"?>\n<testsuite tests="1" failures="0" time="1" errors="0" '
         f'name={quoteattr(test_name)}><testcase name={quoteattr(testcase_name)} status="run" time="1" '
@@ -186,7 +186,7 @@ def test_success_junit_xml(test_name: str, class_name: str = "Results", testcase
 
 
 def print_summary(junit_results: Result, runner_name: str = "ROSUNIT") -> None:
-    """Print what came of a suite."""
+    """Print the results of a suite."""
     fine = not junit_results.num_errors and not junit_results.num_failures
     print(f"[{runner_name}]{'-' * 71}\n")
     print("".join(case.description for case in junit_results.test_case_results))

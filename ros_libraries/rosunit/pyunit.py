@@ -16,10 +16,10 @@ def unitrun(
     sysargs: Sequence[str] | None = None,
     coverage_packages: Sequence[str] | None = None,
 ) -> None:
-    """Run unit tests and leave their results as XML; ends the program when one fails.
+    """Run unit tests and write their results as XML. Ends the program if one fails.
 
     Args:
-        package: of the test.
+        package: package of the test.
         test_name: its name.
         test: a TestCase class, or a dotted name.
         sysargs: command line instead of sys.argv.

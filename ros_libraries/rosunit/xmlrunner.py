@@ -1,4 +1,4 @@
-"""A runner for unittest that keeps its results as JUnit XML (rosunit.xmlrunner)."""
+"""A runner for unittest that writes its results as JUnit XML (rosunit.xmlrunner)."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ _NOT_IN_XML = re.compile("[^\t\n\r\x20-\x7e\x85\xa0-\ud7ff\ue000-\ufdcf\ufde0-\u
 
 
 def printable(text: str) -> str:
-    """A text with what XML cannot hold written as numbers."""
+    """Return a text with characters that XML cannot hold written as numbers."""
     return _NOT_IN_XML.sub(lambda match: f"&#x{ord(match[0]):04X};", text)
 
 
 class XMLTestResult(unittest.TestResult):
-    """What came of the tests of one suite.
+    """Results of the tests of one suite.
 
     Args:
-        classname: of the suite.
+        classname: class name of the suite.
     """
 
     def __init__(self, classname: str) -> None:
@@ -60,12 +60,12 @@ class XMLTestResult(unittest.TestResult):
         self._problems.append(("failure", err))
 
     def xml(self, time_taken: float, out: str, err: str) -> ElementTree.ElementTree[ElementTree.Element]:
-        """The results as a <testsuite>.
+        """Return the results as a <testsuite>.
 
         Args:
             time_taken: in s.
-            out: what was printed on standard output.
-            err: what was printed on standard error.
+            out: text of standard output.
+            err: text of standard error.
         """
         suite = ElementTree.Element(
             "testsuite",
@@ -85,16 +85,16 @@ class XMLTestResult(unittest.TestResult):
         stream.write(ElementTree.tostring(self.xml(time_taken, out, err).getroot(), encoding="unicode"))
 
     def print_report_text(self, stream: TextIO, time_taken: float, out: str, err: str) -> None:
-        """Write a line for each test, and the traceback of those that failed."""
+        """Write a line for each test, and the tracebacks of failed ones."""
         for _, text in self._cases:
             stream.write(text)
 
 
 class XMLTestRunner:
-    """Runs tests and writes what came of them.
+    """Runs tests and writes their results.
 
     Args:
-        stream: where to; None makes a file TEST-<module>.<class>.xml in `path`.
+        stream: the stream to write to; None makes a file TEST-<module>.<class>.xml in `path`.
     """
 
     def __init__(self, stream: TextIO | None = None) -> None:
@@ -102,7 +102,7 @@ class XMLTestRunner:
         self.path = "."
 
     def run(self, test: Any) -> XMLTestResult:
-        """Run a test or a suite; what it prints goes into the results."""
+        """Run a test or a suite. Its output becomes part of the results."""
         classname = f"{type(test).__module__}.{type(test).__name__}"
         result = XMLTestResult(classname)
         began = time.time()

@@ -1,6 +1,6 @@
 """Reads and makes sensor_msgs/PointCloud2 messages.
 
-Names, arguments and results are those of sensor_msgs 1.13; the code is cfepy's own.
+Names, arguments and results match sensor_msgs 1.13; the code is cfepy's own.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ def read_points(
     skip_nans: bool = False,
     uvs: Iterable[tuple[int, int]] = (),
 ) -> Iterator[tuple[Any, ...]]:
-    """The points of a cloud, row by row.
+    """Yield the points of a cloud, row by row.
 
     Args:
         cloud: the PointCloud2.
-        field_names: fields to read; all by default. They come in the order in which they lie in the cloud.
+        field_names: fields to read; all by default. They are returned in their order in the cloud.
         skip_nans: leave out points with a NaN in a field that is read.
         uvs: (column, row) of the points to read; all by default.
 
@@ -48,7 +48,7 @@ def read_points(
 
     Raises:
         AssertionError: `cloud` is something else.
-        struct.error: its data are shorter than it says.
+        struct.error: its data are shorter than its header claims.
     """
     _check(cloud)
     unpack = struct.Struct(_get_struct_fmt(cloud.is_bigendian, cloud.fields, field_names)).unpack_from
@@ -70,7 +70,10 @@ def read_points_list(
     skip_nans: bool = False,
     uvs: Iterable[tuple[int, int]] = (),
 ) -> list[Any]:
-    """As `read_points`, a list of named tuples; their names are the field names in the order given."""
+    """Return the points as `read_points`, as a list of named tuples.
+
+    Their names are the field names in the order given.
+    """
     _check(cloud)
     names = [field.name for field in cloud.fields] if field_names is None else field_names
     kind: Any = namedtuple("Point", names)  # type: ignore[misc]  # the names are known at run time only
@@ -78,7 +81,7 @@ def read_points_list(
 
 
 def create_cloud(header: Any, fields: Sequence[Any], points: Sequence[Iterable[Any]]) -> Any:
-    """A cloud of one row.
+    """Return a cloud of one row.
 
     Args:
         header: a std_msgs/Header.
@@ -103,7 +106,7 @@ def create_cloud(header: Any, fields: Sequence[Any], points: Sequence[Iterable[A
 
 
 def create_cloud_xyz32(header: Any, points: Sequence[Iterable[float]]) -> Any:
-    """A cloud of one row with the fields x, y and z as float32; see `create_cloud`."""
+    """Return a cloud of one row with the fields x, y and z as float32; see `create_cloud`."""
     fields = [PointField(name, 4 * at, PointField.FLOAT32, 1) for at, name in enumerate("xyz")]
     return create_cloud(header, fields, points)
 
@@ -114,7 +117,7 @@ def _check(cloud: Any) -> None:
 
 
 def _get_struct_fmt(is_bigendian: bool, fields: Iterable[Any], field_names: Collection[str] | None = None) -> str:
-    """Format of a point up to the end of its last field that is read."""
+    """Return the format of a point up to the end of its last field that is read."""
     parts = [">" if is_bigendian else "<"]
     offset = 0
     for field in sorted(fields, key=lambda each: int(each.offset)):

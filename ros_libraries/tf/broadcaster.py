@@ -1,4 +1,4 @@
-"""`tf.TransformBroadcaster`: tells a transform on /tf (tf.broadcaster). Imports geometry_msgs and tf2_ros."""
+"""`tf.TransformBroadcaster`: publishes a transform on /tf (tf.broadcaster). Imports geometry_msgs and tf2_ros."""
 
 from __future__ import annotations
 

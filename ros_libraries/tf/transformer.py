@@ -16,12 +16,12 @@ _NOT_LISTENING = "cannot wait for transform without a dedicated thread that list
 
 
 def strip_leading_slash(s: str) -> str:
-    """A frame's name as tf2 wants it."""
+    """Return a frame's name as tf2 wants it."""
     return s.removeprefix("/")
 
 
 class Transformer:
-    """A buffer of transforms with tf's names of functions; frames may begin with a slash.
+    """A buffer of transforms with tf's names of functions. Names of frames may begin with a slash.
 
     Args:
         interpolate: without effect, as in tf.
@@ -41,7 +41,7 @@ class Transformer:
         self._buffer.clear()
 
     def setUsingDedicatedThread(self, value: bool) -> None:
-        """Say that somebody fills the buffer meanwhile, so that waiting makes sense."""
+        """Declare that another thread fills the buffer, so that waiting makes sense."""
         self._using_dedicated_thread = value
 
     def getTFPrefix(self) -> str:
@@ -51,38 +51,38 @@ class Transformer:
     # -- frames ------------------------------------------------------------------------------------------------------
 
     def allFramesAsDot(self, current_time: Any = None) -> str:
-        """The frames as a graph for dot; with a rospy.Time also their ages."""
+        """Return the frames as a graph for dot; with a rospy.Time, include their ages."""
         return self._buffer._allFramesAsDot(current_time) if current_time else self._buffer._allFramesAsDot()
 
     def allFramesAsString(self) -> str:
-        """A line for each frame that has a parent."""
+        """Return a line for each frame that has a parent."""
         return self._buffer.all_frames_as_string()
 
     def frameExists(self, frame_id: str) -> bool:
-        """Whether a frame has a parent."""
+        """Return whether a frame has a parent."""
         return frame_id in self.getFrameStrings()
 
     def getFrameStrings(self) -> list[str]:
-        """Names of the frames that have a parent."""
+        """Return the names of the frames that have a parent."""
         lines = self._buffer.all_frames_as_yaml().splitlines()
         return [line.removesuffix(": ") for line in lines if line.endswith(": ")]
 
     def chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> list[str]:
-        """The frames on the way from the source frame, by way of the fixed one, to the target frame."""
+        """Return the frames on the way from the source frame, by way of the fixed one, to the target frame."""
         return self._buffer._chain(target_frame, target_time, source_frame, source_time, fixed_frame)
 
     # -- asking ------------------------------------------------------------------------------------------------------
 
     def canTransform(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """Whether `lookupTransform` would succeed: 1 or 0."""
+        """Return whether `lookupTransform` would succeed: 1 or 0."""
         return self._buffer.can_transform(strip_leading_slash(target_frame), strip_leading_slash(source_frame), time)
 
     def canTransformFull(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """Whether `lookupTransformFull` would succeed: 1 or 0."""
+        """Return whether `lookupTransformFull` would succeed: 1 or 0."""
         target, source, fixed = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
         return self._buffer.can_transform_full(target, target_time, source, source_time, fixed)
 
@@ -99,7 +99,7 @@ class Transformer:
             polling_sleep_duration: without effect, as in tf.
 
         Raises:
-            tf.Exception: the time is over, or nobody fills the buffer.
+            tf.Exception: the time is over, or no thread fills the buffer.
         """
         self._require_listening()
         target, source = strip_leading_slash(target_frame), strip_leading_slash(source_frame)
@@ -116,7 +116,10 @@ class Transformer:
         timeout: Any,
         polling_sleep_duration: Any = None,
     ) -> None:
-        """Wait until `lookupTransformFull` would succeed; arguments as there, the rest as `waitForTransform`."""
+        """Wait until `lookupTransformFull` would succeed.
+
+        It has the arguments of that, and the rest as `waitForTransform`.
+        """
         self._require_listening()
         target, source, fixed = map(strip_leading_slash, (target_frame, source_frame, fixed_frame))
         found = self._buffer.can_transform_full(
@@ -131,11 +134,11 @@ class Transformer:
     # -- looking up --------------------------------------------------------------------------------------------------
 
     def getLatestCommonTime(self, source_frame: str, dest_frame: str) -> Any:
-        """The latest time that all frames between two have in common, a rospy.Time."""
+        """Return the latest time that all frames between two have in common, a rospy.Time."""
         return self._buffer.get_latest_common_time(strip_leading_slash(source_frame), strip_leading_slash(dest_frame))
 
     def lookupTransform(self, target_frame: str, source_frame: str, time: Any) -> tuple[Numbers, Numbers]:
-        """The transform that takes coordinates in the source frame to the target frame.
+        """Return the transform that takes coordinates in the source frame to the target frame.
 
         Args:
             target_frame: name of a frame.
@@ -146,7 +149,7 @@ class Transformer:
             translation [x, y, z] and rotation [x, y, z, w].
 
         Raises:
-            tf.LookupException, tf.ConnectivityException, tf.ExtrapolationException: it is not to be had.
+            tf.LookupException, tf.ConnectivityException, tf.ExtrapolationException: it is not available.
         """
         target, source = strip_leading_slash(target_frame), strip_leading_slash(source_frame)
         return _numbers(self._buffer.lookup_transform(target, source, time))
@@ -154,7 +157,7 @@ class Transformer:
     def lookupTransformFull(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[Numbers, Numbers]:
-        """The transform from the source frame at one time to the target frame at another.
+        """Return the transform from the source frame at one time to the target frame at another.
 
         Args:
             target_frame: name of a frame.
@@ -170,7 +173,7 @@ class Transformer:
         return _numbers(self._buffer.lookup_transform_full(target, target_time, source, source_time, fixed))
 
     def lookupTwist(self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any) -> Any:
-        """Velocity of a frame as seen from another; arguments as `lookupTwistFull`."""
+        """Return the velocity of a frame as seen from another. The arguments are those of `lookupTwistFull`."""
         return self.lookupTwistFull(
             tracking_frame, observation_frame, observation_frame, (0, 0, 0), tracking_frame, time, averaging_interval
         )
@@ -185,15 +188,15 @@ class Transformer:
         time: Any,
         averaging_interval: Any,
     ) -> Any:
-        """Velocity of a frame, from two of its poses.
+        """Return the velocity of a frame, from two of its poses.
 
         Args:
-            tracking_frame: the frame that moves.
-            observation_frame: the frame that it is seen from.
-            reference_frame: the frame that the result is expressed in.
+            tracking_frame: the moving frame.
+            observation_frame: the frame of the observer.
+            reference_frame: the frame in which the result is expressed.
             ref_point: without effect, as in tf.
-            reference_point_frame: the frame whose origin the linear velocity is that of.
-            time: the middle of the time in which the poses lie, a rospy.Time; 0 for the latest.
+            reference_point_frame: the linear velocity is the velocity of this frame's origin.
+            time: the middle of the interval between the poses, a rospy.Time; 0 for the latest.
             averaging_interval: its length, a rospy.Duration.
 
         Returns:

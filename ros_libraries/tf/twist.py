@@ -12,7 +12,7 @@ Pose = tuple[list[float], list[float]]
 
 
 def between_poses(start: Pose, end: Pose, seconds: float) -> tuple[Any, Any]:
-    """Linear and angular velocity of a frame that got from one pose to another.
+    """Return the linear and angular velocity of a frame that got from one pose to another.
 
     Args:
         start: translation and rotation (x, y, z, w).
@@ -25,15 +25,15 @@ def between_poses(start: Pose, end: Pose, seconds: float) -> tuple[Any, Any]:
 
 
 def shifted(velocity: tuple[Any, Any], tracked: Pose, point: Pose) -> tuple[Any, Any]:
-    """A velocity expressed in another frame, of another point.
+    """Return a velocity expressed in another frame, of another point.
 
     Args:
         velocity: linear and angular.
-        tracked: pose in the other frame of what moves.
-        point: pose in the other frame of the point.
+        tracked: pose of the moving frame in the other frame.
+        point: pose of the point in the other frame.
 
-    The last step is tf's: it adds a number where a cross product would be right, so a point other than the tracked
-    frame's origin gives what tf gives.
+    The last step is tf's: it adds a number where a cross product would be right. For a point other than the tracked
+    frame's origin, the result is the same as tf's.
     """
     turn = quaternion_matrix(tracked[1])[:3, :3]
     angular = turn @ velocity[1]

@@ -1,7 +1,7 @@
-"""tf2_geometry_msgs: importing it teaches tf2_ros to transform stamped points, vectors, poses and wrenches.
+"""tf2_geometry_msgs: importing it enables tf2_ros to transform stamped points, vectors, poses and wrenches.
 
-As in ROS, the messages are names of the package too, and so are the modules that it stands on there; PyKDL is loaded
-when it is first asked for.
+As in ROS, the messages are also names of the package, and so are the modules that it uses there. PyKDL is loaded
+when it is first needed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Transforming messages of geometry_msgs (tf2_geometry_msgs), without PyKDL but with its arithmetic.
+"""Transforms messages of geometry_msgs (tf2_geometry_msgs), without PyKDL but with its arithmetic.
 
 Each function takes a stamped message and a geometry_msgs/TransformStamped, and returns a new message with the header
 of the transform. Imports geometry_msgs and tf2_ros.
@@ -18,17 +18,17 @@ _TRACE = 1e-12  # above it a rotation is not near half a turn
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """A message is a message."""
+    """Return the message unchanged."""
     return msg
 
 
 def from_msg_msg(msg: Any) -> Any:
-    """A message is a message."""
+    """Return the message unchanged."""
     return msg
 
 
 def transform_to_kdl(t: Any) -> Any:
-    """PyKDL.Frame of a geometry_msgs/TransformStamped."""
+    """Return the PyKDL.Frame of a geometry_msgs/TransformStamped."""
     import PyKDL
 
     rotation, place = t.transform.rotation, t.transform.translation
@@ -37,7 +37,7 @@ def transform_to_kdl(t: Any) -> Any:
 
 
 def do_transform_point(point: Any, transform: Any) -> Any:
-    """A geometry_msgs/PointStamped, turned and moved."""
+    """Return a geometry_msgs/PointStamped, turned and moved."""
     found = PointStamped(header=transform.header)
     t = transform.transform.translation
     x, y, z = _turned(_rows(transform.transform.rotation), point.point)
@@ -46,14 +46,14 @@ def do_transform_point(point: Any, transform: Any) -> Any:
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
-    """A geometry_msgs/Vector3Stamped, turned."""
+    """Return a geometry_msgs/Vector3Stamped, turned."""
     found = Vector3Stamped(header=transform.header)
     found.vector.x, found.vector.y, found.vector.z = _turned(_rows(transform.transform.rotation), vector3.vector)
     return found
 
 
 def do_transform_pose(pose: Any, transform: Any) -> Any:
-    """A geometry_msgs/PoseStamped, turned and moved."""
+    """Return a geometry_msgs/PoseStamped, turned and moved."""
     found = PoseStamped(header=transform.header)
     rows, t = _rows(transform.transform.rotation), transform.transform.translation
     x, y, z = _turned(rows, pose.pose.position)
@@ -64,7 +64,7 @@ def do_transform_pose(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_wrench(wrench: Any, transform: Any) -> Any:
-    """A geometry_msgs/WrenchStamped: force and torque are turned, the point where they act stays."""
+    """Return a geometry_msgs/WrenchStamped: force and torque are turned, the point where they act stays."""
     found = WrenchStamped(header=transform.header)
     found.wrench.force = do_transform_vector3(Vector3Stamped(vector=wrench.wrench.force), transform).vector
     found.wrench.torque = do_transform_vector3(Vector3Stamped(vector=wrench.wrench.torque), transform).vector
@@ -72,7 +72,7 @@ def do_transform_wrench(wrench: Any, transform: Any) -> Any:
 
 
 def _rows(q: Any) -> Rows:
-    """The rotation matrix of a quaternion of length 1."""
+    """Return the rotation matrix of a quaternion of length 1."""
     x, y, z, w = q.x, q.y, q.z, q.w
     xx, yy, zz, ww = x * x, y * y, z * z, w * w
     return (
@@ -96,7 +96,7 @@ def _product(left: Rows, right: Rows) -> Rows:
 
 
 def _quaternion(rows: Rows) -> tuple[float, float, float, float]:
-    """The quaternion of a rotation matrix, with the sign that KDL gives it."""
+    """Return the quaternion of a rotation matrix, with the sign that KDL gives it."""
     (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = rows
     trace = xx + yy + zz
     if trace > _TRACE:

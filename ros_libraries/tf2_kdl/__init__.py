@@ -1,6 +1,6 @@
 """tf2_kdl for nodes: PyKDL's vectors, frames, twists and wrenches for `tf2_ros.Buffer.transform` and `convert`.
 
-Importing it registers them. Names and results are those of ROS's tf2_kdl 0.7; the code is cfepy's own.
+Importing it registers them. Names and results match ROS's tf2_kdl 0.7; the code is cfepy's own.
 """
 
 from __future__ import annotations

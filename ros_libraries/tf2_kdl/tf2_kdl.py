@@ -1,4 +1,4 @@
-"""The conversions that `tf2_kdl` registers. What is transformed carries a header, as `tf2_ros.Stamped` makes it."""
+"""The conversions that `tf2_kdl` registers. The objects have a header, as `tf2_ros.Stamped` makes it."""
 
 from __future__ import annotations
 
@@ -17,27 +17,30 @@ def _moved(value: Any, transform: Any) -> Any:
 
 
 def do_transform_vector(vector: PyKDL.Vector, transform: Any) -> Any:
-    """A vector seen from another frame; it gets the header of `transform`, a geometry_msgs/TransformStamped."""
+    """Return a vector as seen from another frame.
+
+    It gets the header of `transform`, a geometry_msgs/TransformStamped.
+    """
     return _moved(vector, transform)
 
 
 def do_transform_frame(frame: PyKDL.Frame, transform: Any) -> Any:
-    """A frame seen from another one; see `do_transform_vector`."""
+    """Return a frame as seen from another one; see `do_transform_vector`."""
     return _moved(frame, transform)
 
 
 def do_transform_twist(twist: PyKDL.Twist, transform: Any) -> Any:
-    """A twist seen from another frame; see `do_transform_vector`."""
+    """Return a twist as seen from another frame; see `do_transform_vector`."""
     return _moved(twist, transform)
 
 
 def do_transform_wrench(wrench: PyKDL.Wrench, transform: Any) -> Any:
-    """A wrench seen from another frame; see `do_transform_vector`."""
+    """Return a wrench as seen from another frame; see `do_transform_vector`."""
     return _moved(wrench, transform)
 
 
 def to_msg_vector(vector: Any) -> Any:
-    """geometry_msgs/PointStamped of a vector with a header."""
+    """Return the geometry_msgs/PointStamped of a vector with a header."""
     msg = PointStamped(header=vector.header)
     msg.point.x, msg.point.y, msg.point.z = vector[0], vector[1], vector[2]
     return msg
@@ -50,7 +53,7 @@ def from_msg_vector(msg: Any) -> Any:
 
 
 def convert_vector(vector: Any) -> Any:
-    """A copy of a vector with a header."""
+    """Return a copy of a vector with a header."""
     return tf2_ros.Stamped(PyKDL.Vector(vector), vector.header.stamp, vector.header.frame_id)
 
 

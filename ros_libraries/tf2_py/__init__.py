@@ -1,4 +1,4 @@
-"""tf2_py: the buffer of transforms and its exceptions (the Python module that tf2's C++ core has in ROS)."""
+"""tf2_py: the buffer of transforms and its exceptions (the Python module of tf2's C++ core in ROS)."""
 
 from __future__ import annotations
 

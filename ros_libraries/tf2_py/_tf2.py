@@ -1,4 +1,4 @@
-"""`BufferCore`: what tf2's C++ core offers to Python, with its argument names, results and error texts.
+"""`BufferCore`: the Python interface of tf2's C++ core, with its argument names, results and error texts.
 
 Nothing here waits, so no lock is needed. Imports tf2_py only.
 """
@@ -51,11 +51,11 @@ class BufferCore:
     # -- filling -----------------------------------------------------------------------------------------------------
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Take in a transform at its stamp; one that makes no sense is reported and left out.
+        """Add a transform at its stamp. An invalid one is reported and left out.
 
         Args:
             transform: a geometry_msgs/TransformStamped.
-            authority: who says so.
+            authority: name of the sender.
 
         Raises:
             TypeError: `transform` lacks a part.
@@ -63,7 +63,7 @@ class BufferCore:
         self._set(transform, authority, TimeCache(self._keep_ns))
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Take in a transform that holds at all times; arguments as `set_transform`."""
+        """Add a transform that is valid at all times. The arguments are those of `set_transform`."""
         self._set(transform, authority, StaticCache())
 
     def _set(self, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
@@ -87,7 +87,7 @@ class BufferCore:
             self._authorities[child] = authority
 
     def clear(self) -> None:
-        """Forget all samples that are not static; the frames stay known."""
+        """Remove all samples that are not static. The frames stay known."""
         for cache in self._tree.caches.values():
             if cache is not None:
                 cache.clear()
@@ -95,7 +95,7 @@ class BufferCore:
     # -- looking up --------------------------------------------------------------------------------------------------
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """The transform that takes coordinates in the source frame to the target frame.
+        """Return the transform that takes coordinates in the source frame to the target frame.
 
         Args:
             target_frame: name of a frame.
@@ -106,15 +106,15 @@ class BufferCore:
             a geometry_msgs/TransformStamped.
 
         Raises:
-            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not to be
-                had.
+            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not
+                available.
         """
         return message_of(target_frame, source_frame, *self._lookup(target_frame, source_frame, to_ns(time)))
 
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """The transform from the source frame at one time to the target frame at another.
+        """Return the transform from the source frame at one time to the target frame at another.
 
         Args:
             target_frame: name of a frame.
@@ -138,7 +138,7 @@ class BufferCore:
         return message_of(target_frame, source_frame, when, product(second, first))
 
     def _lookup(self, target: str, source: str, time: int) -> tuple[int, Rigid]:
-        """Time and transform of a way through the tree."""
+        """Return the time and transform of a way through the tree."""
         tree = self._tree
         if target == source:
             cache = None if time else tree.caches.get(target)
@@ -166,7 +166,7 @@ class BufferCore:
     # -- asking ------------------------------------------------------------------------------------------------------
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[int, str]:
-        """Whether `lookup_transform_core` would succeed: 1 or 0, and why not."""
+        """Return whether `lookup_transform_core` would succeed: 1 or 0, and why not."""
         at = to_ns(time)
         if target_frame == source_frame:
             return 1, ""
@@ -177,7 +177,7 @@ class BufferCore:
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[int, str]:
-        """Whether `lookup_transform_full_core` would succeed: 1 or 0, and why not."""
+        """Return whether `lookup_transform_full_core` would succeed: 1 or 0, and why not."""
         at_target, at_source = to_ns(target_time), to_ns(source_time)
         frames = {"target_frame": target_frame, "source_frame": source_frame, "fixed_frame": fixed_frame}
         problem = self._unknown(frames)
@@ -187,7 +187,7 @@ class BufferCore:
         return self._try(fixed_frame, source_frame, at_source) if possible else (0, problem)
 
     def _unknown(self, frames: dict[str, str]) -> str | None:
-        """What is wrong with the names of frames; an ill-formed one is reported on the console and has no text."""
+        """Return the error in the names of frames. An ill-formed name is reported on the console and has no text."""
         for role, name in frames.items():
             problem = name_problem(f"canTransform argument {role}", name)
             if problem:
@@ -204,11 +204,11 @@ class BufferCore:
         return 1, ""
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Any:
-        """The latest time that all frames on the way between two have in common, a rospy.Time.
+        """Return the latest time that all frames between two have in common, a rospy.Time.
 
         Raises:
             InvalidArgumentException, LookupException: a frame is unknown.
-            TransformException: there is no way between them.
+            TransformException: the frames are not connected.
         """
         self._validate("get_latest_common_time", target_frame)
         self._validate("get_latest_common_time", source_frame)
@@ -221,11 +221,11 @@ class BufferCore:
     # -- reports -----------------------------------------------------------------------------------------------------
 
     def all_frames_as_string(self) -> str:
-        """A line for each frame that has a parent."""
+        """Return a line for each frame that has a parent."""
         return self._tree.as_string()
 
     def all_frames_as_yaml(self) -> str:
-        """The frames with parent, authority, rate and times, as YAML."""
+        """Return the frames with parent, authority, rate and times, as YAML."""
         return reports.as_yaml(self._tree, self._authorities)
 
     def _allFramesAsDot(self, time: Any = None) -> str:

@@ -1,4 +1,4 @@
-"""The samples of one frame's transform to its parent: over time (tf2::TimeCache), or for ever (tf2::StaticCache).
+"""The samples of one frame's transform to its parent: over time (tf2::TimeCache), or forever (tf2::StaticCache).
 
 Times are ints in ns. Imports tf2_py.rotation only.
 """
@@ -16,13 +16,13 @@ REPEATED_DATA = "TF_REPEATED_DATA ignoring data with redundant timestamp"
 
 
 def seconds(time_ns: int) -> float:
-    """A time in ns as ROS's C++ code gives it in seconds."""
+    """Return a time in ns as ROS's C++ code gives it in seconds."""
     whole, part = divmod(time_ns, 1_000_000_000)
     return whole + 1e-9 * part
 
 
 class TimeCache:
-    """Samples in the order of their stamps; those that are older than the newest by more than the cache time go.
+    """Samples in the order of their stamps. Samples older than the newest by more than the cache time are removed.
 
     Args:
         keep_ns: the cache time.
@@ -55,7 +55,7 @@ class TimeCache:
         return ""
 
     def sample(self, time: int) -> Sample | None:
-        """The sample at a time, interpolated, or the newest for time 0; None when the time is not covered."""
+        """Return the interpolated sample at a time, or the newest for time 0; None if the time is not covered."""
         stamps = self._stamps
         if not stamps:
             return None
@@ -76,7 +76,7 @@ class TimeCache:
         return between(older, newer, (time - before) / (stamps[at + 1] - before))
 
     def complaint(self, time: int) -> str:
-        """Why there is no sample at a time."""
+        """Return the reason why there is no sample at a time."""
         if not self._stamps:
             return ""
         first, last, asked = self._stamps[0], self._stamps[-1], f"{seconds(time):.9f}"
@@ -92,11 +92,11 @@ class TimeCache:
         )
 
     def latest(self) -> tuple[int, str]:
-        """Stamp and parent of the newest sample; 0 and "" when there is none."""
+        """Return the stamp and the parent of the newest sample, or 0 and "" if there is none."""
         return (self._stamps[-1], self._samples[-1][0]) if self._stamps else (0, "")
 
     def oldest_stamp(self) -> int:
-        """Stamp of the oldest sample, 0 when there is none."""
+        """Return the stamp of the oldest sample, or 0 if there is none."""
         return self._stamps[0] if self._stamps else 0
 
     def clear(self) -> None:
@@ -122,7 +122,7 @@ class StaticCache:
         return ""
 
     def sample(self, time: int) -> Sample | None:
-        """The sample."""
+        """Return the sample."""
         return self._sample
 
     def complaint(self, time: int) -> str:
@@ -130,7 +130,7 @@ class StaticCache:
         return ""
 
     def latest(self) -> tuple[int, str]:
-        """Stamp 0, which stands for all times, and the parent."""
+        """Return stamp 0, which stands for all times, and the parent."""
         return 0, "" if self._sample is None else self._sample[0]
 
     def oldest_stamp(self) -> int:
@@ -138,7 +138,7 @@ class StaticCache:
         return 0
 
     def clear(self) -> None:
-        """Nothing: what is static outlives a reset of the clock."""
+        """Do nothing: a static sample survives a reset of the clock."""
 
     def __len__(self) -> int:
         return 1

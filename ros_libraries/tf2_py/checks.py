@@ -1,4 +1,4 @@
-"""What a buffer of transforms does not take, and how it says so. Imports tf2_py.rotation only."""
+"""Checks of a buffer of transforms, and their error texts. Imports tf2_py.rotation only."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def problems_of(child: str, parent: str, rigid: Rigid, authority: str) -> list[s
 
 
 def name_problem(role: str, name: str) -> str:
-    """What is wrong with the form of a frame's name, or ""."""
+    """Return the error in the form of a frame's name, or ""."""
     if not name:
         return f"Invalid argument passed to {role} in tf2 frame_ids cannot be empty"
     if name.startswith("/"):

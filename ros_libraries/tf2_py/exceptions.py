@@ -1,4 +1,4 @@
-"""What goes wrong with transforms (tf2/exceptions.h). Imports nothing."""
+"""The exceptions of transforms (tf2/exceptions.h). Imports nothing."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class LookupException(TransformException):
 
 
 class ExtrapolationException(TransformException):
-    """The time asked for is outside of what the buffer holds."""
+    """The requested time is outside of the samples in the buffer."""
 
     __module__ = "tf2"
 

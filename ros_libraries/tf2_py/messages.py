@@ -1,6 +1,9 @@
-"""Between messages and plain numbers: times in ns, transforms as seven floats. Imports rospy, geometry_msgs and tf2_py.
+"""Conversion between messages and numbers: times in ns, transforms as seven floats.
 
-Times come in by way of a float of seconds, as in tf2's Python module, so a stamp loses what a float cannot hold.
+Imports rospy, geometry_msgs and tf2_py.
+
+Times are converted through a float of seconds, as in tf2's Python module, so a stamp loses the precision that a float
+cannot hold.
 """
 
 from __future__ import annotations
@@ -18,7 +21,7 @@ _NS_PER_S = 1_000_000_000
 
 
 def to_ns(time: Any) -> int:
-    """A rospy.Time or rospy.Duration in ns.
+    """Return a rospy.Time or rospy.Duration in ns.
 
     Raises:
         TypeError: it is neither.
@@ -32,12 +35,12 @@ def to_ns(time: Any) -> int:
 
 
 def time_of(ns: int) -> Any:
-    """A rospy.Time."""
+    """Return a rospy.Time."""
     return rospy.Time(*divmod(ns, _NS_PER_S))
 
 
 def rigid_of(transform: Any) -> Rigid:
-    """The numbers of a geometry_msgs/Transform, or of something with the same attributes."""
+    """Return the numbers of a geometry_msgs/Transform, or of an object with the same attributes."""
     t, r = transform.translation, transform.rotation
     for part, value, kind in (("translation", t, Vector3), ("rotation", r, Quaternion)):
         if not isinstance(value, kind):
@@ -52,7 +55,7 @@ def rigid_of(transform: Any) -> Rigid:
 
 
 def message_of(target: str, source: str, time: int, rigid: Rigid) -> Any:
-    """A lookup's result as a geometry_msgs/TransformStamped."""
+    """Return a lookup's result as a geometry_msgs/TransformStamped."""
     found = TransformStamped()
     header, transform = found.header, found.transform
     header.stamp = time_of(time)

@@ -1,4 +1,4 @@
-"""What a buffer holds, as text: YAML for tf2's tools, a graph for dot. Imports tf2_py only."""
+"""The content of a buffer as text: YAML for tf2's tools, a graph for dot. Imports tf2_py only."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Row(NamedTuple):
 
 
 def rows(tree: Tree, authorities: Mapping[str, str]) -> Iterator[Row]:
-    """The frames that have a sample."""
+    """Yield the frames that have a sample."""
     for name, cache in tree.caches.items():
         stamp, parent = (0, "") if cache is None else cache.latest()
         if cache is not None and parent:
@@ -33,7 +33,7 @@ def rows(tree: Tree, authorities: Mapping[str, str]) -> Iterator[Row]:
 
 
 def as_yaml(tree: Tree, authorities: Mapping[str, str]) -> str:
-    """A mapping from each frame to what is known of it (BufferCore::allFramesAsYAML)."""
+    """Return a mapping from each frame to its data (BufferCore::allFramesAsYAML)."""
     if not tree.caches:
         return "{}"
     return "".join(
@@ -49,11 +49,11 @@ def as_yaml(tree: Tree, authorities: Mapping[str, str]) -> str:
 
 
 def as_dot(tree: Tree, authorities: Mapping[str, str], now: int) -> str:
-    """A graph in dot's language (BufferCore::_allFramesAsDot).
+    """Return a graph in dot's language (BufferCore::_allFramesAsDot).
 
     Args:
         tree: the frames.
-        authorities: who last gave each frame's transform.
+        authorities: name of the last sender of each frame's transform.
         now: present time in ns, for the ages; 0 leaves them out.
     """
     lines = ["digraph G {"] if tree.caches else ['digraph G {\n"no tf data recieved"']
@@ -78,7 +78,7 @@ def _edge(row: Row, now: float) -> str:
 
 
 def _legend(name: str, now: float) -> list[str]:
-    """The box with the title, which hangs on a root."""
+    """Return the box with the title, which hangs on a root."""
     recorded = [f'"Recorded at time: {now:.3f}"[ shape=plaintext ] ;\n }}->"{name}";'] if now else [f'}}->"{name}";']
     head = ' subgraph cluster_legend { style=bold; color=black; label ="view_frames Result";'
     return ["edge [style=invis];", "\n".join([head, *recorded])]

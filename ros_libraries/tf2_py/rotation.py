@@ -1,7 +1,7 @@
 """Arithmetic on rigid transforms as plain floats, in the order of operations of tf2's LinearMath.
 
 A transform is `(x, y, z, qx, qy, qz, qw)`: a translation, then a rotation as a quaternion. Everything is written out,
-since a lookup spends its time here. Imports nothing.
+because a lookup spends its time here. Imports nothing.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ IDENTITY: Rigid = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
 def compose(samples: Iterable[Sample]) -> Rigid:
-    """The transform that applying all samples means, the first one first."""
+    """Return the transform that applying all samples means, the first one first."""
     vx = vy = vz = qx = qy = qz = 0.0
     qw = 1.0
     for _, tx, ty, tz, x, y, z, w in samples:
@@ -40,7 +40,7 @@ def compose(samples: Iterable[Sample]) -> Rigid:
 
 
 def inverse(transform: Rigid) -> Rigid:
-    """The transform back. As in tf2 its rotation is multiplied by none, which decides the signs of zeros."""
+    """Return the inverse transform. As in tf2 its rotation is multiplied by none, which decides the signs of zeros."""
     x, y, z, qx, qy, qz, qw = transform
     ax = qy * z - qw * x - qz * y
     ay = qz * x - qw * y - qx * z
@@ -58,11 +58,11 @@ def inverse(transform: Rigid) -> Rigid:
 
 
 def between(older: Sample, newer: Sample, ratio: float) -> Sample:
-    """The sample at a point between two: translation linearly, rotation along the shortest arc at constant speed.
+    """Return the sample at a point between two: linear translation, rotation along the shortest arc.
 
     Args:
-        older: where `ratio` is 0.
-        newer: where `ratio` is 1; its parent does not count.
+        older: the sample for `ratio` 0.
+        newer: the sample for `ratio` 1; its parent does not count.
         ratio: the point.
     """
     parent, ax, ay, az, x, y, z, w = older
@@ -90,7 +90,7 @@ def between(older: Sample, newer: Sample, ratio: float) -> Sample:
 
 
 def matrix_of(q: Quaternion) -> Matrix:
-    """The rotation matrix of a quaternion, row by row; the quaternion's length does not count."""
+    """Return the rotation matrix of a quaternion, row by row. The quaternion's length does not matter."""
     x, y, z, w = q
     s = 2.0 / (x * x + y * y + z * z + w * w)
     xs, ys, zs = x * s, y * s, z * s
@@ -101,7 +101,7 @@ def matrix_of(q: Quaternion) -> Matrix:
 
 
 def quaternion_of(matrix: Matrix) -> Quaternion:
-    """The quaternion of a rotation matrix, with whichever sign keeps most digits."""
+    """Return the quaternion of a rotation matrix, with the sign that keeps most digits."""
     rows = matrix[0:3], matrix[3:6], matrix[6:9]
     trace = matrix[0] + matrix[4] + matrix[8]
     if trace > 0.0:

@@ -1,4 +1,4 @@
-"""The tree of frames, and the way through it from one frame to another (the walks of tf2::BufferCore).
+"""The tree of frames, and the path through it from one frame to another (the walks of tf2::BufferCore).
 
 Imports tf2_py only.
 """
@@ -15,10 +15,10 @@ FOREVER = 1 << 63
 
 
 class Path:
-    """The way from a source frame up to a common ancestor and down to the target frame.
+    """The path from a source frame up to a common ancestor and down to the target frame.
 
-    `up` and `down` are the samples from source and target to the frame where they meet; `time` is the time that was
-    asked for, or the latest common one, in ns.
+    `up` and `down` are the samples from source and target to the frame where they meet. `time` is the requested time,
+    or the latest common one, in ns.
     """
 
     __slots__ = ("down", "time", "up")
@@ -30,7 +30,7 @@ class Path:
 
 
 class Tree:
-    """Frames by name, in the order in which they were first heard of; a frame without a parent has no cache."""
+    """Frames by name, in the order of their first appearance. A frame without a parent has no cache."""
 
     __slots__ = ("caches",)
 
@@ -38,16 +38,16 @@ class Tree:
         self.caches: dict[str, Cache | None] = {}
 
     def path(self, target: str, source: str, time: int) -> Path:
-        """The way between two known frames.
+        """Return the path between two known frames.
 
         Args:
-            target: where it leads.
-            source: where it begins.
-            time: in ns; 0 for the latest time that all frames on the way have in common.
+            target: its end.
+            source: its beginning.
+            time: in ns; 0 for the latest time that all frames on the path have in common.
 
         Raises:
-            ConnectivityException: there is none.
-            ExtrapolationException: a frame on the way has no sample at that time.
+            ConnectivityException: there is no path.
+            ExtrapolationException: a frame on the path has no sample at that time.
             LookupException: the tree has a loop.
         """
         if source == target:
@@ -74,7 +74,7 @@ class Tree:
         """Walk towards the root, collecting samples, until `wanted`, `top` or the end.
 
         Returns:
-            the frame where it ended, and what was wrong if that one has no sample at the time.
+            the frame where it ended, and the error if that one has no sample at the time.
         """
         caches = self.caches
         while frame != wanted and frame != top:
@@ -91,10 +91,10 @@ class Tree:
         return frame, None
 
     def latest_common_time(self, target: str, source: str) -> int:
-        """The latest time at which the way between two known frames is covered, in ns; 0 for any time.
+        """Return the latest time at which the path between two known frames is covered, in ns; 0 for any time.
 
         Raises:
-            ConnectivityException: there is no way.
+            ConnectivityException: there is no path.
             LookupException: the tree has a loop.
         """
         if source == target:
@@ -113,7 +113,7 @@ class Tree:
         raise ConnectivityException(_no_connection(target, source))
 
     def _latest_upwards(self, frame: str, wanted: str) -> list[tuple[int, str]]:
-        """Newest stamps and parents from a frame up to the root, or to `wanted` if that is met before."""
+        """Return the newest stamps and parents from a frame up to the root, or to `wanted` if that is met before."""
         found: list[tuple[int, str]] = []
         while frame != wanted:
             cache = self.caches[frame]
@@ -127,7 +127,7 @@ class Tree:
         return found
 
     def chain(self, target: str, source: str, time: int) -> list[str]:
-        """The frames on the way from source to target.
+        """Return the frames on the way from source to target.
 
         Raises:
             ConnectivityException, ExtrapolationException, LookupException: as `path`.
@@ -140,17 +140,17 @@ class Tree:
         return up + down[-2::-1]
 
     def loop_text(self) -> str:
-        """The text of the error about a loop."""
+        """Return the text of the error about a loop."""
         return f"The tf tree is invalid because it contains a loop.\n{self.as_string()}\n"
 
     def as_string(self) -> str:
-        """A line for each frame that was given a parent."""
+        """Return a line for each frame that was given a parent."""
         named = ((name, cache.latest()[1] or "NO_PARENT") for name, cache in self.caches.items() if cache is not None)
         return "".join(f"Frame {name} exists with parent {parent}.\n" for name, parent in named)
 
 
 def _earliest(latest: list[tuple[int, str]]) -> int:
-    """The earliest of the newest stamps, static ones aside; 0 when all are static."""
+    """Return the earliest of the newest stamps, ignoring static ones, or 0 if all are static."""
     return min((stamp for stamp, _ in latest if stamp), default=0)
 
 

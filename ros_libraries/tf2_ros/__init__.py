@@ -1,7 +1,7 @@
-"""tf2_ros: transforms between frames over time, heard on /tf and /tf_static and told there.
+"""tf2_ros: transforms between frames over time, received and published on /tf and /tf_static.
 
-`BufferClient` and `BufferServer` are loaded when they are first asked for, because they bring actionlib with them.
-As in ROS, the messages that the package uses are names of it too.
+`BufferClient` and `BufferServer` are loaded when they are first used, because they need actionlib. As in ROS, the
+messages that the package uses are also names of it.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`Buffer`: the buffer that a node keeps itself, waiting for transforms in ROS time (tf2_ros.buffer).
+"""`Buffer`: a node's own buffer of transforms, which can wait for them in ROS time (tf2_ros.buffer).
 
 Imports rospy, tf2_msgs and tf2_py.
 """
@@ -23,7 +23,7 @@ class Buffer(BufferCore, BufferInterface):
 
     Args:
         cache_time: how long samples are kept, a rospy.Duration; None for 10 s.
-        debug: offer the service ~tf2_frames, which tells the frames as YAML, unless the node has it already.
+        debug: offer the service ~tf2_frames, which returns the frames as YAML, unless the node has it already.
     """
 
     def __init__(self, cache_time: Any = None, debug: bool = True) -> None:
@@ -43,7 +43,7 @@ class Buffer(BufferCore, BufferInterface):
         return FrameGraphResponse(self.all_frames_as_yaml())
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
-        """The transform that takes coordinates in the source frame to the target frame.
+        """Return the transform that takes coordinates in the source frame to the target frame.
 
         Args:
             target_frame: name of a frame.
@@ -55,8 +55,8 @@ class Buffer(BufferCore, BufferInterface):
             a geometry_msgs/TransformStamped.
 
         Raises:
-            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not to be
-                had.
+            LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not
+                available.
         """
         if timeout != NO_WAIT:
             self.can_transform(target_frame, source_frame, time, timeout)
@@ -71,7 +71,7 @@ class Buffer(BufferCore, BufferInterface):
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> Any:
-        """The transform from the source frame at one time to the target frame at another.
+        """Return the transform from the source frame at one time to the target frame at another.
 
         Args:
             target_frame: name of a frame.
@@ -100,14 +100,14 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Any = NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Whether `lookup_transform` would succeed.
+        """Return whether `lookup_transform` would succeed.
 
         Args:
             target_frame: name of a frame.
             source_frame: name of a frame.
             time: a rospy.Time; 0 for the latest common one.
             timeout: how long to wait until it would, a rospy.Duration.
-            return_debug_tuple: return also why not.
+            return_debug_tuple: also return the reason if not.
 
         Returns:
             1 or 0; or that and a text.
@@ -129,7 +129,10 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Any = NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Whether `lookup_transform_full` would succeed; arguments as there, the rest as `can_transform`."""
+        """Return whether `lookup_transform_full` would succeed.
+
+        It has the arguments of that, and the rest as `can_transform`.
+        """
 
         def ask() -> tuple[int, str]:
             return self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)

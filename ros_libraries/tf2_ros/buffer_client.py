@@ -50,10 +50,10 @@ class BufferClient(BufferInterface):
             rospy.logwarn("Argument check_frequency is deprecated and should not be used.")
 
     def wait_for_server(self, timeout: Any = NO_WAIT) -> Any:
-        """Wait until the server is there.
+        """Wait until the server is available.
 
         Args:
-            timeout: how long, a rospy.Duration; 0 for ever.
+            timeout: how long, a rospy.Duration; 0 forever.
 
         Returns:
             whether it is.
@@ -61,11 +61,11 @@ class BufferClient(BufferInterface):
         return self.client.wait_for_server(timeout)
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
-        """As `tf2_ros.Buffer.lookup_transform`.
+        """Return the transform as `tf2_ros.Buffer.lookup_transform` does.
 
         Raises:
             TimeoutException: the server did not answer.
-            TransformException: as it says.
+            TransformException: the server's error.
         """
         return self._ask(
             LookupTransformGoal(
@@ -85,7 +85,10 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> Any:
-        """As `tf2_ros.Buffer.lookup_transform_full`; errors as `lookup_transform`."""
+        """Return the transform as `tf2_ros.Buffer.lookup_transform_full` does.
+
+        Errors are those of `lookup_transform`.
+        """
         return self._ask(
             LookupTransformGoal(
                 target_frame=target_frame,
@@ -99,7 +102,7 @@ class BufferClient(BufferInterface):
         )
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> bool:
-        """Whether `lookup_transform` succeeds."""
+        """Return whether `lookup_transform` succeeds."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
         except TransformException:
@@ -115,7 +118,7 @@ class BufferClient(BufferInterface):
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> bool:
-        """Whether `lookup_transform_full` succeeds."""
+        """Return whether `lookup_transform_full` succeeds."""
         try:
             self.lookup_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         except TransformException:

@@ -1,4 +1,4 @@
-"""Transforming stamped data of any type: who knows how to is registered here (tf2_ros.buffer_interface).
+"""Transforms stamped data of any registered type (tf2_ros.buffer_interface).
 
 Imports rospy and std_msgs.
 """
@@ -16,7 +16,7 @@ NO_WAIT = rospy.Duration(0.0)
 
 
 class TypeException(Exception):
-    """Nobody has registered how to transform or convert a type."""
+    """No function is registered to transform or convert a type."""
 
     def __init__(self, errstr: str) -> None:
         self.errstr = errstr
@@ -30,7 +30,7 @@ class NotImplementedException(Exception):
 
 
 class TransformRegistration:
-    """How to transform data: a function of (data, geometry_msgs/TransformStamped) for each type; one table for all."""
+    """Transform functions of (data, geometry_msgs/TransformStamped), one for each type; one table for all."""
 
     _transforms: ClassVar[dict[type, Callable[[Any, Any], Any]]] = {}
 
@@ -43,16 +43,16 @@ class TransformRegistration:
         self._transforms[key] = callback
 
     def get(self, key: type) -> Callable[[Any, Any], Any]:
-        """The function for a type.
+        """Return the function for a type.
 
         Raises:
-            TypeException: there is none.
+            TypeException: no function is registered.
         """
         return _registered(self._transforms, key)
 
 
 class ConvertRegistration:
-    """How to convert data: to a message, from a message, or from one type straight to another; tables for all."""
+    """Conversion functions: to a message, from a message, or from one type directly to another; tables for all."""
 
     _to_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
     _from_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
@@ -71,15 +71,15 @@ class ConvertRegistration:
         self._convert[key] = callback
 
     def get_from_msg(self, key: type) -> Callable[[Any], Any]:
-        """What makes a type of a message; TypeException if nothing does."""
+        """Return the function that makes a type from a message. Raises TypeException if there is none."""
         return _registered(self._from_msg, key)
 
     def get_to_msg(self, key: type) -> Callable[[Any], Any]:
-        """What makes a message of a type; TypeException if nothing does."""
+        """Return the function that makes a message from a type. Raises TypeException if there is none."""
         return _registered(self._to_msg, key)
 
     def get_convert(self, key: tuple[type, type]) -> Callable[[Any], Any]:
-        """The straight way from one type to another; TypeException if there is none."""
+        """Return the direct conversion from one type to another. Raises TypeException if there is none."""
         return _registered(self._convert, key)
 
 
@@ -90,14 +90,14 @@ def _registered(table: dict[Any, Callable[..., Any]], key: Any) -> Callable[...,
 
 
 def convert(a: Any, b_type: type) -> Any:
-    """Convert data to another type: straight if there is a way, as a copy if it is that type, or through a message.
+    """Convert data to another type: directly if possible, as a copy if it is that type, or through a message.
 
     Args:
         a: the data.
-        b_type: the type wanted.
+        b_type: the target type.
 
     Raises:
-        TypeException: there is no way.
+        TypeException: there is no conversion.
     """
     registration = ConvertRegistration()
     try:
@@ -123,23 +123,23 @@ def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
 
 
 class BufferInterface:
-    """What all sources of transforms have in common; a subclass looks them up."""
+    """Base class of all sources of transforms. A subclass looks them up."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
 
     def transform(self, object_stamped: Any, target_frame: str, timeout: Any = NO_WAIT, new_type: Any = None) -> Any:
-        """Stamped data, as seen from another frame.
+        """Return stamped data as seen from another frame.
 
         Args:
             object_stamped: has a header, and its type is registered.
             target_frame: name of a frame.
             timeout: how long to wait for the transform, a rospy.Duration.
-            new_type: what to convert the result to; None leaves it.
+            new_type: type to convert the result to; None leaves it.
 
         Raises:
             TypeException: the type is not registered.
-            TransformException: the transform is not to be had.
+            TransformException: the transform is not available.
         """
         apply = self.registration.get(type(object_stamped))
         header = object_stamped.header
@@ -155,7 +155,7 @@ class BufferInterface:
         timeout: Any = NO_WAIT,
         new_type: Any = None,
     ) -> Any:
-        """Stamped data, as seen from another frame at another time.
+        """Return stamped data as seen from another frame at another time.
 
         Args:
             object_stamped: has a header, and its type is registered.
@@ -163,11 +163,11 @@ class BufferInterface:
             target_time: a rospy.Time.
             fixed_frame: the frame that does not move in between.
             timeout: how long to wait for the transform, a rospy.Duration.
-            new_type: what to convert the result to; None leaves it.
+            new_type: type to convert the result to; None leaves it.
 
         Raises:
             TypeException: the type is not registered.
-            TransformException: the transform is not to be had.
+            TransformException: the transform is not available.
         """
         apply = self.registration.get(type(object_stamped))
         source = object_stamped.header
@@ -178,7 +178,7 @@ class BufferInterface:
         return convert(found, new_type) if new_type else found
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
-        """The transform between two frames; a subclass knows it."""
+        """Return the transform between two frames. A subclass implements it."""
         raise NotImplementedException
 
     def lookup_transform_full(
@@ -190,11 +190,11 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> Any:
-        """The transform between two frames at different times; a subclass knows it."""
+        """Return the transform between two frames at different times. A subclass implements it."""
         raise NotImplementedException
 
     def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
-        """Whether `lookup_transform` would succeed; a subclass knows it."""
+        """Return whether `lookup_transform` would succeed. A subclass implements it."""
         raise NotImplementedException
 
     def can_transform_full(
@@ -206,5 +206,5 @@ class BufferInterface:
         fixed_frame: str,
         timeout: Any = NO_WAIT,
     ) -> Any:
-        """Whether `lookup_transform_full` would succeed; a subclass knows it."""
+        """Return whether `lookup_transform_full` would succeed. A subclass implements it."""
         raise NotImplementedException

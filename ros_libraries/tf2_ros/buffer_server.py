@@ -1,4 +1,4 @@
-"""`BufferServer`: offers a buffer's transforms as the action that `BufferClient` asks (buffer_server.h of tf2_ros).
+"""`BufferServer`: offers a buffer's transforms as the action that `BufferClient` uses (buffer_server.h of tf2_ros).
 
 ROS has it in C++ only. Imports rospy, actionlib, tf2_msgs and tf2_py.
 """
@@ -29,12 +29,12 @@ _CODES: dict[type[TransformException], int] = {
 
 
 class BufferServer:
-    """Answers goals when their transform is there, at the latest when their timeout is over.
+    """Answers goals when their transform is available, at the latest after their timeout.
 
     Args:
-        buffer: where the transforms are.
+        buffer: the buffer with the transforms.
         ns: namespace of the action.
-        auto_start: take goals at once; otherwise `start` has to be called.
+        auto_start: take goals at once; otherwise call `start`.
         check_period: how often to look for the transforms of waiting goals, a rospy.Duration; None for 10 ms.
     """
 

@@ -1,4 +1,4 @@
-"""`StaticTransformBroadcaster`: tells transforms on /tf_static (tf2_ros.static_transform_broadcaster).
+"""`StaticTransformBroadcaster`: publishes transforms on /tf_static (tf2_ros.static_transform_broadcaster).
 
 Imports rospy and tf2_msgs.
 """
@@ -12,7 +12,7 @@ from tf2_msgs.msg import TFMessage
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms that do not change; a listener that comes later gets those of the last call."""
+    """Publishes transforms that do not change. A later listener gets those of the last call."""
 
     def __init__(self) -> None:
         self.pub_tf = rospy.Publisher("/tf_static", TFMessage, queue_size=100, latch=True)

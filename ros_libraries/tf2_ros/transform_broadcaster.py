@@ -1,4 +1,4 @@
-"""`TransformBroadcaster`: tells transforms on /tf (tf2_ros.transform_broadcaster). Imports rospy and tf2_msgs."""
+"""`TransformBroadcaster`: publishes transforms on /tf (tf2_ros.transform_broadcaster). Imports rospy and tf2_msgs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`TransformListener`: fills a buffer with what is told on /tf and /tf_static (tf2_ros.transform_listener).
+"""`TransformListener`: fills a buffer from /tf and /tf_static (tf2_ros.transform_listener).
 
 Imports rospy and tf2_msgs.
 """
@@ -18,9 +18,9 @@ class TransformListener:
 
     Args:
         buffer: has `set_transform`, `set_transform_static` and `clear`.
-        queue_size: of the subscribers; None for no limit.
-        buff_size: of the subscribers, in bytes.
-        tcp_nodelay: of the subscribers.
+        queue_size: queue size of the subscribers; None for no limit.
+        buff_size: buffer size of the subscribers, in bytes.
+        tcp_nodelay: option of the subscribers.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class TransformListener:
         self.tf_static_sub.unregister()
 
     def check_for_reset(self) -> None:
-        """Empty the buffer when the clock went back."""
+        """Empty the buffer if the clock went back."""
         with self.last_update_lock:
             now = rospy.Time.now()
             if now < self.last_update:

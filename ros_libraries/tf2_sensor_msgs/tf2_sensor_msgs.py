@@ -12,20 +12,20 @@ from tf2_geometry_msgs.tf2_geometry_msgs import transform_to_kdl
 
 
 def to_msg_msg(msg: Any) -> Any:
-    """A cloud is a message already."""
+    """Return the cloud, which is a message already."""
     return msg
 
 
 def from_msg_msg(msg: Any) -> Any:
-    """A cloud is what its message becomes."""
+    """Return the message: a cloud is its own message."""
     return msg
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
-    """A cloud seen from another frame.
+    """Return a cloud as seen from another frame.
 
     Args:
-        cloud: its first three fields are x, y and z; the others stay as they are.
+        cloud: its first three fields are x, y and z; the others stay unchanged.
         transform: a geometry_msgs/TransformStamped, whose header the result gets.
     """
     frame = transform_to_kdl(transform)

@@ -1,7 +1,7 @@
 """tf_conversions for nodes: poses of ROS, tf and NumPy as PyKDL frames and back.
 
-Names and results are those of ROS's tf_conversions 1.13. As there, `tf_conversions.transformations` is tf's, and the
-names of PyKDL can be had from here too.
+Names and results match ROS's tf_conversions 1.13. As there, `tf_conversions.transformations` is tf's, and
+PyKDL's names are also available here.
 """
 
 from __future__ import annotations

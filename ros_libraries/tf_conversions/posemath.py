@@ -13,7 +13,7 @@ Pair = tuple[tuple[float, float, float], tuple[float, float, float, float]]
 
 
 def fromTf(tf: Any) -> Frame:
-    """Frame of a pair (position, quaternion), as `tf.Transformer.lookupTransform` returns it."""
+    """Return the frame of a pair (position, quaternion), as `tf.Transformer.lookupTransform` returns it."""
     position, quaternion = tf
     return Frame(Rotation.Quaternion(*quaternion), Vector(*position))
 
@@ -24,19 +24,19 @@ def toTf(f: Frame) -> Pair:
 
 
 def fromMsg(p: Any) -> Frame:
-    """Frame of a geometry_msgs/Pose."""
+    """Return the frame of a geometry_msgs/Pose."""
     q = p.orientation
     return Frame(Rotation.Quaternion(q.x, q.y, q.z, q.w), Vector(p.position.x, p.position.y, p.position.z))
 
 
 def toMsg(f: Frame) -> Any:
-    """geometry_msgs/Pose of a frame."""
+    """Return the geometry_msgs/Pose of a frame."""
     position, quaternion = toTf(f)
     return Pose(Point(*position), Quaternion(*quaternion))
 
 
 def fromMatrix(m: Any) -> Frame:
-    """Frame of a 4x4 array."""
+    """Return the frame of a 4x4 array."""
     return Frame(Rotation(*(m[i, j] for i in range(3) for j in range(3))), Vector(*(m[i, 3] for i in range(3))))
 
 
@@ -46,10 +46,10 @@ def toMatrix(f: Frame) -> Any:
 
 
 def fromCameraParams(cv: Any, rvec: Any, tvec: Any) -> Frame:
-    """Frame of what OpenCV finds as a camera's extrinsic parameters.
+    """Return the frame of OpenCV's extrinsic camera parameters.
 
     Args:
-        cv: the OpenCV module, which has Rodrigues or, long ago, Rodrigues2.
+        cv: the OpenCV module, which has Rodrigues or, in old versions, Rodrigues2.
         rvec: rotation vector, 3x1.
         tvec: translation, 3x1, in m.
     """

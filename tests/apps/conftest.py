@@ -1,4 +1,4 @@
-"""An app's handle on stand-ins: real Table Services and pools, a script instead of a bus."""
+"""An app's handle on stand-ins: real Table Services and pools, and a script instead of a bus."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Step = bytes | None | Callable[[], object]
 
 
 class Ended(BaseException):
-    """What exit_app ends the app's task with."""
+    """Raised by exit_app to end the app's task."""
 
 
 class AppBench(Bench):
@@ -30,10 +30,10 @@ class AppBench(Bench):
 
     Attributes:
         cfe: the handle for the app.
-        refuse: function names ("sb.subscribe") to statuses that they fail with.
-        subscriptions: MsgIds subscribed to at this moment.
-        exit_status: what the app ended with.
-        symbols: what libraries offer, by name.
+        refuse: function names ("sb.subscribe") with the statuses that they fail with.
+        subscriptions: current MsgIds of subscriptions.
+        exit_status: status with which the app ended.
+        symbols: functions of libraries, by name.
     """
 
     def __init__(self, name: str) -> None:
@@ -139,5 +139,5 @@ class AppBench(Bench):
 
 
 def cmd(msg_id: int, fcn_code: int = 0, payload: bytes = b"") -> bytes:
-    """A command packet."""
+    """Return a command packet."""
     return bytes(command(msg_id, fcn_code, payload))

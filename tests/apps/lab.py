@@ -1,4 +1,4 @@
-"""A mission with CI_LAB and TO_LAB and nothing else, and a ground system that talks to it."""
+"""A mission with only CI_LAB and TO_LAB, and a ground system that talks to it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Lab:
         self.ground = ground
 
     def events(self, *packets: bytes, seconds: float = 1.5, app: str = "") -> list[str]:
-        """Send packets, run for a while; the events since, without their times, of one application or of all."""
+        """Send packets and run for a while. Returns the new events, without times, of one application or of all."""
         before = len(self.mission.console.lines)
         for packet in packets:
             assert self.ground.send(packet)
@@ -37,19 +37,19 @@ class Lab:
         return [event for event in events if event.startswith(app)]
 
     def packets(self, telemetry: Telemetry) -> list[bytes]:
-        """Packets of a kind that came down since they were last asked for; all others are gone then."""
+        """Return packets of a kind that arrived since the last call. All other packets are dropped."""
         start = telemetry.msg_id.to_bytes(2, "big")
         return [packet for _, packet in self.ground.received() if packet.startswith(start)]
 
     def latest(self, telemetry: Telemetry, *requests: bytes) -> dict[str, Any]:
-        """Send requests, run for a while; the fields of the last packet of a kind that came down."""
+        """Send requests and run for a while. Returns the fields of the last packet of a kind."""
         self.events(*requests)
         return telemetry.read(self.packets(telemetry)[-1])
 
 
 @contextmanager
 def lab(folder: Path, tasks: str = "thread", before: str = "", **options: Any) -> Iterator[Lab]:
-    """A booted mission in a folder; `before` are lines of its startup script in front of the two applications."""
+    """Boot a mission in a folder. `before` are lines of its startup script before the two applications."""
     (folder / "startup.scr").write_text(before + STARTUP, encoding="utf-8")
     mission = Mission(str(folder), tasks=tasks, console=Console(quiet=True), **options)
     with mission, GroundLink(mission) as ground:

@@ -1,4 +1,4 @@
-"""A mission with SCH, what it sends, and an operator, for tests."""
+"""A mission with SCH, its sent messages, and an operator, for tests."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ DEBUG_ON = command(0x1801, 5, b"SCH".ljust(20, b"\0") + b"\x0f\0")
 
 
 class Flight:
-    """A mission with SCH, what it sent, and an operator."""
+    """A mission with SCH, its sent messages, and an operator."""
 
     def __init__(self, folder: Path, board: str | None = None) -> None:
         self.seen: list[Seen] = []
@@ -46,7 +46,7 @@ class Flight:
         self.mission.run_until(round(second * NS_PER_S))
 
     def events(self) -> list[str]:
-        """SCH's events, each as "id: text", but the one of its start."""
+        """Return SCH's events, each as "id: text", except for the start event."""
         lines = [line.partition(" 66/1/SCH ")[2] for line in self.mission.console.lines]
         return [line for line in lines if line and not line.startswith("1:")]
 
@@ -61,7 +61,7 @@ class Flight:
         return next(seen.at_ns for seen in self.seen if seen.msg_id == FIRST)
 
     def housekeeping(self) -> dict[str, int]:
-        """The last housekeeping packet."""
+        """Return the last housekeeping packet."""
         return pk.HK_TLM.read([seen.packet for seen in self.seen if seen.msg_id == pk.HK_TLM_MID][-1])
 
 

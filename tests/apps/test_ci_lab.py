@@ -1,4 +1,4 @@
-"""CI_LAB through its socket: what comes in, what is refused, its commands and counters."""
+"""CI_LAB through its socket: accepted and refused datagrams, commands and counters."""
 
 from __future__ import annotations
 

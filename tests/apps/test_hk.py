@@ -1,4 +1,4 @@
-"""HK: combined packets out of recorded telemetry, commands, table updates, and what it says when things fail."""
+"""HK: combined packets from recorded telemetry, commands, table updates, and its reports of failures."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def hk() -> AppBench:
 
 
 def own(bench: AppBench) -> list[tuple[int, int, str]]:
-    """HK's own events, without those of Table Services."""
+    """Return HK's own events, without those of Table Services."""
     return [event for event in bench.events if not event[2].startswith(("Successfully loaded", "HK Successfully"))]
 
 
@@ -308,7 +308,7 @@ def test_table_calls_that_fail(
 
 
 def test_what_is_in_combined_packets_follows_from_the_table() -> None:
-    """Whole fields have their names, the rest is bytes; what overlaps or lies in the header is left out."""
+    """Whole fields have their names, the rest is bytes. Overlapping parts and parts in the header are left out."""
     source = Telemetry("SRC_HK_TLM", 0x0880, Layout("Src", [("A", "u8"), ("B", "u32"), ("C", "char[4]")]))
     copies = [  # from packet, byte, to packet, byte, bytes
         (0x0880, 20, 0x089C, 17, 8),

@@ -32,7 +32,10 @@ class Session:
         self.mission = Mission(str(folder), tasks=tasks, console=Console(quiet=True))
 
     def events(self, seconds: int, *commands: bytes) -> list[str]:
-        """Send commands, run for some virtual seconds; what apps and Table Services said meanwhile, without times."""
+        """Send commands and run for some virtual seconds.
+
+        Returns the events of apps and Table Services, without times.
+        """
         before = len(self.mission.console.lines)
         for packet in commands:
             self.mission.kernel.spawn("ground", partial(self.mission.cfe.sb.transmit_msg, packet, False), 10)

@@ -60,7 +60,7 @@ def test_its_way_through_a_session(sample: AppBench) -> None:
 
 
 def test_a_request_for_housekeeping_may_have_any_length(sample: AppBench) -> None:
-    """NASA's does not look: one with a length field of 0, which says 7 bytes, was answered."""
+    """NASA's code does not check it: a request with a length field of 0, meaning 7 bytes, was answered."""
     short = bytearray(packets.SEND_HK.packet())[:7]
     short[4:6] = bytes(2)
     sample.run(SAMPLE_APP_Main, bytes(short), cmd(packets.SEND_HK_MID, 0, b"xyz"))

@@ -1,4 +1,4 @@
-"""SBN in two processors that fly beside each other: what they tell each other, and what can go wrong on the way."""
+"""SBN in two processors that fly beside each other: their messages, and errors on the way."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ def test_each_learns_what_the_other_wants_and_gets_it(pair: Flight) -> None:
     assert answer(pair, "SBN_HK") == {"CC": 10, "CmdCnt": 0, "CmdErrCnt": 0, "SubCnt": 25, "NetCnt": 1}
     wanted = answer(pair, "SBN_HK_PEERSUBS", NetIdx=0, PeerIdx=0)
     assert {0x1882, 0x1883, 0x1810, 0x1860} <= set(wanted["Subs"][: wanted["SubCnt"]])
-    assert {0x1806, 0x1826} & set(wanted["Subs"]) == {0x1826}  # as the table says
+    assert {0x1806, 0x1826} & set(wanted["Subs"]) == {0x1826}  # as in the table
     pair.send(SAMPLE_NOOP)
     pair.run_for(2)
     assert pair.packets(f"0x{SAMPLE_HK:04X}")[-1].data[17] == 1  # its counter of commands
@@ -234,7 +234,7 @@ def test_10_000_random_datagrams_do_no_harm_and_are_counted(impostor: Impostor) 
 
 
 def damaged(rng: random.Random) -> bytes:
-    """A datagram of processor 2 with something wrong in it, or random bytes."""
+    """Return a damaged datagram of processor 2, or random bytes."""
     kind = rng.choice([pr.SUB_MSG, pr.UNSUB_MSG, pr.APP_MSG, pr.PROTO_MSG, pr.NO_MSG, 0x55, 0xA1])
     payload = rng.choice([subs(0x08F0, 0x18F1), rng.randbytes(rng.randrange(64)), b""])
     data = bytearray(pr.pack(pr.NetMsg(kind, *IDS, payload)))

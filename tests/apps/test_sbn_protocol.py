@@ -1,4 +1,4 @@
-"""SBN's bytes on the wire, and its tables: as NASA's SBN has them."""
+"""SBN's bytes on the wire, and its tables, as in NASA's SBN."""
 
 from __future__ import annotations
 

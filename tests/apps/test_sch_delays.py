@@ -1,4 +1,4 @@
-"""SCH when the processor, its library or the board keep it from its slots, and when it cannot even start."""
+"""SCH when the processor, its library or the board delay its slots, and when it cannot start."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def Main(cfe):
 
 
 def hogged(folder: Path, busy_ms: int) -> Flight:
-    """A flight with an app that is more urgent than SCH and keeps the processor from 330 ms of a second on."""
+    """Return a flight with an app that is more urgent than SCH and keeps the processor from 330 ms of a second on."""
     hog = HOG.format(at_ms=4_330, busy_ms=busy_ms)
     startup = SCH + "CFE_APP, hog, Main, HOG, 30, 8192, 0x0, 0;\n"
     return Flight(write_mission(folder, startup, hog=hog))

@@ -1,4 +1,4 @@
-"""SCH's clockwork: the tone, the slots between tones, and what happens when the tone is late, early or absent."""
+"""SCH's clock: the tone, the slots between tones, and late, early or missing tones."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ MS = 1000
 
 
 class Board:
-    """A timer and a clock that go as the test says.
+    """A timer and a clock that the test controls.
 
     Attributes:
         now_us: mission elapsed time.
@@ -76,7 +76,7 @@ class Board:
         self.now_us = until_us
 
     def tone(self, at_us: int) -> None:
-        """Let the tone come at a time; a tick due at that very moment comes after it."""
+        """Send the tone at a time. A tick due at the same time comes after it."""
         self.run_to(at_us - 1)
         self.now_us = at_us
         self.frames.on_major_frame()

@@ -1,4 +1,4 @@
-"""SCH_LAB: the table it ships, when it sends what, and what it logs when it cannot start."""
+"""SCH_LAB: its shipped table, its schedule of commands, and its log when it cannot start."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SCH's arithmetic: which slots a wake-up does, whatever the clock did since the one before."""
+"""SCH's calculation of the slots of a wake-up, whatever the clock did since the one before."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SCH's tables: those that it ships, how they are made, and when they are refused."""
+"""SCH's tables: the shipped ones, how to make them, and when they are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""TO_LAB seen from the ground: its table, its commands, the packets that come down."""
+"""TO_LAB seen from the ground: its table, its commands, its packets."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def session(tmp_path: Path) -> Iterator[Lab]:
 
 
 def spy(session: Lab, count: int) -> int:
-    """Send packets of a MsgId from within; how many came down."""
+    """Send packets of a MsgId from inside the mission. Returns how many arrived on the ground."""
     for number in range(count):
         session.mission.cfe.sb.transmit_msg(bytes(telemetry(SPY.msg_id, bytes([number]))))
     session.mission.run_for(0.6)

@@ -1,4 +1,4 @@
-"""Damaged commands through CI_LAB: nothing dies, and every one of them is found in somebody's counters."""
+"""Damaged commands through CI_LAB: no application dies, and a counter records every one of them."""
 
 from __future__ import annotations
 

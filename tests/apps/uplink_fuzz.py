@@ -1,9 +1,10 @@
-"""Damaged commands for CI_LAB, and the books that tell what became of every one of them.
+"""Damaged commands for CI_LAB, and the books that record the result of every one of them.
 
-The commands are those of a session with the real cFE; each is damaged in one way or in several, or left as it is. A
-damaged command may be a good one by chance. Those that would be right to end an application or the processor, or to
-clear the counters that the books are kept with, are taken out by a rule: `MASKED` says which function codes, and such a
-packet goes out as the NOOP of the same application.
+The commands come from a session with the real cFE. Each is damaged in one way or several, or left unchanged. A damaged
+command may be valid by chance. Commands that would rightly end an application or the processor, or clear the counters
+of
+the books, are removed by a rule: `MASKED` lists their function codes, and such a packet is replaced by the NOOP of the
+same application.
 """
 
 from __future__ import annotations
@@ -133,10 +134,10 @@ def _masked(packet: bytearray) -> bytearray:
 
 
 class Books:
-    """What was sent, and what the mission's own counters say about it.
+    """The sent packets, and the mission's own counters of them.
 
     Attributes:
-        refused, deliverable: datagrams that are no packets, and packets; by the rules of CI_LAB's documentation.
+        refused, deliverable: datagrams that are not packets, and packets, by the rules of CI_LAB's documentation.
         by_msg_id: packets by MsgId.
         handled: commands that each application counted as accepted or rejected.
         outcomes: (MsgId, outcome) of every message that reached a command table.
@@ -179,7 +180,7 @@ class Books:
         assert self.mission.record.resets == []
         assert self.ingested() == (self.deliverable, self.refused)
         for msg_id, sent in self.by_msg_id.items():
-            if msg_id & COMMAND and msg_id <= HIGHEST_MSG_ID:  # nobody but CI_LAB sends these
+            if msg_id & COMMAND and msg_id <= HIGHEST_MSG_ID:  # only CI_LAB sends these
                 assert self.relayed(msg_id) == sent, f"bus, 0x{msg_id:04X}"
         for command, pipe in PIPES.items():
             assert self.by_msg_id[command] == self.read(command) + self.dropped(command), pipe
@@ -187,7 +188,7 @@ class Books:
             assert self.handled[command] == self.countable(command), pipe
 
     def ingested(self) -> tuple[int, int]:
-        """What CI_LAB counted: packets and errors."""
+        """Return CI_LAB's counters: packets and errors."""
         fields = ci_lab.HK_TLM.read(self._last[CI_LAB])
         return fields["IngestPackets"], fields["IngestErrors"]
 
@@ -214,7 +215,7 @@ class Books:
         return sum(self.outcomes[kind] for kind in [*kinds, *COUNTED_TOO.get(command, [])] if kind not in NOT_COUNTED)
 
     def _alive(self) -> list[tuple[str, int]]:
-        """Names and ids of the applications; who is started anew gets another id."""
+        """Return names and ids of the applications. A restarted application gets another id."""
         return [(app.name, app.app_id) for app in self.mission.cfe.es.apps]
 
     def _at_pipe(self, command: int) -> list[Destination]:
@@ -229,7 +230,7 @@ class Books:
             self.by_msg_id[get_msg_id(data)] += 1
 
     def _look(self) -> None:
-        """Ask everybody for housekeeping, and add up how far the counters went; they begin again after 255."""
+        """Request housekeeping from all applications, and add up their counters, which wrap after 255."""
         for request in REQUESTS.values():
             self._sb.transmit_msg(bytes([request >> 8, request & 0xFF, 0xC0, 0, 0, 1, 0, 0]))
         self.mission.run_for(1)
@@ -243,7 +244,7 @@ class Books:
 
 
 def fly(folder: Path, seed: int, count: int, monkeypatch: pytest.MonkeyPatch) -> Books:
-    """Send so many damaged commands to a mission of its own; the books of it."""
+    """Send damaged commands to a new mission. Returns its books."""
     (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
     outcomes: Counter[tuple[int, int]] = Counter()
     dispatch = CommandTable.dispatch

@@ -10,13 +10,13 @@ from cfepy.cli.main import parser_for
 
 
 def parsers() -> dict[str, argparse.ArgumentParser]:
-    """The parsers that have no subcommands, such as `run` and `topic echo`."""
+    """Return the parsers that have no subcommands, such as `run` and `topic echo`."""
     return dict(_leaves("", _whole()))
 
 
 @functools.cache
 def _whole() -> argparse.ArgumentParser:
-    """The parser of all commands, which takes a tenth of a second to make."""
+    """Return the parser of all commands, which takes a tenth of a second to make."""
     return parser_for([])
 
 
@@ -30,5 +30,5 @@ def _leaves(words: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, 
 
 
 def options(parser: argparse.ArgumentParser) -> list[argparse.Action]:
-    """Its options, without --help and what is handed to a tool of ROS as it is."""
+    """Return its options, except for --help and the arguments passed on to a tool of ROS."""
     return [action for action in parser._actions if action.option_strings and action.dest not in ("help", "handed")]

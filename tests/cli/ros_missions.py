@@ -30,7 +30,7 @@ ROBOT = """
 
 
 def robot(folder: Path) -> Path:
-    """Its mission's folder."""
+    """Return its mission's folder."""
     (folder / "robot.py").write_text(textwrap.dedent(ROBOT), encoding="utf-8")
     (folder / "startup.scr").write_text(
         "CFE_APP, robot.py, __main__, ROBOT, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8"

@@ -1,4 +1,4 @@
-"""`cfepy build`: what it writes, says and answers."""
+"""`cfepy build`: its files, its output and its exit status."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cfepy check` as a person sees it: a line for each problem, and the exit status."""
+"""`cfepy check` for a user: a line for each problem, and the exit status."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cfepy run --check-determinism`: what is found, what is said about it, and the exit status."""
+"""`cfepy run --check-determinism`: its findings, its output, and the exit status."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_a_deterministic_mission(tmp_path: Path, capsys: pytest.CaptureFixture[s
     shown = capsys.readouterr().out.splitlines()
     assert shown[0].startswith("3 runs: PYTHONHASHSEED=0 --tasks thread; PYTHONHASHSEED=1 --tasks greenlet; ")
     assert main(["run", folder, "--for", "1", "--quiet"]) == 0
-    assert shown[-1] == capsys.readouterr().out.splitlines()[-1]  # the trace is that of an ordinary run
+    assert shown[-1] == capsys.readouterr().out.splitlines()[-1]  # the trace equals that of an ordinary run
 
 
 @pytest.mark.slow

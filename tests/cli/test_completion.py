@@ -1,4 +1,4 @@
-"""Completion: what a shell is told, and the shells that are installed here."""
+"""Completion: the words for a shell, and the shells that are installed here."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ pytest.importorskip("argcomplete")
 
 
 def told(line: str, monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """What a word at the end of a line may become."""
+    """Return the completions of the word at the end of a line."""
     said = {"COMP_LINE": line, "COMP_POINT": str(len(line)), "_ARGCOMPLETE": "1", "_ARGCOMPLETE_IFS": "\n"}
     for name, value in said.items():
         monkeypatch.setenv(name, value)

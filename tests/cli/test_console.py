@@ -1,4 +1,4 @@
-"""`cfepy console` without a terminal: lines piped in, a mission in virtual time, a computer elsewhere over UDP."""
+"""`cfepy console` without a terminal: lines piped in, a mission in virtual time, a remote computer over UDP."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Console = Callable[..., tuple[int, str]]
 
 @pytest.fixture
 def console(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Console:
-    """A session: words of the command line, then the lines that are typed; status and output."""
+    """Run a session: words of the command line, then typed lines. Returns status and output."""
 
     def run(*words: str, lines: str) -> tuple[int, str]:
         monkeypatch.setattr(sys, "stdin", io.StringIO(lines))
@@ -120,7 +120,7 @@ def test_the_run_ends_with_its_time_and_an_application_that_died_is_told(console
 def test_a_journal_has_what_was_typed(
     lines: str, console: Console, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Also before time has begun, when nobody hears it yet."""
+    """Also before time has begun, when no application can receive it yet."""
     journal = tmp_path / "run.cfepy"
     _, output = console("lab", "--record", str(journal), lines=lines)
     assert main(["replay", str(journal), "--quiet"]) == 0
@@ -140,7 +140,7 @@ def test_a_paced_session_is_repeated_by_its_script(
 
 
 class Sky:
-    """Stands for the port at which telemetry arrives, and the one to which commands are sent."""
+    """The port that receives telemetry, and the port that sends commands."""
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, *datagrams: bytes) -> None:
         self.left = list(datagrams)

@@ -1,4 +1,4 @@
-"""Parts of the console: how a line may go on, pages of telemetry, the script of a session."""
+"""Parts of the console: completion of a line, pages of telemetry, the script of a session."""
 
 from __future__ import annotations
 
@@ -138,7 +138,7 @@ S = 10**9
 
 
 def saved(*noted: tuple[Step | None, int, int, str], end_ns: int = 20 * S) -> list[str]:
-    """The lines of a script: steps or commands with when they began and were done, and the verdict's detail."""
+    """Return the lines of a script: steps or commands with when they began and were done, and the verdict's detail."""
     script = SavedScript(DICTIONARY)
     for step, began_ns, done_ns, detail in noted:
         if step is None:
@@ -158,7 +158,7 @@ OVER = "the run ended earlier"
         (EXPECTED, S, 2 * S, "", "        expect event HK"),
         (EXPECTED, S, 2 * S, "no event was sent", "        expect event HK"),
         (EXPECTED, 2 * S, 3 * S, "", "        expect event HK"),
-        (EXPECTED, 2 * S, 4 * S, "", "# 2: expect event HK"),  # a look every 10 ms may be too late
+        (EXPECTED, 2 * S, 4 * S, "", "# 2: expect event HK"),  # checking every 10 ms may be too late
         (EXPECTED, S, 5 * S, "", "# 1: expect event HK"),
         (EXPECTED, S, 4 * S, OVER, "# 1: expect event HK"),
         (GUARD, 2 * S, 20 * S, "", "at 2 expect no event HK"),

@@ -1,4 +1,4 @@
-"""`cfepy console` on a terminal: what the screen shows, keys, history and completion."""
+"""`cfepy console` on a terminal: the screen, keys, history and completion."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from dev.pages.console_picture import idle, in_a_console, say
 
 
 def text_of(screen: ConsoleScreen, name: str) -> str:
-    """What a pane shows."""
+    """Return the text of a pane."""
     widget = screen.query_one(f"#{name}")
     if isinstance(widget, RichLog):
         return " ".join(line.text.rstrip() for line in widget.lines)

@@ -1,4 +1,4 @@
-"""A journal that is cut off anywhere, or of which nothing is compared, is never called the same run."""
+"""A truncated journal, or one without compared content, never counts as the same run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the command ends when it is told to: Ctrl-C from its first import to its last step, SIGHUP, a closed terminal."""
+"""How the command ends on request: Ctrl-C from its first import to its last step, SIGHUP, a closed terminal."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ sys.exit(process())
 
 
 def ended(words: Sequence[str], when: str = "", before: str = "", after: str = "") -> subprocess.CompletedProcess[str]:
-    """The command in a process of its own, with Ctrl-C when a module is imported."""
+    """Run the command in a separate process, with Ctrl-C when a module is imported."""
     return subprocess.run(
         [sys.executable, "-c", COMMAND.format(words=list(words), when=when, before=before, after=after)],
         capture_output=True,
@@ -138,7 +138,7 @@ def test_main_puts_the_answers_to_signals_back() -> None:
 
 
 def flying(folder: Path) -> tuple[subprocess.Popen[str], Path, Path]:
-    """A run that has begun, its bag and its journal."""
+    """Return a run that has begun, its bag and its journal."""
     bag, journal = folder / "run.bag", folder / "run.cfepy"
     process = started("--for", "100000", "--bag", str(bag), "--record", str(journal))
     read_to(process, "phase approach")
@@ -146,20 +146,20 @@ def flying(folder: Path) -> tuple[subprocess.Popen[str], Path, Path]:
 
 
 def started(*options: str, below: Sequence[str] = ()) -> subprocess.Popen[str]:
-    """A run of capture, its output in pipes."""
+    """Return a run of capture, its output in pipes."""
     words = [*below, sys.executable, "-u", "-m", "cfepy", "run", "capture", *options]  # each line is seen at once
     return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
 def read_to(process: subprocess.Popen[str], text: str) -> None:
-    """Read what it prints up to a text."""
+    """Read its output up to a text."""
     assert process.stdout is not None
     while text not in process.stdout.readline():
         assert process.poll() is None
 
 
 def assert_whole(bag: Path, journal: Path) -> None:
-    """Both are finished as they are after Ctrl-C."""
+    """Assert that both are complete, as they are after Ctrl-C."""
     with BagReader(str(bag)) as reader:
         assert sum(1 for _ in reader.messages())
     end = read_journal(journal).end
@@ -230,7 +230,7 @@ def test_a_reader_that_went_away_leaves_a_whole_journal(tmp_path: Path) -> None:
 
 @pytest.fixture
 def _sighup_is_not_ignored() -> Iterator[None]:
-    """Let the signal count where the tests run under nohup, too."""
+    """Enable the signal, which is ignored if the tests run under nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
     yield
     signal.signal(signal.SIGHUP, before)

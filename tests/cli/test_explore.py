@@ -1,4 +1,4 @@
-"""`cfepy explore`: what it finds, how it tells it, and that it is the same whoever runs it."""
+"""`cfepy explore`: its findings, its report, and that both are the same with any crew."""
 
 from __future__ import annotations
 

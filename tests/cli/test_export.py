@@ -1,4 +1,4 @@
-"""`cfepy export`; what is in an XTCE document is tested in tests/ground/test_xtce.py, and series in test_series.py."""
+"""`cfepy export`. tests/ground/test_xtce.py tests the content of XTCE documents, and test_series.py that of series."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_csv_of_a_mission_a_journal_and_a_bag(
     assert list(rows[0]) == ["time", "stamp", "position[1:3][0]", "position[1:3][1]", "header.seq"]
     assert rows[0]["stamp"] == "316533800.550017000"
     assert [row["header.seq"] for row in rows] == [str(number) for number in range(len(rows))]
-    if source != "bag":  # the times of which begin with its first message
+    if source != "bag":  # whose times begin with the first message
         assert rows[0]["time"] == "0.550017000"
 
 

@@ -31,7 +31,7 @@ def test_a_run_with_faults_reports_them(plan: Path, tmp_path: Path, capsys: pyte
     numbers = tmp_path / "numbers.json"
     assert (
         main(["run", "lab", "--for", "10", "--faults", str(plan), "--json", str(numbers)]) == 0
-    )  # a crash that was asked for is no problem
+    )  # an injected crash is not a problem
     out, err = capsys.readouterr()
     assert "cfepy fault crash-1: crashes SAMPLE_APP" in out
     assert "SAMPLE_APP: task SAMPLE_APP died of an exception" in out

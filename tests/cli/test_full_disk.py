@@ -1,4 +1,4 @@
-"""Outputs on a full disk, and without memory: told by name, and nothing half written is left."""
+"""Outputs on a full disk, and without memory: the error names them, and no partial file is left."""
 
 from __future__ import annotations
 

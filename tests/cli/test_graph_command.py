@@ -1,4 +1,4 @@
-"""`cfepy graph`: the graph of a mission that is flown for it."""
+"""`cfepy graph`: the graph of a mission that the command flies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names of files that no file can have, in what the user gives: told as those of files that are not there."""
+"""File names from the user that no file can have: reported like missing files."""
 
 from __future__ import annotations
 

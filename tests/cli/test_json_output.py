@@ -1,4 +1,4 @@
-"""`--json -`: JSON and nothing else on standard output, whatever a command prints; with a file, both."""
+"""`--json -`: only JSON on standard output, whatever a command prints; with a file, both."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ COMMANDS: dict[str, list[str]] = {
     "topic list": ["topic", "list", *LAB],
     "service list": ["service", "list", *LAB],
 }
-FLOWN_ALIKE = ("launch", "node", "replay", "topic ", "service ")  # of nodes; they print and write as those above
+FLOWN_ALIKE = ("launch", "node", "replay", "topic ", "service ")  # for nodes; they print and write as those above
 
 
 @pytest.mark.parametrize("command", COMMANDS)

@@ -1,4 +1,4 @@
-"""`cfepy launch`: nodes of launch files as applications, with all that roslaunch gives them."""
+"""`cfepy launch`: nodes of launch files as applications, with everything that roslaunch provides."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_packages_of_the_workspace_that_one_is_in(
 
 
 def test_what_is_shown(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
-    """Nodes, topics and what became of both; the flight computer on demand."""
+    """It shows nodes, topics and the state of both; the flight computer on demand."""
     respawned = (
         '<node pkg="demo" type="talker.py" name="late" respawn="true" ns="b"><param name="count" value="3"/></node>'
     )

@@ -1,4 +1,4 @@
-"""What a run loads of cfepy: a mission without nodes, faults and journal pays for no more than it needs."""
+"""The modules of cfepy that a run loads: without nodes, faults and journal it loads only those it needs."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 MOST_OF_A_COMMAND = 225  # modules of `cfepy run lab`; may only fall
-MOST_OF_A_PROGRAM = 223  # of `cfepy.run("lab")`; may only fall
+MOST_OF_A_PROGRAM = 223  # modules of `cfepy.run("lab")`; may only fall
 TOPS = ("cfepy", "rospy_shim", "ros_libraries")
 RECORDS = {"rospy_shim", "rospy_shim.types", "rospy_shim.types.config"}
 """What a mission file may say of nodes, which each mission has room for."""
@@ -33,14 +33,14 @@ PROGRAM = 'import cfepy; cfepy.run("lab", seconds=2)'
 
 
 def loaded_by(code: str) -> set[str]:
-    """The modules of cfepy that a fresh interpreter has after some code."""
+    """Return the modules of cfepy that a fresh interpreter has after some code."""
     told = f"import json, sys\n{code}\nprint()\nprint(json.dumps(list(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", told], capture_output=True, text=True, check=True)
     return {name for name in json.loads(done.stdout.splitlines()[-1]) if name.partition(".")[0] in TOPS}
 
 
 def for_others(loaded: set[str]) -> list[str]:
-    """Those of them that only other missions need."""
+    """Return the modules that only other missions need."""
     packages = tuple(f"{name}." for name in FOR_OTHERS)
     return sorted(name for name in loaded - RECORDS if name in FOR_OTHERS or name.startswith(packages))
 

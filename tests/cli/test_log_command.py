@@ -1,4 +1,4 @@
-"""`cfepy log`: what it prints of cFE's files, and of files that are none."""
+"""`cfepy log`: its output for files of cFE, and for other files."""
 
 from __future__ import annotations
 

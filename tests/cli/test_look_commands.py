@@ -1,4 +1,4 @@
-"""`cfepy trace` and `cfepy report`: of a journal that is replayed, and of a mission that is flown for them."""
+"""`cfepy trace` and `cfepy report`: of a replayed journal, and of a mission that they fly."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The command itself: help, version, and what it imports to say so."""
+"""The command itself: help, version, and the modules loaded for them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cfepy new`: what it writes runs at once, has no problems, and its own tests pass."""
+"""`cfepy new`: its files run at once, have no problems, and their own tests pass."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cfepy new app --c`: an application in C that builds, flies and passes its own tests as it is."""
+"""`cfepy new app --c`: an application in C that builds, flies and passes its own tests without changes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`cfepy node`: one node, its output as it is, its exit status."""
+"""`cfepy node`: one node, its unchanged output, its exit status."""
 
 from __future__ import annotations
 

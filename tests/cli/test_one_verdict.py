@@ -1,4 +1,4 @@
-"""Whether a run went well: every command, the page, the JSON and Python say the same of each mission."""
+"""Whether a run succeeded: every command, the page, the JSON and Python agree on each mission."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ ROS = """
 
 @dataclass(frozen=True)
 class Case:
-    """A mission, the files beside it, and words of its one problem; none of one that goes well."""
+    """A mission, the files beside it, and words of its one problem; no words for a successful mission."""
 
     source: str
     problem: str = ""
@@ -42,7 +42,7 @@ class Case:
 
 
 def app(body: str, ends: bool = False) -> str:
-    """An application that does something 0.7 s after its start."""
+    """Return an application that does something 0.7 s after its start."""
     loop = "" if ends else QUIET.partition("register()\n")[2]
     lines = "".join(f"        {line}\n" for line in body.splitlines())
     return f"\n    def Main(cfe):\n        cfe.evs.register()\n        cfe.os.task_delay(100)\n{lines}{loop}"

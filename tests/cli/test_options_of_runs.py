@@ -1,4 +1,4 @@
-"""Each option of a run against each command that flies: it gets into the plan, and what is wrong with it is said."""
+"""Each option of a run with each command that flies: it becomes part of the plan, and its errors are reported."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ APP = "def main(cfe):\n    while cfe.es.run_loop():\n        cfe.os.task_delay(1
 
 
 class TookOffError(BaseException):
-    """Raised in place of a flight; no command catches it."""
+    """Raised in place of a flight. No command catches it."""
 
     def __init__(self, plan: RunPlan) -> None:
         super().__init__(plan)
@@ -37,7 +37,7 @@ class TookOffError(BaseException):
 
 @pytest.fixture
 def words(tmp_path: Path, demo: Path, write_launch: Launch) -> dict[str, list[str]]:
-    """The command lines of the commands that fly, by what they are called here; options may be added at the end."""
+    """Return the command lines of the commands that fly, by short names. Options may be added at the end."""
     (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     (tmp_path / "app.py").write_text(APP, encoding="utf-8")
     (tmp_path / "script.txt").write_text("send CFE_ES_NOOP\n", encoding="utf-8")
@@ -123,7 +123,7 @@ def test_each_attribute_of_a_plan_has_an_option() -> None:
 
 
 def plan_that_takes_off(words: list[str], monkeypatch: pytest.MonkeyPatch) -> RunPlan:
-    """The plan that a command line hands to the pilot."""
+    """Return the plan that a command line hands to the pilot."""
 
     def caught(plan: RunPlan, *_: object) -> object:
         raise TookOffError(plan)
@@ -181,7 +181,7 @@ def read_mission_of(folder: Path) -> object:
     return read_mission(str(folder))
 
 
-# -- what is wrong is said by all --------------------------------------------------------------------------------------
+# -- all commands report errors ----------------------------------------------------------------------------------------
 
 
 def trial_of(plan: RunPlan) -> object:

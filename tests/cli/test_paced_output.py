@@ -1,4 +1,4 @@
-"""What a paced run prints is there when it happens, also in a pipe."""
+"""The output of a paced run appears at the time of its event, also in a pipe."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pacing to the wall clock: never early, no other trace."""
+"""Pacing to the wall clock: never early, and the same trace."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_the_trace_is_that_of_a_free_run() -> None:
 
 
 def test_what_input_has_made_ready_does_not_wait() -> None:
-    """It would for a millisecond, as what comes by itself does, so that it runs in one go."""
+    """Work made ready by input does not wait. Other work would wait for a millisecond, to run in one go."""
     waits: list[float] = []
     with Kernel("thread", Trace()) as kernel:
         pacer = Pacer(kernel, kernel.run, wait=waits.append, elapsed_ns=lambda: 5_000_000)
@@ -57,7 +57,7 @@ def test_what_input_has_made_ready_does_not_wait() -> None:
 
 
 def test_an_answer_is_not_cut_in_two_by_what_its_calls_cost() -> None:
-    """The host would look at the clock between the calls of a task that has something to say to somebody outside."""
+    """The host would look at the clock between the calls of a task that answers an external peer."""
     pieces: list[int] = []
     with Kernel("thread", Trace()) as kernel:
 
@@ -84,7 +84,7 @@ def test_a_factor_that_makes_no_sense(factor: float) -> None:
 
 
 def test_a_wait_that_ends_early_takes_the_run_to_that_instant() -> None:
-    """Whoever brings input ends the wait; the input then enters where the clock on the wall is."""
+    """Any input ends the wait. The input then enters at the time of the wall clock."""
     waits: list[float] = []
     with Kernel("thread", Trace()) as kernel:
         ticking(kernel, NS_PER_S)

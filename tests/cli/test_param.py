@@ -1,4 +1,4 @@
-"""`cfepy param`: parameters of missions, and table files of them."""
+"""`cfepy param`: parameters of missions, and their table files."""
 
 from __future__ import annotations
 

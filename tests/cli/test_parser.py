@@ -23,7 +23,7 @@ WIDTH = 60
 
 
 def said(words: list[str], capsys: pytest.CaptureFixture[str]) -> str:
-    """What a command line is answered with on standard error."""
+    """Return the answer to a command line on standard error."""
     with contextlib.suppress(SystemExit):
         main(words)
     return capsys.readouterr().err
@@ -118,7 +118,7 @@ def test_launch_files_are_known_by_the_same_names() -> None:
         ("explore talker.py x.launch", {"mission": "talker.py", "node_args": ["x.launch"]}),
         ("node demo talker.py x.launch", {"words": ["demo", "talker.py", "x.launch"]}),
         ("log a b.xml", {"files": ["a", "b.xml"]}),
-        ("trace ./run robot.test", None),  # a path is no package
+        ("trace ./run robot.test", None),  # a path is not a package
     ],
 )
 def test_a_package_and_a_file_are_one_mission(words: str, expected: dict[str, object] | None) -> None:

@@ -1,4 +1,4 @@
-"""`cfepy plot`; what is drawn is tested in tests/extra/reports/test_curves.py."""
+"""`cfepy plot`. tests/extra/reports/test_curves.py tests the picture."""
 
 from __future__ import annotations
 

@@ -94,7 +94,7 @@ def test_a_node_is_replayed_with_its_own_exit_of_the_command(
     assert main(["node", "paths.py", "--record", "../node.cfepy", "--", "x"]) == 1
     first = capsys.readouterr().out
     assert "as asked" in first
-    assert main(["replay", "../node.cfepy"]) == 1  # as the run; it is the same nevertheless
+    assert main(["replay", "../node.cfepy"]) == 1  # the status of the run; the replay is identical nevertheless
     again = capsys.readouterr()
     assert again.out == first
     assert "the same run as ../node.cfepy" in again.err
@@ -198,7 +198,7 @@ def test_diff_shows_where_files_were_and_leaves_nothing_behind(
     mission.mkdir()
     temporary.mkdir()
     (mission / "startup.scr").write_text("CFE_APP, steps, Main, STEPS, 60, 8192, 0, 0;\n!\n", encoding="utf-8")
-    for step, name in (("1", "one"), ("2", "three")):  # other lengths: Python tells files of one second by their size
+    for step, name in (("1", "one"), ("2", "three")):  # other lengths: Python compares files of one second by size
         (mission / "steps.py").write_text(RAISER.replace("STEP", name), encoding="utf-8")
         main(["run", str(mission), "--for", "1", "--quiet", "--record", f"{step}.cfepy"])
     capsys.readouterr()

@@ -1,4 +1,4 @@
-"""Going back with processes that were forked on the way shows what going back without them shows."""
+"""Going back with forked processes shows the same as going back without them."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ STEPS = 30
 
 @pytest.fixture(scope="module")
 def journal(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """The journal of a run in which more happens than between two keepers."""
+    """Return the journal of a run with many events between two keepers."""
     file = tmp_path_factory.mktemp("capture") / "run.cfepy"
     assert main(["run", "capture", "--for", "1", "--quiet", "--record", str(file)]) == 0
     return str(file)
 
 
 def replayed(journal: str, typed: str, *options: str) -> tuple[int, str, str]:
-    """Status, output and what is said of a replay in a process of its own."""
+    """Return status, output and error output of a replay in a separate process."""
     command = [sys.executable, "-m", "cfepy", "replay", journal, "--quiet", *options]
     done = subprocess.run(command, input=typed, capture_output=True, text=True, timeout=300, check=False)
     return done.returncode, done.stdout, done.stderr
 
 
 def both_ways(journal: str, typed: str, *options: str) -> list[str]:
-    """What is shown, the same on greenlets, with keepers, and on threads, without them."""
+    """Return the output, the same on greenlets, with keepers, and on threads, without them."""
     quick, plain = (replayed(journal, typed, "--tasks", tasks, *options) for tasks in ("greenlet", "thread"))
     lines, others = ([line for line in each[1].splitlines() if " x real time" not in line] for each in (quick, plain))
     assert lines == others

@@ -1,4 +1,4 @@
-"""`cfepy replay` with --break, --step and --pdb: what a user types and sees."""
+"""`cfepy replay` with --break, --step and --pdb: the user's input and output."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def journal(tmp_path: Path) -> str:
 
 
 def replayed(journal: str, *options: str, typed: str, monkeypatch: pytest.MonkeyPatch) -> int:
-    """The exit status of a replay whose user types this."""
+    """Return the exit status of a replay whose user types this."""
     monkeypatch.setattr("sys.stdin", io.StringIO(typed))
     return main(["replay", journal, *options])
 
@@ -103,7 +103,7 @@ def test_an_application_that_there_is_not(
 
 @pytest.fixture
 def app_journal(tmp_path: Path) -> str:
-    """The journal of an application that counts; the application is not there any more."""
+    """Return the journal of an application that counts. The application is then removed."""
     path = write_mission(tmp_path, "CFE_APP, counter, counter_main, COUNTER, 50, 16384, 0x0, 0;\n!", counter=APP)
     file = tmp_path / "app.cfepy"
     assert main(["run", "--for", "2", "--quiet", "--record", str(file), str(path)]) == 0
@@ -139,7 +139,7 @@ def test_breakpoints_of_python_take_the_path_that_it_had(
 def test_a_user_who_goes_back_from_the_end(
     journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """What was seen is not shown again, and the last flight is the one that is reported and compared."""
+    """Earlier output is not shown again, and the last flight is the one that is reported and compared."""
     typed = "bt /numbers\nbt number == 1\nb\nc\nc\n"
     assert replayed(journal, "--back", typed=typed, monkeypatch=monkeypatch) == 0
     said = capsys.readouterr()

@@ -1,7 +1,7 @@
 """`cfepy rosbag`, `rosmsg`, `rossrv`, `rosnode` and `tf`.
 
-`tests/data/ros_cli/answers.txt` is what the tools of ROS printed (Debian's 1.15.15, tf 1.13.2) with a master and the
-two nodes beside it; their standard error is in it.
+`tests/data/ros_cli/answers.txt` is the output of the ROS tools (Debian's 1.15.15, tf 1.13.2) with a master and the
+two nodes beside it, including their standard error.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ QUICK = ("rosnode info -q /frames", "tf_echo base world", "rosmsg show geometry_
 
 
 def recorded() -> dict[str, str]:
-    """What was printed, by command line."""
+    """Return the recorded output by command line."""
     sections = re.split(r"(?m)^\$ ", (DATA / "ros_cli" / "answers.txt").read_text(encoding="utf-8"))[1:]
     return {name: text for name, _, text in (each.partition("\n") for each in sections)}
 
@@ -40,7 +40,7 @@ def mission(tmp_path: Path) -> str:
 
 
 def words_here(line: str, mission: str) -> list[str]:
-    """The command line of cfepy for one of ROS."""
+    """Return cfepy's command line for one of ROS."""
     tool, *words = line.split()
     if tool == "tf_echo":
         return ["tf", "echo", mission, *words, "--for", "3"]
@@ -50,7 +50,7 @@ def words_here(line: str, mission: str) -> list[str]:
 
 
 def alike(text: str) -> list[str]:
-    """Lines that do not depend on times, ports, the sign of nothing and the node of roscore; those that repeat once."""
+    """Return the lines without times, ports, the sign of zero and roscore's node. Repeated lines occur once."""
     text = re.sub(r"http://\S+", "URI", re.sub(r"\d+\.\d{6,}(ms)?|(?<=At time )\S+", "N", text))
     text = text.replace("-0.000", "0.000")
     return sorted({line.replace("frames]:", "frames]") for line in text.splitlines() if "rosout" not in line})

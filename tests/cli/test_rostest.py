@@ -1,4 +1,4 @@
-"""`cfepy rostest`: each test of a launch file in its own run, its results read, shown and written."""
+"""`cfepy rostest`: each test of a launch file in its own run; its results are read, shown and written."""
 
 from __future__ import annotations
 

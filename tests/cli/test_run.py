@@ -1,4 +1,4 @@
-"""`cfepy run`: exit statuses, the report, --json, --trace, and one digest however a run is looked at."""
+"""`cfepy run`: exit statuses, the report, --json, --trace, and one digest with every way of observing a run."""
 
 from __future__ import annotations
 
@@ -238,7 +238,7 @@ def test_a_text_that_is_no_schedule(make_mission: Write, capsys: pytest.CaptureF
 
 
 def on_terminal(*arguments: str) -> str:
-    """What `cfepy` writes when its standard output is a terminal."""
+    """Return the output of `cfepy` on a terminal."""
     pty = pytest.importorskip("pty")
     import os
 
@@ -249,7 +249,7 @@ def on_terminal(*arguments: str) -> str:
     while True:
         try:
             part = os.read(master, 65536)
-        except OSError:  # how Linux says that nobody has the other end any more
+        except OSError:  # Linux reports in this way that the other end is closed
             break
         if not part:
             break
@@ -325,7 +325,7 @@ def test_a_reader_that_went_away_is_no_error(make_mission: Write) -> None:
 
 
 def read_up_to(process: subprocess.Popen[str], text: str) -> None:
-    """Read what a command prints until a line has a text; fail if it ends before."""
+    """Read a command's output until a line contains a text. Fail if the command ends before."""
     assert process.stdout is not None
     assert any(text in line for line in process.stdout), process.communicate()[1]
 

@@ -1,4 +1,5 @@
-"""`cfepy run --script`: verdicts in the report, exit statuses, how long it runs, one trace however it is looked at."""
+"""`cfepy run --script`: verdicts in the report, exit statuses, run time, and one trace with every way of observing
+it."""
 
 from __future__ import annotations
 

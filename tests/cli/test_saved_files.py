@@ -1,4 +1,4 @@
-"""`cfepy run --save-files`: what a mission wrote reaches the host."""
+"""`cfepy run --save-files`: files that a mission wrote reach the host."""
 
 from __future__ import annotations
 

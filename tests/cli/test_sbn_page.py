@@ -1,4 +1,4 @@
-"""docs/how_to/sbn.md: its commands, as they stand there."""
+"""docs/how_to/sbn.md: its commands, unchanged."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
 def commands() -> list[str]:
-    """The lines that are commands, in their order."""
+    """Return the lines that are commands, in their order."""
     text = "".join(text for _, text in _BLOCK.findall(PAGE.read_text(encoding="utf-8")))
     return [line for line in text.splitlines() if line.startswith("cfepy ")]
 

@@ -1,4 +1,4 @@
-"""`cfepy service`: the services of a mission that is flown for it, and a call."""
+"""`cfepy service`: the services of a mission that the command flies, and a call."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def mission(tmp_path: Path) -> str:
 
 
 def said(capsys: Capture, *words: str) -> str:
-    """What the command writes, when all is well."""
+    """Return the output of a successful command."""
     assert main(["service", *words]) == 0
     return capsys.readouterr().out
 

@@ -1,8 +1,7 @@
-"""One spelling for one thing: what each option is called and means, in every subcommand that has it.
+"""Consistent spelling: the name and meaning of each option, in every subcommand that has it.
 
-A new subcommand takes the options that are here for what they mean. A new option gets a row here once a second command
-has it; until then its own help says what it is. What is handed to one of ROS's own tools, such as `cfepy rosbag`, is
-called as ROS calls it.
+A new subcommand uses the existing options for their meanings. A new option gets a row here once a second command has
+it; until then its own help defines it. Options passed on to ROS's own tools, such as `cfepy rosbag`, keep ROS's names.
 """
 
 from __future__ import annotations
@@ -96,7 +95,7 @@ def key(action: Action) -> str:
 
 
 def pattern(core: str) -> str:
-    """A core of a help as a regular expression: `(a|b)` is a choice, all else is as it stands."""
+    """Return the core of a help text as a regular expression: `(a|b)` is a choice, all else is literal."""
     parts = re.split(r"(\([\w ]+(?:\|[\w ]+)+\))", core)
     return "".join(part if number % 2 else re.escape(part) for number, part in enumerate(parts))
 

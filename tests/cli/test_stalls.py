@@ -1,4 +1,4 @@
-"""What spins ends by `--stall`, SIGTERM and one Ctrl-C, whatever it is, and in each command that flies it."""
+"""Code that spins ends by `--stall`, SIGTERM and one Ctrl-C, in each command that flies it."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_commands_that_look_at_a_run_end_as_failed(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-@pytest.mark.parametrize("what", ["node", "callback", "finalizer"])  # what swallows may take the process with it
+@pytest.mark.parametrize("what", ["node", "callback", "finalizer"])  # code that swallows may kill its process
 def test_a_node_that_spins_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str], what: str, tasks: str) -> None:
     words = ["--for", "2", "--stall", "0.5", "--tasks", tasks]
     assert main(["node", node(tmp_path, SPINS[what]), *words]) == FOUND_PROBLEMS

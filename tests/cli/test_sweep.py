@@ -1,4 +1,4 @@
-"""`cfepy sweep`: its tables, its files, and what is wrong with a command line."""
+"""`cfepy sweep`: its tables, its files, and errors in a command line."""
 
 from __future__ import annotations
 

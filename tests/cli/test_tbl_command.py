@@ -1,4 +1,4 @@
-"""`cfepy tbl`: build, show, diff, verify, and what it says when something is wrong."""
+"""`cfepy tbl`: build, show, diff, verify, and its error messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables and paragraphs on terminals: nothing is wider than they are; in a file, nothing is left out."""
+"""Tables and paragraphs on terminals: they fit the width of a terminal; in a file, nothing is left out."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_what_is_left_out_first() -> None:
     empty = Table("Applications", ("name", "died of", "CPU"), right=(2,))
     empty.add("HK", "", "0.1 %")
     assert fitting(empty, 80) == [0, 1, 2]
-    assert fitting(empty, 16) == [0, 2]  # a column in which nothing stands goes first
+    assert fitting(empty, 16) == [0, 2]  # an empty column is dropped first
 
 
 def test_a_file_has_all_of_it(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -22,7 +22,7 @@ EVENT = bytes(
 
 
 class Datagrams:
-    """Stands for a port at which these datagrams arrive, and then no more."""
+    """A port that receives these datagrams, and then no more."""
 
     def __init__(self, *datagrams: bytes) -> None:
         self.left = list(datagrams)

@@ -1,4 +1,4 @@
-"""`cfepy topic`, and `cfepy run --bag`: a mission that is flown for it, and the bag of a run."""
+"""`cfepy topic`, and `cfepy run --bag`: a mission that the command flies, and the bag of a run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Capture = pytest.CaptureFixture[str]
 
 
 def said(capsys: Capture, *words: str, status: int = 0) -> str:
-    """What the command writes."""
+    """Return the output of the command."""
     assert main(["topic", *words]) == status
     return capsys.readouterr().out
 

@@ -1,4 +1,4 @@
-"""The times of records as text: those at which they were made, also while a task uses the CPU."""
+"""The times of records as text: the times at which they were made, also while a task uses the CPU."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def mission(tmp_path: Path) -> Path:
 
 
 def times(text: str) -> list[tuple[float, float]]:
-    """Time of each line of the application, and the time that the line tells."""
+    """Return the time of each line of the application, and the time in the line."""
     found = re.findall(r"^(\S+) APP console ticks (\d+)$", text, re.MULTILINE)
     return [(float(time), int(ticks) / TICKS) for time, ticks in found]
 

@@ -27,7 +27,7 @@ def mission(tmp_path: Path) -> str:
 
 @contextlib.contextmanager
 def served(monkeypatch: pytest.MonkeyPatch, words: list[str]) -> Iterator[str]:
-    """A command that flies in a thread of its own, and the URL at which it serves; at the end, it is over."""
+    """Run a command that flies in a separate thread until the block ends. Yields the URL of its server."""
     told = threading.Event()
     urls: list[str] = []
 
@@ -111,7 +111,7 @@ def test_one_token_is_made_for_all_servers(
 def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
     mission: str, tmp_path: Path, pace: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At the pace of the wall clock, and as fast as it goes; the token is in no journal."""
+    """It is replayed at the pace of the wall clock, and as fast as possible. The token is in no journal."""
     file, token = tmp_path / "run.cfepy", "a-long-secret"
     length = "4" if pace else "6000"
     command = ["run", mission, "--for", length, "--quiet", "--rosbridge", "0", "--viewer-token", token]
@@ -121,7 +121,7 @@ def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
     ):
         client.send(json.dumps({"op": "subscribe", "topic": "/chatter", "type": "std_msgs/String"}))
         hearers: list[str] = []
-        while not hearers:  # the talker has not come up yet
+        while not hearers:  # the talker has not started yet
             client.send(json.dumps({"op": "call_service", "service": "/rosapi/subscribers", "args": ["/orders"]}))
             hearers = json.loads(client.recv(60))["values"]["subscribers"]
         client.send(json.dumps({"op": "publish", "topic": "/orders", "msg": {"data": "hi"}}))
@@ -147,7 +147,7 @@ def test_what_keeps_a_mission_from_taking_off_is_told(mission: str, capsys: pyte
 def test_a_journal_of_a_run_with_viewers_is_replayed_without_them(
     mission: str, tmp_path: Path, pace: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """At the pace of the wall clock, and as fast as it goes."""
+    """It is replayed at the pace of the wall clock, and as fast as possible."""
     file = str(tmp_path / "run.cfepy")
     length = "4" if pace else "6000"
     command = ["run", mission, "--for", length, "--quiet", "--foxglove", "0", "--record", file, *pace]
@@ -174,7 +174,7 @@ def test_a_journal_of_a_run_with_viewers_is_replayed_without_them(
 def test_a_session_of_the_console_serves_viewers_also_while_time_stands_still(
     mission: str, tmp_path: Path, pace: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """In virtual time it stands at first, and is told to go on only when the client is connected and has subscribed."""
+    """Virtual time stands still at first, and continues only after the client has connected and subscribed."""
     file = str(tmp_path / "run.cfepy")
     typed, typing = os.pipe()
     words = ["console", mission, "--plain", "--rosbridge", "0", "--record", file, *pace]

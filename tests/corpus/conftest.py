@@ -1,4 +1,4 @@
-"""Tests over public nodes run where their sources are; where they are not, the end of the test run says so."""
+"""Tests of public nodes run only with their sources. Without them, the summary of the test run says so."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HOW = f"{len(read_corpus().scenarios)} scenarios with public ROS nodes were NOT 
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """One test for each scenario, or one that says that there are no sources."""
+    """Make one test for each scenario, or one that reports the missing sources."""
     if "scenario_id" in metafunc.fixturenames:
         ids = list(read_corpus().scenarios)
         absent = [pytest.param("", marks=pytest.mark.skip(reason=HOW), id="no-sources")]
@@ -22,7 +22,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Say what was not tried."""
+    """Report the tests that did not run."""
     skipped = terminalreporter.stats.get("skipped", [])
     if any(HOW in str(report.longrepr) for report in skipped):
         terminalreporter.write_line(HOW, yellow=True)

@@ -1,4 +1,4 @@
-"""Every scenario with a public node does what it must."""
+"""Every scenario with a public node meets its expectations."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ def sources(tmp_path: Path) -> Sources:
 
 
 def scenario_of(sources: Sources, script: str, **fields: object) -> Scenario:
-    """A scenario with one of the nodes."""
+    """Return a scenario with one of the nodes."""
     node = Program("us/robots", f"own_msgs/scripts/{script}", fields.pop("argv", ()))  # type: ignore[arg-type]
     text = (sources.folder(node.repo) / node.path).read_bytes()
     basis = Scenario(id="own", node=node, sha256=hashlib.sha256(text).hexdigest(), seconds=2.0, expect=())

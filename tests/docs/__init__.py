@@ -1,1 +1,1 @@
-"""The documentation's commands, given as its readers give them."""
+"""The documentation's commands, executed as a reader would."""

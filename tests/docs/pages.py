@@ -1,4 +1,4 @@
-"""Pages of the documentation as programs: their code blocks, by section, and the commands in them with their output."""
+"""Pages of the documentation as programs: their code blocks by section, with commands and their output."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ class Block(NamedTuple):
 
     @property
     def session(self) -> list[tuple[str, str]]:
-        """The commands of a block, without comments, each with the output that the page shows below it.
+        """Return the commands of a block, without comments, each with the output that the page shows below it.
 
-        They are what follows "$ " where there is output, too, else each line of a block for a shell and of one without
-        a language that begins with a command.
+        A command follows "$ " if the block also shows output. Otherwise each line of a shell block is a command, and
+        each line of a block without a language that begins with a command.
         """
         lines = self.text.splitlines()
         if any(line.startswith("$ ") for line in lines):
@@ -54,7 +54,7 @@ class Block(NamedTuple):
 
     @property
     def commands(self) -> list[list[str]]:
-        """The commands in words; cfepy is the one here."""
+        """Return the commands in words, with this cfepy."""
         return [_here(shlex.split(line)) for line in self.lines]
 
     @property
@@ -66,7 +66,7 @@ class Block(NamedTuple):
 
 
 def is_command(line: str) -> bool:
-    """Whether a line begins as a command does."""
+    """Return whether a line begins as a command does."""
     word = _SETTINGS.sub("", line).partition(" ")[0]
     return word in PROGRAMS or _OWN_PROGRAM.match(word) is not None
 
@@ -76,7 +76,7 @@ def _here(words: list[str]) -> list[str]:
 
 
 def blocks(page: Path, section: str = "") -> list[Block]:
-    """The code blocks of a page, or of one section of it, in their order."""
+    """Return the code blocks of a page, or of one section of it, in order."""
     text = page.read_text(encoding="utf-8")
     if section:
         _, *parts = _SECTION.split(text)
@@ -85,10 +85,10 @@ def blocks(page: Path, section: str = "") -> list[Block]:
 
 
 def commands(page: Path) -> list[str]:
-    """All commands of a page, in their order."""
+    """Return all commands of a page, in their order."""
     return [line for block in blocks(page) for line in block.lines]
 
 
 def name_of(page: Path) -> str:
-    """A page's path in the repository."""
+    """Return a page's path in the repository."""
     return page.relative_to(ROOT).as_posix() if page.is_relative_to(ROOT) else str(page)

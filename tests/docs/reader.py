@@ -1,7 +1,7 @@
-"""A reader who gives all commands of a page, in its order, in an empty folder and in a network of one's own.
+"""Executes all commands of a page in order, in an empty folder and in a separate network.
 
-`python -m tests.docs.reader PAGE` (within `tests.own_network`, in the folder) ends with 1 and tells it when a command
-did not do as its scene and its page say.
+`python -m tests.docs.reader PAGE` (within `tests.own_network`, in the folder) ends with 1 and reports the difference if
+a command does not do what its scene and its page describe.
 """
 
 from __future__ import annotations
@@ -53,17 +53,17 @@ class Given:
         os.killpg(self.process.pid, signal.SIGINT)
 
     def read(self, until: str = "") -> None:
-        """Read what it prints, to the end, or up to the line that has a pattern."""
+        """Read its output to the end, or up to a line that matches a pattern."""
         with self._limited():
             self._read(until)
 
     def go_on(self) -> None:
-        """Read what it prints from now on in the background, so that it is never held up."""
+        """Read its output in the background from now on, so that it never blocks."""
         self._drain = threading.Thread(target=self._read)
         self._drain.start()
 
     def status(self) -> int:
-        """Wait for its end, and read what it still prints; its exit status, as a shell has it."""
+        """Wait for its end and read the remaining output. Returns its exit status, as in a shell."""
         with self._limited():
             if self._drain:
                 self._drain.join()
@@ -94,7 +94,7 @@ class Given:
 
 @dataclass
 class Reader:
-    """One who reads a page and gives its commands."""
+    """Reads a page and executes its commands."""
 
     scene: Scene
     patience_s: float = PATIENCE_S
@@ -102,7 +102,7 @@ class Reader:
     background: dict[str, Given] = field(default_factory=dict)
 
     def problems(self) -> Iterator[str]:
-        """Give all commands, up to one that takes too long; what did not do as it should."""
+        """Execute the commands, up to one that takes too long. Yields the differences from the page."""
         for command in self.scene.commands:
             step = self.scene.step(command)
             for other in step.ends:
@@ -152,7 +152,7 @@ class Reader:
         try:
             process.stdin.write(text)
             process.stdin.close()
-        except BrokenPipeError:  # it has ended, and its status tells whether it should have
+        except BrokenPipeError:  # it has ended, and its status shows whether that was right
             pass
 
     def _end(self, command: str) -> Iterator[str]:
@@ -183,16 +183,16 @@ class Reader:
 
 
 def cpu_s() -> float:
-    """The processor time of all commands that have ended."""
+    """Return the processor time of all commands that have ended."""
     used = resource.getrusage(resource.RUSAGE_CHILDREN)
     return used.ru_utime + used.ru_stime
 
 
 def first_missing(shown: str, output: str) -> str:
-    """The first line of a page's output that is not in the real one, in the page's order; "" if all are.
+    """Return the first line of a page's output that is missing from the real output, in order, or "" if none is.
 
-    Between its lines, and where the page has "...", the output may have more. Lines may be broken elsewhere; how fast
-    it was, and on what, is left out.
+    Between its lines, and where the page has "...", the output may have more. Lines may be broken differently. Speed
+    and host are left out.
     """
     rest = _flat(output)
     for line in shown.splitlines():
@@ -218,23 +218,23 @@ def with_programs(folder: Path) -> None:
 
 
 def read(page: Path) -> list[str]:
-    """Read a page in a new folder below the working one; what did not do as it should."""
+    """Read a page in a new folder below the working one. Returns the differences from the page."""
     home = Path.cwd() / "reader"
     home.mkdir()
     with_programs(Path.cwd() / "bin")
     scene = scene_of(page)
     scene.set_up(home)
     os.chdir(home)
-    os.environ["CFEPY_CACHE"] = str(cache_folder())  # what is compiled once is there for the other pages, too
+    os.environ["CFEPY_CACHE"] = str(cache_folder())  # compiled code is also available for the other pages
     os.environ |= {"HOME": str(home.parent), "PYTHONUNBUFFERED": "1", "ROSCONSOLE_STDOUT_LINE_BUFFERED": "1"}
     os.environ |= {"PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_DRY_RUN": "1", "PIP_NO_INDEX": "1"}
-    for name in ("PYTHONPATH", "ROS_PACKAGE_PATH"):  # what ROS has is not what is tested here
+    for name in ("PYTHONPATH", "ROS_PACKAGE_PATH"):  # ROS's own packages are not tested here
         os.environ.pop(name, None)
     return list(Reader(scene).problems())
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell gives it ignored to what runs in the background
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell ignores it in background commands
     found = read(ROOT / sys.argv[1])
     print(*found, sep="\n\n")
     sys.exit(1 if found else 0)

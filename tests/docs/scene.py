@@ -1,4 +1,4 @@
-"""What a page's reader has before him, and how its commands are given here: a page's part of scenes.yaml."""
+"""The environment of a page's reader, and how its commands are executed here: a page's part of scenes.yaml."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ SCENES = Path(__file__).with_name("scenes.yaml")
 
 @dataclass(frozen=True)
 class Step:
-    """How one command is given, and what comes of it.
+    """How to execute one command, and its expected results.
 
     Attributes:
-        status: its exit status; 130 after Ctrl-C and 0 otherwise, if nothing is said.
-        typed: what is typed on its standard input, which ends then.
-        ready: it goes on in the background from when it has said this, a pattern, until Ctrl-C at the end of the page.
-        until: Ctrl-C as soon as it has said this, a pattern.
-        ends: commands in the background that end before it, by how they stand on the page.
+        status: its exit status; by default 130 after Ctrl-C and 0 otherwise.
+        typed: its standard input, which ends then.
+        ready: a pattern; after printing it, the command runs in the background until Ctrl-C at the end of the page.
+        until: a pattern; Ctrl-C follows as soon as the command has printed it.
+        ends: background commands that end before it, as written on the page.
         says: a text that it must have printed.
-        shown: a text in the code block of the page that shows what it prints, where that is not below the command.
-        differs: why it does not print here what the page shows.
+        shown: a text in the code block of the page with its output, if that is not below the command.
+        differs: why its output here differs from the page.
         needs: programs without which it is left out.
     """
 
@@ -52,7 +52,7 @@ class Step:
 
     @property
     def is_left_out(self) -> bool:
-        """Whether this computer lacks what it needs."""
+        """Return whether this computer lacks a program that it needs."""
         return any(shutil.which(program) is None for program in self.needs)
 
 
@@ -61,13 +61,13 @@ class Scene:
     """A page's scene.
 
     Attributes:
-        elsewhere: command to the file of the test that runs it as it stands on the page.
+        elsewhere: command to the file of the test that runs it unchanged.
         needs: programs without which the page is left out.
         files: path in the scratch folder to path in the repository, None for the same, or to `{block: TEXT}` for the
-            page's code block that has this text.
-        before: commands that the reader has given before those of the page.
-        instead: text in commands to what stands in its place here, so that they end soon or find a computer.
-        steps: command to how it is given, where it is more than to run it.
+            page's code block that contains this text.
+        before: commands that the reader executed before the page.
+        instead: text in commands to its replacement here, so that they end soon or find a computer.
+        steps: command to a step, if it needs more than running.
         not_run: command to the reason why it is not run here.
     """
 
@@ -92,13 +92,13 @@ class Scene:
         return Step(**self.steps.get(command, {}))
 
     def line(self, command: str) -> str:
-        """A command as it is run."""
+        """Return a command as it is run."""
         for text, other in self.instead.items():
             command = command.replace(text, other)
         return command
 
     def shown(self, command: str) -> str:
-        """What the page shows that a command prints, "" for nothing."""
+        """Return the page's output of a command, or "" for none."""
         step = self.step(command)
         if step.shown:
             return self._block_with(step.shown).text
@@ -144,13 +144,13 @@ class Scene:
 
 @cache
 def table() -> dict[str, dict[str, Any]]:
-    """The scenes by page, as they are written down."""
+    """Return the scenes by page, unprocessed."""
     found: dict[str, dict[str, Any]] = yaml.safe_load(SCENES.read_text(encoding="utf-8"))["pages"]
     return found
 
 
 def scene_of(page: Path) -> Scene:
-    """The scene of a page.
+    """Return the scene of a page.
 
     Raises:
         KeyError: it has none.
@@ -159,6 +159,6 @@ def scene_of(page: Path) -> Scene:
 
 
 def overlooked(page: Path) -> list[str]:
-    """The commands of a page that no scene speaks of, and lines that look like commands and are not read as such."""
+    """Return the commands of a page without a scene, and lines that look like commands but are not read as such."""
     unread = [line for block in blocks(page) for line in block.overlooked]
     return unread if name_of(page) in table() else [*commands(page), *unread]

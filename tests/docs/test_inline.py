@@ -19,12 +19,12 @@ from tests.test_docs import FENCE
 
 INLINE = re.compile(r"`([^`]+)`")
 PLACEHOLDER = re.compile(r"^[A-Z][A-Z_]*$|[<>|\[\]]|\.\.\.|\bFIELD=|\bNAME\b|\bFILE\b")
-OUTPUT = re.compile(r"cfepy fault \S+: ")  # what a run says
+OUTPUT = re.compile(r"cfepy fault \S+: ")  # output of a run
 EXTRAS = set(tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["optional-dependencies"])
 
 
 def spans(page: Path, start: str) -> Iterator[str]:
-    """The pieces of code in a page's sentences that begin so."""
+    """Yield the pieces of code in a page's sentences that begin so."""
     for found in INLINE.findall(FENCE.sub("", page.read_text(encoding="utf-8"))):
         text = " ".join(found.replace("\\|", "|").split())
         if text.startswith(start) and not OUTPUT.match(text):
@@ -32,7 +32,7 @@ def spans(page: Path, start: str) -> Iterator[str]:
 
 
 def wrong(command: str) -> str:
-    """What is wrong with a command of cfepy in a sentence, which may be a part of one; "" for nothing."""
+    """Return the error in a command of cfepy in a sentence, which may be a part of one, or ""."""
     words = shlex.split(command.partition(" < ")[0].partition(" | ")[0])[1:]
     whole_parser, given = parser_of(words[0]), list(words)
     parser = whole_parser
@@ -58,12 +58,12 @@ def wrong(command: str) -> str:
 
 @cache
 def parser_of(word: str) -> argparse.ArgumentParser:
-    """The parser of a command line that begins so."""
+    """Return the parser of a command line that begins so."""
     return cli.parser_for([word])
 
 
 def subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
-    """The commands below a command."""
+    """Return the commands below a command."""
     found = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     return {name: below for action in found for name, below in action.choices.items()}
 

@@ -1,4 +1,4 @@
-"""Every command in the code blocks of README, docs and missions works as it stands there, read from top to bottom."""
+"""Every command in the code blocks of README, docs and missions works unchanged, executed from top to bottom."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class Lab:
         (folder / "startup.scr").write_text("!\n", encoding="utf-8")
         (folder / "mission.yaml").write_text(
             'cfe_version: "7.0.0"\n', encoding="utf-8"
-        )  # what tests compare with was recorded on it
+        )  # the recordings for the tests were made on it
         self.mission = Mission(str(folder), console=Console(quiet=True), tasks=tasks)
         self.cfe = self.mission.cfe
         self.es = self.cfe.es
@@ -53,7 +53,7 @@ class Lab:
         self.lines = self.mission.console.lines
 
     def start(self, name: str, exception_action: int = 0, priority: int = 50) -> int:
-        """Start the application of a function's name; its AppId."""
+        """Start the application of a function's name. Returns its AppId."""
         params = StartParams(f"/cf/{name}.so", f"{name}_main", 8192, priority, exception_action)
         return self.es.create_app(name.upper(), params)
 

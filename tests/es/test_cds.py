@@ -1,4 +1,4 @@
-"""The Critical Data Store on bytes that outlive it: blocks, resets, and damage to every single bit."""
+"""The Critical Data Store on memory that survives it: blocks, resets, and damage to every single bit."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def test_a_cds_that_is_too_small_is_not_available() -> None:
 
 
 def small() -> Board:
-    """Three blocks, the middle one given back, so that every kind of byte is there."""
+    """Return three blocks, the middle one given back, so that every kind of byte is there."""
     board = Board()
     for name, data in (("A.One", b"first."), ("A.Gone", b"gone.."), ("B.Two", b"second")):
         handle, _ = board.cds.register(6, name, is_table=name == "B.Two")
@@ -140,7 +140,7 @@ def small() -> Board:
 
 
 def found(board: Board) -> dict[str, bytes | int]:
-    """What the owners find after a reset: name to data, or the status of the attempt to read them."""
+    """Return the owners' view after a reset: name to data, or the status of the attempt to read them."""
     contents: dict[str, bytes | int] = {}
     for name in ("A.One", "B.Two"):
         handle, status = board.cds.register(6, name, is_table=name == "B.Two")

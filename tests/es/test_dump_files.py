@@ -1,4 +1,4 @@
-"""The files of Executive Services are like those that NASA's build wrote (tests/data/cfe_*.log)."""
+"""The files of Executive Services equal those of NASA's build (tests/data/cfe_*.log)."""
 
 from __future__ import annotations
 

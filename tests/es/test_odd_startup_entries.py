@@ -1,4 +1,4 @@
-"""Startup scripts with odd entries: the system log of NASA's cFE 7.0.0, which was given the same scripts."""
+"""Startup scripts with odd entries, compared with the system log of NASA's cFE 7.0.0 for the same scripts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The packets of Executive Services have NASA's layouts, and what stands in them is true."""
+"""The packets of Executive Services have NASA's layouts, and their contents are true."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ def test_query_one(tmp_path: Path) -> None:
 
 
 def sent(lab: Lab, command: bytes, answer: Telemetry) -> dict[str, Any]:
-    """What the answer to a command says."""
+    """Return the fields of the answer to a command."""
     got: list[bytes] = []
 
     def listen(pipe: int) -> None:

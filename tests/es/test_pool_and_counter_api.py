@@ -49,7 +49,7 @@ def in_app(tmp_path: Path) -> Iterator[Callable[[Callable[[Cfe], Any]], Lab]]:
 
 
 def test_a_pool_that_fails_for_its_block_sizes_uses_up_an_id(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
-    """As on NASA's cFE 7.0.1; one that is refused before that does not."""
+    """As on NASA's cFE 7.0.1. A pool that is refused before that uses up no id."""
 
     def main(cfe: Cfe) -> None:
         es = cfe.es
@@ -74,7 +74,7 @@ def test_pools_of_all_kinds(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> No
         before = es.pool_create(1024)
         assert status_of(lambda: es.pool_create_ex_with_alignment(1024, alignment=6)) == CFE_ES_BAD_ARGUMENT
         assert status_of(lambda: es.pool_create_ex(1024, ())) == CFE_ES_BAD_ARGUMENT
-        assert es.pool_create(1024) == before + 3  # what failed late has used up its id
+        assert es.pool_create(1024) == before + 3  # a call that failed late has used up its id
 
     lab = in_app(main)
     assert "CFE_ES_PoolCreateEx_WithAlignment: Pool size(0) too small, need >=32 bytes" in lab.log()

@@ -123,7 +123,7 @@ def test_a_pool_on_memory_that_the_caller_brings() -> None:
     assert bytes(block.memory[:5]) == b"jello"
     check, _, size, _ = DESCRIPTOR.unpack_from(memory, block.offset - DESCRIPTOR.size)
     assert (check, size) == (0x5A5A, 100)
-    assert memory[1024:] == b"\xaa" * 76  # what is beyond the pool is not touched
+    assert memory[1024:] == b"\xaa" * 76  # memory behind the pool is not touched
     assert pool.put(block) == 100
     assert pool.get(110).offset == block.offset
 

@@ -1,4 +1,4 @@
-"""What applications ask of Executive Services, each behaviour in a booted mission."""
+"""Requests of applications to Executive Services, each behaviour in a booted mission."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The startup script, against the system log of a real cFE that was given one full of bad entries."""
+"""The startup script, compared with the system log of a real cFE for a script full of bad entries."""
 
 from __future__ import annotations
 

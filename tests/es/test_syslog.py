@@ -70,14 +70,14 @@ def test_overwriting_begins_at_the_top_and_reads_whole_lines_from_the_oldest_on(
         log.write_to_sys_log(text)
     log.write_to_sys_log("four")
     assert (log.data.write_index, log.data.end_index, log.data.entries) == (29, 86, 4)
-    assert log.read() == line("three") + line("four")  # what is left of "two" begins with its stamp's second byte
+    assert log.read() == line("three") + line("four")  # the rest of "two" begins with its stamp's second byte
     assert bytes(log.data.memory[:56]) == line("four") + line("two")[1:]
 
 
 @pytest.mark.parametrize(
     ("size", "status", "kept"),
     [
-        (100, CFE_ES_ERR_SYS_LOG_FULL, b""),  # 14 bytes left: not even a stamp
+        (100, CFE_ES_ERR_SYS_LOG_FULL, b""),  # 14 bytes left: too few even for a stamp
         (110, CFE_ES_ERR_SYS_LOG_FULL, b""),  # 24: the limit
         (111, CFE_ES_ERR_SYS_LOG_TRUNCATED, f"{STAMP} \n".encode()),
         (114, CFE_ES_ERR_SYS_LOG_TRUNCATED, f"{STAMP} fou\n".encode()),

@@ -38,7 +38,7 @@ class Sent(NamedTuple):
 
 
 class World:
-    """EVS and what it needs; it is its own ES, bus, clock and system log."""
+    """EVS and its peers; this object is its own ES, bus, clock and system log."""
 
     def __init__(self, config: PlatformConfig | None = None) -> None:
         self.kernel = Kernel()
@@ -123,7 +123,7 @@ class World:
         self.console.lines.clear()
 
     def call(self, function: Callable[[], Result], app_id: int = APP_ID) -> Result:
-        """What a function returns or raises in a task of an application."""
+        """Return the result of a function in a task of an application, or raise its exception."""
         results: list[Result] = []
         self.kernel.spawn("caller", lambda: results.append(function()), 100, self.apps[app_id])
         self.kernel.run(self.kernel.now + 1000)
@@ -138,11 +138,11 @@ class World:
         self.call(lambda: self.evs.commands.process(bytes(command(msg_id, code, payload))), EVS_ID)
 
     def sent(self) -> list[Sent]:
-        """The long events on the bus."""
+        """Return the long events on the bus."""
         return [_event(packet) for packet in self.packets if get_msg_id(packet) == pk.LONG_EVENT_MSG_MID]
 
     def housekeeping(self) -> dict[str, object]:
-        """The fields of a fresh housekeeping packet."""
+        """Return the fields of a fresh housekeeping packet."""
         self.command(0, msg_id=pk.SEND_HK_MID)
         packet = self.packets[-1]
         assert get_msg_id(packet) == pk.HK_TLM_MID

@@ -1,4 +1,4 @@
-"""The flood brake, the filters and the event log by themselves, against what they promise at any sequence of events."""
+"""The flood brake, the filters and the event log alone, against their promises for any sequence of events."""
 
 from __future__ import annotations
 

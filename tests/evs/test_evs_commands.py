@@ -276,7 +276,7 @@ def test_the_log_file_is_made_as_the_real_one(world: World) -> None:
 
 
 def test_the_app_data_file_is_made_as_the_real_one(world: World) -> None:
-    """Same header but for the time; the records of EVS and SB, which registers NASA's filters, are the real ones."""
+    """Same header except for the time. The records of EVS and SB, which registers NASA's filters, are the real ones."""
     real = (DATA / "cfe_evs_app.dat").read_bytes()
     world.evs.apps.clear()
     world.call(lambda: world.evs.register(), EVS_ID)

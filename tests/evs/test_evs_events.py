@@ -1,4 +1,4 @@
-"""Sending events: who may, what comes out where, and what holds an event back."""
+"""Sending events: permission, routing, and the causes that hold an event back."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def test_ports_are_lines_on_the_console(world: World) -> None:
     assert world.console.lines == ["EVS Port2 T1001000 66/1/HK 1: hello", "EVS Port4 T1001000 66/1/HK 1: hello"]
 
 
-# -- who may -------------------------------------------------------------------------------------------------------
+# -- permission ----------------------------------------------------------------------------------------------------
 
 
 def test_an_unregistered_app_is_refused_and_told_of_once(world: World) -> None:

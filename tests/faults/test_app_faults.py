@@ -1,4 +1,5 @@
-"""Faults on applications: crash, hang, slow, stop, restart; what Executive Services and the others make of them."""
+"""Faults on applications: crash, hang, slow, stop, restart; the reactions of Executive Services and other
+applications."""
 
 from __future__ import annotations
 
@@ -139,7 +140,7 @@ def test_a_node_crashes_as_a_process_does(tmp_path: Path, tasks: str) -> None:
 
 
 def goes_on(mission: Mission) -> bool:
-    """Whether the node runs again after its crash."""
+    """Return whether the node runs again after its crash."""
     lines = mission.console.lines
     crash = next(at for at, line in enumerate(lines) if "Segmentation fault" in line)
     return any("now" in line for line in lines[crash:])

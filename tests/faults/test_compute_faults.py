@@ -1,4 +1,4 @@
-"""The fault `compute`: work that takes longer, and what it holds up."""
+"""The fault `compute`: work that takes longer, and the tasks that it delays."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def test_the_nth_message_takes_longer_and_holds_up_who_is_less_urgent(tmp_path: 
     assert row(mission, "compute-1")["details"] == ["lets TAKER compute for 0.25 s"]
     lines = [line.split(" at ")[0] for line in mission.console.lines if " takes " in line]
     late = lines.index("TAKER takes 3")
-    assert lines[late - 1] == "OTHER takes 2"  # SOURCE, more urgent, goes on meanwhile; OTHER gets all at once
+    assert lines[late - 1] == "OTHER takes 2"  # SOURCE, of higher priority, runs meanwhile; OTHER gets all at once
     assert values(mission, "OTHER") == list(range(len(values(mission, "OTHER"))))
 
 

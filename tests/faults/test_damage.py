@@ -1,4 +1,4 @@
-"""Which bits and bytes of a message a fault changes."""
+"""The bits and bytes of a message that a fault changes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ DATA = bytes(range(16))
 
 
 def places(changed: bytes, data: bytes = DATA) -> list[int]:
-    """The numbers of the bits that differ."""
+    """Return the numbers of the bits that differ."""
     pairs = enumerate(zip(changed, data, strict=True))
     return [8 * at + bit for at, (one, other) in pairs for bit in range(8) if (one ^ other) >> bit & 1]
 

@@ -1,4 +1,4 @@
-"""Faults whose instants the schedule chooses: each of them can be had, and none comes under fifo."""
+"""Faults whose instants the schedule chooses: each of them can occur, and none occurs under fifo."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ FAULTS = {"crash": CRASH, "drop": DROP, "reset": "faults:\n  - {reset: processor
 
 
 def plan_of(folder: Path, faults: str, how: str = LATE, tasks: str = "greenlet") -> RunPlan:
-    """The vote's mission with a fault."""
+    """Return the vote's mission with a fault."""
     write_mission(folder, STARTUP, voter=VOTER.replace("PERSIST", how), candidates=CANDIDATES, mission_yaml=MISSION)
     (folder / "faults.yaml").write_text(faults, encoding="utf-8")
     return RunPlan((str(folder),), seconds=1.9, tasks=tasks, faults=str(folder / "faults.yaml"))

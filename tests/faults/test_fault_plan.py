@@ -1,4 +1,4 @@
-"""Fault plans as text and as values: reading, errors, writing, and that both are the same."""
+"""Fault plans as text and as values: reading, errors, writing, and that both are equal."""
 
 from __future__ import annotations
 

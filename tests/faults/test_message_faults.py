@@ -1,4 +1,4 @@
-"""Faults on messages: that they happen, and what receivers see of them."""
+"""Faults on messages: that they happen, and their effects on receivers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Random faults on the missions that cfepy brings along: nothing breaks, and everything happens again the same way."""
+"""Random faults on the shipped missions: nothing breaks, and everything is reproducible."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cfepy.writing.console import Console
 
 
 def flown(name: str, plan: FaultPlan, seconds: float, tasks: str = "thread") -> Results:
-    """A mission with faults; what its applications died of must be the faults' doing."""
+    """Fly a mission with faults. Applications may only die of the injected faults."""
     with Mission(name, console=Console(quiet=True), tasks=tasks, attachments=[FaultInjector(plan)]) as mission:
         mission.run_for(seconds)
         at = mark(mission, 0)

@@ -1,4 +1,4 @@
-"""Faults on time, memory, calls, pipes, network and the processor: that they happen, and who notices."""
+"""Faults on time, memory, calls, pipes, network and the processor: that they happen, and which tasks notice."""
 
 from __future__ import annotations
 
@@ -242,7 +242,7 @@ def test_every_processor_has_the_failing_call(tmp_path: Path) -> None:
 
 
 def datagrams(folder: Path, *faults: dict[str, object]) -> list[bytes]:
-    """What a socket of an application gets of ten datagrams from outside."""
+    """Return the data that an application's socket gets from ten external datagrams."""
     worker = """
         def worker_main(cfe):
             socket = cfe.os.socket_open(1, 1)

@@ -1,4 +1,4 @@
-"""`fail: OS_QueuePut` at the pipes of the Software Bus: the put fails, and CFE_SB says so as NASA's does."""
+"""`fail: OS_QueuePut` at the pipes of the Software Bus: the put fails, and CFE_SB reports it like NASA's."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def numbers(mission: Mission, app: str = "TAKER", most: int = 5) -> list[int]:
 
 
 def sb_events(mission: Mission) -> list[str]:
-    """What CFE_SB said of messages that got lost."""
+    """Return CFE_SB's events about lost messages."""
     return [line for line in mission.console.lines if "Pipe Overflow" in line or "Pipe Write Err" in line]
 
 
@@ -87,7 +87,7 @@ def test_a_random_plan_lets_puts_into_pipes_fail() -> None:
 
 
 def test_events_meet_the_fault_too(tmp_path: Path) -> None:
-    """Every put fails, that of the event about it as well; nothing goes round in circles."""
+    """Every put fails, including the put of the event about it. This causes no endless loop."""
     mission = fly(tmp_path, PUT | {"after": 1.8})
     assert values(mission) == [0, 1, 2]
     assert row(mission, "fail-1")["times"] > 10

@@ -1,4 +1,4 @@
-"""What random faults are chosen from: looked at once, and again when the mission's files have changed."""
+"""The candidates of random faults: read once, and again after the mission's files have changed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When a fault happens: each field of `When` by itself, to the nanosecond, and probabilities in numbers."""
+"""The time of a fault: each field of `When` alone, to the nanosecond, and probabilities in numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Small missions that faults strike: applications that tell on the console what they notice."""
+"""Small missions for faults: applications that print the effects that they notice."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def fly(
     board: str | None = None,
     **sources: str,
 ) -> Mission:
-    """Fly the mission with some faults to its end; what it left behind can be looked at."""
+    """Fly the mission with some faults to its end. Its final state can be inspected."""
     path = write_mission(folder, startup, **({"source": SOURCE, "taker": TAKER, "other": TAKER} | sources))
     injector = FaultInjector(FaultPlan.from_dict({"faults": list(faults)}))
     console = Console(quiet=True)
@@ -82,15 +82,15 @@ def fly(
 
 
 def told(mission: Mission, start: str) -> list[str]:
-    """What an application said."""
+    """Return the lines of an application."""
     return [line for line in mission.console.lines if line.startswith(start)]
 
 
 def values(mission: Mission, app: str = "TAKER") -> list[int]:
-    """The numbers that an application took."""
+    """Return the numbers that an application took."""
     return [int(line.split()[2]) for line in told(mission, f"{app} takes ")]
 
 
 def row(mission: Mission, name: str) -> dict[str, Any]:
-    """What the report says of a fault."""
+    """Return the report's row of a fault."""
     return next(each for each in mission.record.rows("faults") if each["name"] == name)

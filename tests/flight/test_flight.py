@@ -1,4 +1,4 @@
-"""`Flight` by itself: what it does to a mission, waits for, and tells when it waited in vain."""
+"""`Flight` alone: its actions on a mission, its waits, and its report after a wait in vain."""
 
 from __future__ import annotations
 

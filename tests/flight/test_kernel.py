@@ -1,4 +1,4 @@
-"""The stop button of a notebook: it ends a run that would go on for days, and leaves the kernel usable."""
+"""The stop button of a notebook: it ends a run that would take days, and leaves the kernel usable."""
 
 from __future__ import annotations
 
@@ -14,13 +14,16 @@ jupyter_client = pytest.importorskip("jupyter_client")
 
 pytestmark = pytest.mark.slow
 
-LONGEST_S = 120  # kills what hangs
+LONGEST_S = 120  # limit for a test that hangs
 Cell = Callable[..., dict[str, Any]]
 
 
 @pytest.fixture(scope="module")
 def cell() -> Iterator[Cell]:
-    """Executes code in a kernel and gives its last output; `stop` presses the button when the cell has printed."""
+    """Return a function that executes code in a kernel and gives its last output.
+
+    `stop` presses the button after output.
+    """
     sockets = TemporaryDirectory()
     manager = jupyter_client.KernelManager(kernel_name="python3", **kernel_sockets(sockets.name))
     manager.start_kernel()

@@ -1,4 +1,4 @@
-"""What a notebook shows of what the library gives."""
+"""The display of the library's objects in a notebook."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Balanced(HTMLParser):
 
 
 def words(page: str) -> list[str]:
-    """What a reader sees, a piece of text each."""
+    """Return the visible text, one piece at a time."""
     html = Balanced(page)
     assert html.open == []
     return [text for text in re.split(r"<[^>]*>", page) if text]

@@ -1,4 +1,4 @@
-"""`cfepy.run`, `boot` and `replay`: plans by name, and what can be asked of a run."""
+"""`cfepy.run`, `boot` and `replay`: plans by name, and the properties of a run."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Missions fly the same wherever a program flies them: threads, asyncio, forked and spawned processes.
+"""Missions fly the same in every environment of a program: threads, asyncio, forked and spawned processes.
 
-What could hang is done in a process of its own, or on a thread that nobody has to wait for, so that a test fails.
+Code that could hang runs in a separate process, or on a daemon thread, so that a test fails instead.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ import cfepy
 
 pytest.importorskip("greenlet")
 
-# Python 3.12 warns of other threads in a process that forks: they are what is tried out
+# Python 3.12 warns of other threads in a process that forks: these tests use them on purpose
 pytestmark = pytest.mark.filterwarnings("ignore:.*multi-threaded, use of fork:DeprecationWarning")
 
-LONGEST_S = 60.0  # kills what hangs; nothing is decided by it
+LONGEST_S = 60.0  # limit for a test that hangs; no result depends on it
 SECONDS = 0.8  # from the boot
 TASKS = ("thread", "greenlet")
 NODE = """
@@ -46,13 +46,13 @@ needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has
 
 
 def digest(mission: str, tasks: str) -> str:
-    """A small run: what it was, in 32 digits."""
+    """Return the digest of a small run, in 32 digits."""
     return cfepy.run(mission, seconds=SECONDS, seed=7, tasks=tasks).trace
 
 
 @pytest.fixture(scope="module")
 def counter(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """A mission of one node that talks to itself."""
+    """Return a mission of one node that sends to itself."""
     folder = tmp_path_factory.mktemp("where")
     (folder / "counter.py").write_text(NODE, encoding="utf-8")
     (folder / "startup.scr").write_text(
@@ -63,7 +63,7 @@ def counter(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture(scope="module")
 def usual(counter: str) -> str:
-    """The digest that all of them must have."""
+    """Return the digest that all of them must have."""
     return digest(counter, "thread")
 
 
@@ -82,7 +82,7 @@ def in_thread(work: Callable[..., Any], *args: Any, **options: Any) -> Future[An
 
 
 def in_fork(work: Callable[..., Any], *args: Any) -> Any:
-    """What a function returns in a forked process, or the exception that it ends with; it is killed if it hangs."""
+    """Return a function's result in a forked process, or raise its exception. The process is killed if it hangs."""
     reader, writer = os.pipe()
     child = os.fork()
     if not child:
@@ -156,7 +156,7 @@ def test_greenlets_of_another_thread_say_so(counter: str) -> None:
 @each_kind_of_task
 def test_inside_asyncio(tasks: str, counter: str, usual: str) -> None:
     async def fly() -> list[str]:
-        first = digest(counter, tasks)  # in the loop itself, which stands still as long
+        first = digest(counter, tasks)  # in the loop itself, which stands still meanwhile
         two = await asyncio.gather(*(asyncio.to_thread(digest, counter, tasks) for _ in range(2)))
         return [first, *two]
 
@@ -177,7 +177,7 @@ def test_after_a_fork(tasks: str, counter: str, usual: str) -> None:
 @needs_fork
 @each_kind_of_task
 def test_after_a_fork_beside_a_mission_that_flies(tasks: str, counter: str, usual: str) -> None:
-    """The other thread may be anywhere in its run at the moment of the fork."""
+    """At the moment of the fork, the other thread may be anywhere in its run."""
     over = threading.Event()
 
     def fly_on() -> None:

@@ -1,4 +1,4 @@
-"""File names are completed as CFE_FS_ParseInputFileNameEx does it."""
+"""File names are completed as in CFE_FS_ParseInputFileNameEx."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """Every test here that takes `cfe` is the main function of an application: it runs in a task of a mission.
 
-The tests stand for the segments of NASA's functional tests (cfe_testcase), a file for each of theirs, a test for each
-segment, named alike; `python -m dev.pages.requirements` counts them. test_misuse.py goes beyond them.
+The tests stand for the segments of NASA's functional tests (cfe_testcase): a file for each of theirs, and a test with
+the same name for each segment. `python -m dev.pages.requirements` counts them. test_misuse.py goes beyond them.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from tests.functional.harness import make_mission, run_as_application
 
 @pytest.fixture
 def mission(tmp_path: Path) -> Iterator[Mission]:
-    """A mission that is ready to boot; it does so when the test begins."""
+    """Return a mission that is ready to boot. It boots when the test begins."""
     with make_mission(tmp_path) as made:
         yield made
 
 
 @pytest.fixture
 def cfe(mission: Mission) -> Cfe:
-    """What an application gets."""
+    """Return an application's handle."""
     return mission.cfe
 
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_pyfunc_call(pyfuncitem: pytest.Function) -> bool | None:
-    """Call a test in the application CFE_TEST; True says that it is done."""
+    """Call a test in the application CFE_TEST. Returns True, which tells pytest that the call is done."""
     found = pyfuncitem.funcargs
     if "cfe" not in found:
         return None

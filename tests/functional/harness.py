@@ -1,6 +1,6 @@
 """A test as the main function of the application CFE_TEST, in a mission that has booted.
 
-The mission has what NASA's functional tests find there too: a library ASSERT_LIB, and SAMPLE_APP with its table.
+The mission has the environment of NASA's functional tests: a library ASSERT_LIB, and SAMPLE_APP with its table.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ ASSERT_LIB = f"""
 
 
 class LoaderOfTest:
-    """The mission's loader, but for one file: what is loaded from that is a function of the host."""
+    """The mission's loader, except for one file: loading that file gives a function of the host."""
 
     def __init__(self, loader: Loader, main: Entry) -> None:
         self.exists = loader.exists
@@ -53,7 +53,7 @@ class LoaderOfTest:
 
 
 class Attempt:
-    """A call of a function in some task of a mission, and how it ended; errors are kept for the host to see."""
+    """A call of a function in some task of a mission, and its result; errors are kept for the host."""
 
     def __init__(self, function: Callable[[], object]) -> None:
         self._function = function
@@ -73,7 +73,7 @@ class Attempt:
             self.is_over = True
 
     def confirm(self, may_exit: bool = False) -> None:
-        """Raise what the call raised; an assertion that it went through to its end, unless its task may exit."""
+        """Raise the call's exception. Assert that the call ran to its end, unless its task may exit."""
         if self._error is not None:
             raise self._error
         assert self.is_over, "the task has not come to its end"
@@ -81,12 +81,12 @@ class Attempt:
 
 
 def make_mission(folder: Path) -> Mission:
-    """A mission that is ready to boot."""
+    """Return a mission that is ready to boot."""
     return Mission(write_mission(folder, STARTUP, cfe_assert=ASSERT_LIB), console=Console(quiet=True))
 
 
 def run_as_application(mission: Mission, function: Callable[[], object]) -> None:
-    """Boot a mission in which CFE_TEST calls a function as soon as all is up; raises what that raises."""
+    """Boot a mission in which CFE_TEST calls a function as soon as all is up. Raises the function's exception."""
     cfe = mission.cfe
     attempt = Attempt(function)
 
@@ -104,7 +104,10 @@ def run_as_application(mission: Mission, function: Callable[[], object]) -> None
 
 
 def call_outside(cfe: Cfe, function: Callable[[], object]) -> None:
-    """Call a function in a task that belongs to no application, and wait for its end; raises what it raises."""
+    """Call a function in a task that belongs to no application, and wait for its end.
+
+    Raises the function's exception.
+    """
     attempt = Attempt(function)
     task_id = cfe.os.task_create("NonCfe", attempt, CHILD_STACK, CHILD_PRIORITY)
     task = cfe.es.kernel.tasks[-1]
@@ -114,7 +117,7 @@ def call_outside(cfe: Cfe, function: Callable[[], object]) -> None:
 
 
 def call_in_child(cfe: Cfe, function: Callable[[], object]) -> None:
-    """Call a function in a child task, and wait until there is no such task any more; raises what it raises."""
+    """Call a function in a child task, and wait until the task is gone. Raises the function's exception."""
     attempt = Attempt(function)
     task_id = cfe.es.create_child_task("CHILD_TASK_1", attempt, CHILD_STACK, CHILD_PRIORITY)
     _wait_for_end(cfe, lambda: cfe.es.get_task_name(task_id))
@@ -132,7 +135,7 @@ def _wait_for_end(cfe: Cfe, ask: Callable[[], object]) -> None:
 
 
 def answer_of(call: Callable[..., int], *arguments: object) -> int:
-    """As `status_of`, for a call whose result is a status."""
+    """Return the status of a call whose result is a status; see `status_of`."""
     try:
         return call(*arguments)
     except CfeError as error:

@@ -19,12 +19,12 @@ IN_FILE = (0xF007, 0xBA11)
 
 
 def register(cfe: Cfe, name: str = NAME, options: int = 0) -> TableHandle:
-    """The handle of a table of the usual size."""
+    """Return the handle of a table of the usual size."""
     return cfe.tbl.register(name, SIZE, options)
 
 
 def content(cfe: Cfe, handle: int) -> tuple[tuple[int, ...], bool]:
-    """A table's numbers, and whether they were updated; the address is given back."""
+    """Return a table's numbers, and whether they were updated. The address is released."""
     view, is_updated = cfe.tbl.get_address(handle)
     numbers = NUMBERS.unpack(view)
     cfe.tbl.release_address(handle)

@@ -1,4 +1,4 @@
-"""Restarting, reloading and deleting applications that cannot be (es_application_control_test.c)."""
+"""Restarting, reloading and deleting invalid applications (es_application_control_test.c)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ES knows of applications, tasks, libraries and the last reset (es_info_test.c)."""
+"""ES's information on applications, tasks, libraries and the last reset (es_info_test.c)."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ def send(cfe: Cfe, command: Command, **fields: object) -> None:
 
 
 def set_masks(cfe: Cfe, trigger_mark: int) -> None:
-    """Collect mark 0 and the last 32 marks, none of which the core has."""
+    """Collect mark 0 and the last 32 marks, which the core does not use."""
     for number, mask in enumerate([1, 0, 0, 0xFFFFFFFF]):
         trigger = 1 << trigger_mark % 32 if number == trigger_mark // 32 else 0
         send(cfe, pk.SET_PERF_FILTER_MASK, FilterMaskNum=number, FilterMask=mask)
@@ -33,7 +33,7 @@ def set_masks(cfe: Cfe, trigger_mark: int) -> None:
 
 
 def collect(cfe: Cfe, act: Callable[[], object], trigger_mark: int = NO_MARK) -> tuple[dict[str, Any], list[int]]:
-    """What the file says of a collection during which something was done: about it, and its marks."""
+    """Return the file's description of a collection during an action, and its marks."""
     set_masks(cfe, trigger_mark)
     send(cfe, pk.START_PERF_DATA, TriggerMode=TRIGGER_START)
     act()

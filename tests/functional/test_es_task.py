@@ -1,4 +1,4 @@
-"""Child tasks: who may make them, their names and their ends (es_task_test.c)."""
+"""Child tasks: permission to make them, their names and their ends (es_task_test.c)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NAME = "CHILD_TASK_1"
 
 
 def counter(cfe: Cfe, counts: list[int]) -> Callable[[], None]:
-    """A task that counts every 100 ms."""
+    """Return a task that counts every 100 ms."""
 
     def count() -> None:
         while True:
@@ -109,7 +109,7 @@ def test_exit_child(cfe: Cfe) -> None:
 
 
 def test_child_with_custom_stack(cfe: Cfe) -> None:
-    """A stack is OSAL's in any case; its size is the caller's."""
+    """The stack is always OSAL's; its size is the caller's."""
     sizes: list[int] = []
     es = cfe.es
 

@@ -1,6 +1,6 @@
-"""Beyond NASA's segments: what only Python lets an application say, and what must not harm the core.
+"""Beyond NASA's segments: arguments that only Python allows, and that must not harm the core.
 
-Numbers of more bits than C's, names whose characters are more than a byte, functions that return no number.
+Numbers of more bits than C's, names with multi-byte characters, functions that do not return a number.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def test_table_validation_without_a_number_has_failed(cfe: Cfe, said: object) ->
 
 
 def validation_told(cfe: Cfe, said: Any) -> int:
-    """LastValStatus in housekeeping, when a validation function says something."""
+    """Return LastValStatus in housekeeping after a validation function's result."""
     answers: list[Any] = [0, said]
     handle = cfe.tbl.register(NAME, SIZE, 0, lambda image: answers.pop(0))
     cfe.tbl.load(handle, bytes(SIZE))

@@ -1,4 +1,4 @@
-"""Fields of message headers: what fits in, what comes out (msg_api_test.c)."""
+"""Fields of message headers: accepted values, and their results (msg_api_test.c)."""
 
 from __future__ import annotations
 

@@ -24,14 +24,14 @@ def listening_pipe(cfe: Cfe, msg_id: int, limit: int) -> int:
 
 
 def message(cfe: Cfe, msg_id: int, value: int) -> bytearray:
-    """A message that ends with a number."""
+    """Return a message that ends with a number."""
     packet = cfe.msg.init(msg_id, 16 + VALUE.size)
     packet[16:] = VALUE.pack(value)
     return packet
 
 
 def receive(cfe: Cfe, pipe: int, timeout_ms: int = POLL) -> int:
-    """The number in the next message."""
+    """Return the number in the next message."""
     packet = cfe.sb.receive_buffer(pipe, timeout_ms)
     assert packet is not None
     number: int = VALUE.unpack_from(packet, 16)[0]
@@ -39,7 +39,7 @@ def receive(cfe: Cfe, pipe: int, timeout_ms: int = POLL) -> int:
 
 
 def run_children(cfe: Cfe, tasks: list[tuple[Callable[[], None], int]]) -> None:
-    """Run child tasks with their priorities; waits until all are at their end, and raises what one of them raised."""
+    """Run child tasks with their priorities to their ends. Raises an exception of one of them."""
     attempts = [Attempt(task) for task, _ in tasks]
     for number, (_, priority) in enumerate(tasks):
         cfe.es.create_child_task(f"Bulk{number}", attempts[number], CHILD_STACK, priority)

@@ -1,4 +1,4 @@
-"""Messages on their way: sequence counts, limits, buffers, and what is in a message (sb_sendrecv_test.c)."""
+"""Messages in transit: sequence counts, limits, buffers, and contents (sb_sendrecv_test.c)."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ HEADER_SIZES = {CMD_MID: 8, TLM_MID: 16}
 
 
 def message(cfe: Cfe, msg_id: int, value: int, sequence: int = 0) -> bytearray:
-    """A message whose payload is one number."""
+    """Return a message whose payload is one number."""
     packet = cfe.msg.init(msg_id, HEADER_SIZES[msg_id] + VALUE.size)
     set_sequence_count(packet, sequence)
     packet[HEADER_SIZES[msg_id] :] = VALUE.pack(value)
@@ -56,7 +56,7 @@ def test_basic_transmit_receive(cfe: Cfe) -> None:
 
 
 def buffer_of(cfe: Cfe, packet: bytearray) -> MessageBuffer:
-    """A zero-copy buffer that holds a message."""
+    """Return a zero-copy buffer that holds a message."""
     buffer = cfe.sb.allocate_message_buffer(len(packet))
     buffer[:] = packet
     return buffer
@@ -96,7 +96,10 @@ def test_msg_broadcast(cfe: Cfe) -> None:
     pipes = [listening_pipe(cfe, CMD_MID, limit, depth) for limit, depth in ((1, 3), (2, 3), (4, 3), (6, 5))]
 
     def broadcast(*values: int) -> list[list[int]]:
-        """Send values; what then comes out of the pipes, round by round, one and the same message each time."""
+        """Send values.
+
+        Returns the values received from the pipes in each round; a round has the same message in all pipes.
+        """
         for value in values:
             sb.transmit_msg(message(cfe, CMD_MID, value))
         rounds = []

@@ -24,7 +24,7 @@ def two_pipes(cfe: Cfe) -> tuple[int, int]:
 
 
 def come_and_go(cfe: Cfe, subscribe: Subscribe, unsubscribe: Subscribe) -> None:
-    """Both MsgIds into both pipes, twice each, and out again; and what cannot be."""
+    """Subscribe both pipes to both MsgIds, twice each, and unsubscribe; and try invalid subscriptions."""
     first, second = two_pipes(cfe)
     every = [(CMD_MID, first), (TLM_MID, second), (TLM_MID, first), (CMD_MID, second)]
     for call in (subscribe, unsubscribe):
@@ -38,7 +38,7 @@ def come_and_go(cfe: Cfe, subscribe: Subscribe, unsubscribe: Subscribe) -> None:
 
 
 def pipe_gets(cfe: Cfe, msg_id: int, pipe: int) -> bool:
-    """Whether a message that is sent now comes into a pipe."""
+    """Return whether a message that is sent now comes into a pipe."""
     while cfe.sb.receive_buffer(pipe, 0) is not None:
         pass
     cfe.sb.transmit_msg(cfe.msg.init(msg_id, 16))

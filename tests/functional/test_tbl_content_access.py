@@ -1,4 +1,4 @@
-"""Addresses of tables, one and several, and giving them back (tbl_content_access_test.c)."""
+"""Addresses of tables, one and several, and their release (tbl_content_access_test.c)."""
 
 from __future__ import annotations
 

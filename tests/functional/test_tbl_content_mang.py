@@ -1,4 +1,4 @@
-"""Loading tables from files and memory, and what an owner does with its table (tbl_content_mang_test.c)."""
+"""Loading tables from files and memory, and an owner's actions on its table (tbl_content_mang_test.c)."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_table_load(cfe: Cfe, mission: Mission) -> None:
 
 
 def load(cfe: Cfe, handle: int, name: str) -> int:
-    """What the load of a file answers."""
+    """Return the result of loading a file."""
     return answer_of(cfe.tbl.load, handle, path(name))
 
 

@@ -1,4 +1,4 @@
-"""What is known of a table, and being told of requests by message (tbl_information_test.c)."""
+"""Information on a table, and notification of requests by message (tbl_information_test.c)."""
 
 from __future__ import annotations
 

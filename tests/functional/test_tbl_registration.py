@@ -1,4 +1,4 @@
-"""Registering and sharing tables, as many as there can be, and from nowhere (tbl_registration_test.c)."""
+"""Registering and sharing tables, up to their limit, and from outside of applications (tbl_registration_test.c)."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def test_table_registration(cfe: Cfe, mission: Mission) -> None:
 
 
 def take_all(make: Callable[[int], int], handles: list[int]) -> int:
-    """Add handles until there are no more; the status of the one that failed."""
+    """Add handles until there are no more. Returns the status of the failed call."""
     while (status := status_of(lambda: handles.append(make(len(handles) + 1)))) == CFE_SUCCESS:
         assert len(handles) < 1000
     return status

@@ -1,4 +1,4 @@
-"""What time it is, and how good the clock is (time_current_test.c)."""
+"""The current time, and the state of the clock (time_current_test.c)."""
 
 from __future__ import annotations
 

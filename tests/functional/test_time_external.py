@@ -1,4 +1,4 @@
-"""Functions that a tone calls, and time from outside (time_external_test.c)."""
+"""Functions called by a tone, and external time (time_external_test.c)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def test_time_synch_callbacks(cfe: Cfe) -> None:
 
 
 def test_external_sources(cfe: Cfe) -> None:
-    """A tone is always there; the sources of time have to be configured."""
+    """The tone source always exists; the sources of time need configuration."""
     assert status_of(cfe.time.external_tone) == CFE_SUCCESS
     assert status_of(cfe.time.external_met, (1000, 0)) == CFE_TIME_NOT_IMPLEMENTED
     assert status_of(cfe.time.external_gps, (1000, 0), 5) == CFE_TIME_NOT_IMPLEMENTED

@@ -1,4 +1,4 @@
-"""A few damaged inputs of each kind; `python -m dev.fuzz` does many."""
+"""A few damaged inputs of each kind; `python -m dev.fuzz` runs many."""
 
 from __future__ import annotations
 

@@ -8,5 +8,5 @@ PAGE = pages.ROOT / "docs/how_to/ground_tools.md"
 
 
 def blocks(section: str) -> list[pages.Block]:
-    """The code blocks of a section of the page, in their order."""
+    """Return the code blocks of a section of the page, in their order."""
     return pages.blocks(PAGE, section)

@@ -1,4 +1,4 @@
-"""The commands of docs/how_to/ground_tools.md, as they stand there, in a network in which no port is taken.
+"""The commands of docs/how_to/ground_tools.md, unchanged, in a network in which all ports are free.
 
 `python -m tests.ground.page_flight PART`, in a network of its own (`tests.own_network`).
 """
@@ -29,7 +29,7 @@ class Craft:
         self._output = output
 
     def says(self, text: str) -> str:
-        """Wait until it has printed a text; the line."""
+        """Wait until it has printed a text. Returns the line."""
         for line in self._output:
             if text in line:
                 return line
@@ -38,7 +38,7 @@ class Craft:
 
 @contextmanager
 def flying(command: Sequence[str], ready: str = "entering OPERATIONAL state") -> Iterator[Craft]:
-    """A command that flies until Ctrl-C, from when it says that it is ready."""
+    """Run a command until Ctrl-C. Yields when it reports that it is ready."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         assert process.stdout is not None
         craft = Craft(process.stdout)
@@ -52,7 +52,7 @@ def flying(command: Sequence[str], ready: str = "entering OPERATIONAL state") ->
 
 
 def output_of(command: Sequence[str], typed: str = "", status: int = 0) -> str:
-    """Run a command to its end; what it printed."""
+    """Run a command to its end. Returns its output."""
     ended = subprocess.run(
         command, input=typed, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False
     )
@@ -75,7 +75,7 @@ def own_tools() -> None:
 
 
 def recorded() -> None:
-    """A flight that took commands through its port, and the same run where there is no network at all."""
+    """Fly with commands through the port, and replay the run without any network."""
     _, record = blocks("The spacecraft")
     fly, replay = record.commands
     noop = blocks("cfepy's own tools")[0].commands[1]
@@ -118,7 +118,7 @@ def parser() -> None:
 
 
 def several() -> None:
-    """Three spacecraft, two of them with ports, and a fourth that finds its port taken."""
+    """Fly three spacecraft, two of them with ports, and a fourth that finds its port taken."""
     crafts, tools, taken, in_python = blocks("Several spacecraft")
     first, second, third = crafts.commands
     with flying(first) as one, flying(second) as two, flying(third, "phase approach") as three:

@@ -36,11 +36,12 @@ DECLARED = (Telemetry("ALL_TYPES_TLM", 0x0890, ALL_TYPES), Command("ALL_TYPES", 
 
 
 def random_payload(layout: Layout, random: Random) -> bytes:
-    """Bytes of a layout: numbers of the whole range, texts with a NUL behind them, named values where there are names.
+    """Return bytes of a layout: numbers of the whole range, texts with a NUL behind them, named values if there are
+    names.
 
     Args:
-        layout: of the payload.
-        random: decides; what it gives to padding is random, too.
+        layout: layout of the payload.
+        random: source of randomness, also for padding.
     """
     payload = bytearray(random.randbytes(layout.size))
     order: Literal["little", "big"] = "big" if layout.on_the_wire else "little"
@@ -70,7 +71,7 @@ def _random_number(cell: Cell, random: Random) -> int:
 
 
 def random_telemetry(declared: Telemetry, sequence: int, random: Random) -> bytes:
-    """A telemetry packet of random values and a random time.
+    """Return a telemetry packet of random values and a random time.
 
     Args:
         declared: the packet.
@@ -86,10 +87,7 @@ def random_telemetry(declared: Telemetry, sequence: int, random: Random) -> byte
 
 
 def telemetry_values(declared: Telemetry, packet: bytes) -> dict[str, object]:
-    """What a reader of our XTCE has to make of the payload of a packet.
-
-    The byte that tells apart packets of one MsgId is no parameter of theirs, but one of what they have in common.
-    """
+    """Return the payload values that a reader of our XTCE must find in a packet."""
     values = xtce_values(declared.name, declared.payload, packet[TLM_HEADER_SIZE:])
     if declared.first is not None:
         del values[next(iter(values))]
@@ -97,7 +95,7 @@ def telemetry_values(declared: Telemetry, packet: bytes) -> dict[str, object]:
 
 
 def xtce_values(name: str, layout: Layout, payload: bytes) -> dict[str, object]:
-    """What a reader of our XTCE has to make of a payload: values by their parameters, of enumerations the names.
+    """Return the expected values of a payload by a reader of our XTCE, by parameter; enumerations have their names.
 
     Args:
         name: of the packet; "" for the arguments of a command.

@@ -1,4 +1,4 @@
-"""Recording a run into a bag: everything that is published, at its time, and nothing in the run is different for it."""
+"""Recording a run into a bag: every published message at its time, and without an effect on the run."""
 
 from __future__ import annotations
 
@@ -91,7 +91,10 @@ def fly(
     params: Mapping[str, Any] | None = None,
     ended: Callable[[str], object] = lambda digest: None,
 ) -> str:
-    """Fly a mission of nodes, and record it if there is a bag; the digest of the trace, which `ended` gets before."""
+    """Fly a mission of nodes, and record it if a bag is given.
+
+    Returns the digest of the trace, which `ended` gets before.
+    """
     lines = []
     for name, code in scripts.items():
         (folder / f"{name.lower()}.py").write_text(textwrap.dedent(code), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""CFDP on the ground: two entities hand their PDUs to each other, and what is lost on the way comes again."""
+"""CFDP on the ground: two entities exchange PDUs, and lost PDUs are sent again."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ STEP_S, LIMIT_S = 0.5, 200.0
 
 
 class Sky:
-    """Two entities, a clock, and a way between them on which PDUs may be lost."""
+    """Two entities, a clock, and a link between them that may lose PDUs."""
 
     def __init__(self, folder: Path, lost: tuple[int, ...] = ()) -> None:
         self.now = 0.0
@@ -27,7 +27,7 @@ class Sky:
         self.craft = GroundEntity(folder / "craft", lambda: self.now, entity=25, spacecraft=23)
 
     def fly(self) -> None:
-        """Until both have come to the end, or time is over; with class 1 the sender's is at once."""
+        """Run until both have ended, or the time is over. With class 1, the sender ends at once."""
         while self.now < LIMIT_S and not (self.ground.transfers and self.craft.transfers):
             self._hand_over(self.ground.turn(), self.craft, self.ground)
             self._hand_over(self.craft.turn(), self.ground, self.craft)

@@ -1,4 +1,4 @@
-"""The dictionary of a mission: what is declared, found by name and by packet, and without starting an app."""
+"""The dictionary of a mission: declarations, found by name and by packet, without starting an app."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that a real cFE wrote, read back; files that are cut off, or none of cFE's."""
+"""Reading files that a real cFE wrote, truncated files, and files of other programs."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def golden(name: str) -> DumpFile:
 
 
 def shown(dump: DumpFile, number: int) -> list[str]:
-    """A record as people see it."""
+    """Return a record as text."""
     record = dump.records[number]
     return [column.text(value_at(record, column.path)) for column in dump.columns]
 
@@ -124,7 +124,10 @@ def test_foreign_files(data: bytes, words: str) -> None:
 
 
 def perf_file(*entries: tuple[int, int, int], count: int | None = None, endian: int = 0) -> bytes:
-    """A file of entries (data, upper, lower); the timer counts 1000 a second, its lower half goes to 100."""
+    """Return a file of entries (data, upper, lower).
+
+    The timer counts 1000 a second, and its lower half goes up to 100.
+    """
     about = {"Endian": endian, "TimerTicksPerSecond": 1000, "TimerLow32Rollover": 100}
     head = PERF_METADATA.pack(about, DataCount=len(entries) if count is None else count)
     rows = (PERF_ENTRY.pack(Data=data, TimerUpper32=upper, TimerLower32=lower) for data, upper, lower in entries)

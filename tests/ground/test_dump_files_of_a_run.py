@@ -34,7 +34,7 @@ COMMANDS = {
 
 @pytest.fixture(scope="module")
 def dumps(tmp_path_factory: pytest.TempPathFactory) -> dict[str, DumpFile]:
-    """What the files of one run hold."""
+    """Return the contents of one run's files."""
     folder: Path = tmp_path_factory.mktemp("mission")
     (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
     with Mission(str(folder), console=Console(quiet=True)) as mission:

@@ -1,4 +1,4 @@
-"""The graph of a mission: what is in it, as text, for graphviz, drawn."""
+"""The graph of a mission: its content, as text, for graphviz, and drawn."""
 
 from __future__ import annotations
 

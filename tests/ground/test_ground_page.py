@@ -1,4 +1,4 @@
-"""docs/how_to/ground_tools.md: its commands do what it says, as they stand there."""
+"""docs/how_to/ground_tools.md: its commands work unchanged and do what the page describes."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from rospy_shim.types.msgs import message_class
 
 
 def made(kind: str, value: Any) -> Any:
-    """The message, through its bytes."""
+    """Return the message, through its bytes."""
     message = message_from_json(message_class, kind, value)
     return type(message)().deserialize(message._pack())
 

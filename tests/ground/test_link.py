@@ -1,4 +1,4 @@
-"""The ground link: what goes up and down between pieces of a run, and that it is part of the run."""
+"""The ground link: packets between pieces of a run in both directions, as part of the run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run recorded into an MCAP file: what others read of it is what the bag of the same run has."""
+"""A run recorded into an MCAP file: other readers find the same content as in the bag of the same run."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def peer(file: Path) -> Iterator[tuple[Any, Any, Any]]:
-    """What the library mcap reads, with all checksums."""
+    """Yield the messages that the library mcap reads, with all checksums."""
     with file.open("rb") as stream:
         yield from make_reader(stream, validate_crcs=True).iter_messages(log_time_order=False)
 
@@ -109,7 +109,7 @@ def test_before_there_is_a_time_nothing_is_recorded(tmp_path: Path) -> None:
 
 
 def test_what_was_flushed_is_there_when_a_run_is_killed(tmp_path: Path) -> None:
-    """What a process that is killed leaves is what has been written when the digest is taken."""
+    """A killed process leaves everything that was written before the digest was taken."""
     file = tmp_path / "run.mcap"
     left: list[bytes] = []
     fly(tmp_path, SCRIPTS, str(file), ended=lambda _: left.append(file.read_bytes()))

@@ -1,4 +1,4 @@
-"""A bag or an MCAP file played into a mission, as `rosbag play` is told, and the same run twice."""
+"""A bag or an MCAP file played into a mission with the options of `rosbag play`, and the same run twice."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def recording(folder: Path, suffix: str) -> Path:
 
 
 def played(node: Path, bag: str, options: str | None = None, tasks: str = "thread") -> tuple[list[str], str]:
-    """The lines of the console of a run into which a recording is played, and the digest."""
+    """Return the lines of the console of a run into which a recording is played, and the digest."""
     node.write_text(HEARS, encoding="utf-8")
     lines: list[str] = []
     plan = RunPlan((str(node),), NODE, seconds=4, tasks=tasks, play=bag, play_options=options)
@@ -68,7 +68,7 @@ def played(node: Path, bag: str, options: str | None = None, tasks: str = "threa
 
 
 def heard(folder: Path, options: str | None, *, suffix: str = ".mcap", tasks: str = "thread") -> tuple[list[str], str]:
-    """What a node heard of a recording that is played, and the digest of the run."""
+    """Return the messages that a node received from a played recording, and the digest of the run."""
     lines, digest = played(folder / "hears.py", str(recording(folder, suffix)), options, tasks)
     return [line.split("heard ")[1] for line in lines if "heard " in line], digest
 

@@ -1,4 +1,4 @@
-"""Recordings as a whole: what is in one, what is left of a damaged one, and one format made of the other."""
+"""Recordings as a whole: their content, the recovery of damaged ones, and conversion between formats."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def test_of_a_file_that_is_cut_off_all_before_is_left(suffix: str, kind: str, fo
 
 
 def left_of(data: bytes, copy: Path) -> int:
-    """How many messages are left of damaged data."""
+    """Return how many messages are left of damaged data."""
     copy.write_bytes(data)
     found: int = summary_of(str(copy)).to_dict()["messages"]
     return found
@@ -319,7 +319,7 @@ def test_what_is_damaged_is_lost_and_nothing_else(part: str, suffix: str, folder
 
 
 def chunks_of(file: Path) -> list[Any]:
-    """The chunks of an MCAP file, as the library mcap knows them."""
+    """Return the chunks of an MCAP file, as the library mcap knows them."""
     with file.open("rb") as stream:
         summary = make_reader(stream).get_summary()
         assert summary is not None
@@ -366,7 +366,7 @@ def damages(data: bytes, count: int, seed: int) -> Iterator[bytes]:
 
 
 def look_at_damage(file: Path, folder: Path, count: int, seed: int) -> list[int]:
-    """How many messages are left of each damaged copy of a file; only cfepy's own errors come of it."""
+    """Return how many messages remain of each damaged copy of a file. Only cfepy's own errors may occur."""
     bad, out, left = folder / f"bad{file.suffix}", folder / f"left{file.suffix}", []
     for number, data in enumerate(damages(file.read_bytes(), count, seed)):
         bad.write_bytes(data)
@@ -419,7 +419,7 @@ def test_an_index_that_is_damaged_renames_no_topic(suffix: str, kind: str, folde
 @pytest.mark.slow
 @NOT_PACKED
 def test_a_damaged_record_behind_a_message_does_not_take_it_along(suffix: str, folder: Path, tmp_path: Path) -> None:
-    """The message before the last one of a chunk, and the last one, before which an index begins."""
+    """The message before the last one of a chunk, and the last one, which an index follows."""
     file = written(folder, suffix, "none")
     whole, places, last = file.read_bytes(), ends(file), placed_chunks(file)[1].messages - 1
     for spot in (*range(places[last - 1], places[last - 1] + 12), *range(places[last], places[last] + 12)):

@@ -1,4 +1,4 @@
-"""Values over time: of a mission that flies, of a journal's replay and of a bag."""
+"""Values over time: of a mission, of a journal's replay and of a bag."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The MsgIds of a mission: names, senders, subscribers; its lock file, written from what it has and read as pins."""
+"""The MsgIds of a mission: names, senders, subscribers; its lock file, written from them and read as pins."""
 
 from __future__ import annotations
 

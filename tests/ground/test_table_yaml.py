@@ -1,4 +1,4 @@
-"""Table files as YAML: there and back without loss, layouts in the file, and errors that say where."""
+"""Table files as YAML: lossless conversion both ways, layouts in the file, and errors with their location."""
 
 from __future__ import annotations
 

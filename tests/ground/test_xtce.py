@@ -1,4 +1,4 @@
-"""The XTCE export, against a library that knows nothing of cfepy: it reads real packets as our own decoding does."""
+"""The XTCE export, against a library independent of cfepy: it decodes real packets to the same values."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ TALKER = """
 
 
 class Export:
-    """A mission's XTCE, the library's reading of it, and packets taken off the mission's bus."""
+    """A mission's XTCE, the library's reading of it, and packets from the mission's bus."""
 
     def __init__(self, folder: Path) -> None:
         spec = read_mission(write_mission(folder, STARTUP, talker=TALKER))
@@ -83,7 +83,7 @@ class Export:
                 self.events.append(seen.packet)
 
     def read(self, packet: bytes) -> dict[str, Any]:
-        """What the library makes of a packet; a packet that it does not read to its end is an error."""
+        """Return the library's values of a packet. A packet that it does not read to its end is an error."""
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             return dict(self.definition.parse_bytes(packet))
@@ -98,7 +98,7 @@ SERVICES = ("CFE_ES_HK_TLM", "CFE_EVS_HK_TLM", "CFE_SB_HK_TLM", "CFE_TBL_HK_TLM"
 
 
 def assert_same(export: Export, packet: bytes) -> None:
-    """Every field, header included, is what our own decoding says."""
+    """Assert that every field, header included, equals our own decoding."""
     ours, theirs = export.dictionary.decode(packet), export.read(packet)
     assert theirs["PKT_APID"] == ours.msg_id & 0x7FF
     assert theirs["SRC_SEQ_CTR"] == ours.sequence
@@ -133,7 +133,7 @@ def test_every_declared_packet_is_read_field_by_field(export: Export) -> None:
 
 
 def _filled(layout: Layout) -> bytes:
-    """A payload of different bytes; texts are texts, and bools are true."""
+    """Return a payload of different bytes; texts are texts, and bools are true."""
     payload = bytearray(number * 7 % 61 + 1 for number in range(layout.size))
     for cell in layout.cells():
         if cell.type.startswith("char"):
@@ -189,7 +189,7 @@ def test_names_that_become_alike_stay_apart() -> None:
 
 
 def read_with(packets: list[Telemetry | Topic], folder: Path, packet: bytes) -> dict[str, Any]:
-    """What the library makes of a packet by the document of a few."""
+    """Return the library's values of a packet from the document of a few declarations."""
     found = Dictionary()
     found.add(packets)
     (folder / "few.xml").write_text(xtce_of("few", found), encoding="utf-8")
@@ -197,14 +197,14 @@ def read_with(packets: list[Telemetry | Topic], folder: Path, packet: bytes) -> 
 
 
 def test_a_topic_of_whole_packets_is_bytes(tmp_path: Path) -> None:
-    """Such as HK's combined packets, whose fields a table decides."""
+    """HK's combined packets are an example, because a table defines their fields."""
     topic = Topic("/cfe/hk/combined_pkt1", 0x089C, "std_msgs/UInt8MultiArray", raw=True)
     values = read_with([topic], tmp_path, bytes(telemetry(0x089C, b"any bytes")))
     assert values["cfe_hk_combined_pkt1_data"] == b"any bytes"
 
 
 def test_a_topic_among_the_commands_is_no_telemetry(tmp_path: Path) -> None:
-    """It has the APID of a telemetry packet, from which it cannot be told apart."""
+    """Its APID is a telemetry packet's, so the two could not be distinguished."""
     declared = Telemetry("APP_TLM", 0x0890, Layout("L", [("A", "u8")]))
     topics = [Topic("/goal", 0x1890, "std_msgs/Int32"), Topic("/plain", 0x0090, "std_msgs/Int32")]
     assert read_with([declared, *topics], tmp_path, bytes(telemetry(0x0890, b"\x07")))["APP_TLM_A"] == 7
@@ -234,7 +234,7 @@ def entries_of(export: Export, command: Command) -> Iterator[ElementTree.Element
 
 @pytest.mark.slow
 def test_a_command_put_together_from_the_document_is_ours(export: Export) -> None:
-    """What a ground system would send, with a different byte in every argument; the checksum it may leave zero."""
+    """A ground system would send it, with a different byte in every argument; it may leave the checksum zero."""
     for command in export.dictionary.commands.values():
         payload = _filled(command.payload)
         cells = {xtce_name(cell.path): cell for cell in command.payload.cells()}

@@ -1,6 +1,6 @@
-"""The XTCE of every mission that cfepy brings along, against the schema of XTCE 1.2 and another reader.
+"""The XTCE of every shipped mission, against the schema of XTCE 1.2 and another reader.
 
-Both are those of space_packet_parser: it has OMG's SpaceSystem.xsd, and decodes by what the document says alone.
+Both come from space_packet_parser: it has OMG's SpaceSystem.xsd, and decodes from the document alone.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ALL_TYPES = "all types"
 
 
 def dictionary_named(name: str) -> Dictionary:
-    """The dictionary of a shipped mission, or one with a field of every type."""
+    """Return the dictionary of a shipped mission, or one with a field of every type."""
     if name != ALL_TYPES:
         return dictionary_of(read_mission(name))
     found = Dictionary()
@@ -35,7 +35,7 @@ def dictionary_named(name: str) -> Dictionary:
 
 
 def declared_telemetry(dictionary: Dictionary) -> Iterator[Telemetry]:
-    """Every packet that is declared, also several of one MsgId."""
+    """Yield every packet that is declared, also several of one MsgId."""
     for declared in dictionary.telemetry.values():
         if isinstance(declared, Telemetry):
             yield declared
@@ -43,7 +43,7 @@ def declared_telemetry(dictionary: Dictionary) -> Iterator[Telemetry]:
 
 
 def read_back(name: str, folder: Path, times: int) -> int:
-    """Let the other reader check the document and decode random packets; how many fields were compared."""
+    """Let the other reader check the document and decode random packets. Returns how many fields were compared."""
     dictionary, file = dictionary_named(name), folder / "mission.xml"
     file.write_text(xtce_of(name, dictionary), encoding="utf-8")
     result = validate_xtce(file, level="all", raise_on_error=False)

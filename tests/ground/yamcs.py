@@ -1,7 +1,7 @@
-"""A real Yamcs that reads our XTCE, configured as docs/how_to/ground_tools.md says.
+"""A real Yamcs that reads our XTCE, configured as in docs/how_to/ground_tools.md.
 
-The variable CFEPY_YAMCS names the folder of an installed one, with `lib` and `bin/yamcsd`. It is spoken to through its
-HTTP API (https://docs.yamcs.org/yamcs-http-api/).
+The variable CFEPY_YAMCS names the folder of an installed one, with `lib` and `bin/yamcsd`. The tests use its HTTP API
+(https://docs.yamcs.org/yamcs-http-api/).
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ _VALUES = {
 
 
 def is_installed() -> bool:
-    """Whether there is a Yamcs."""
+    """Return whether there is a Yamcs."""
     return (INSTALLED / "bin/yamcsd").exists()
 
 
@@ -73,7 +73,7 @@ def add_instances(home: Path, names: Iterable[str]) -> None:
 
 
 def ports_of(number: int) -> tuple[int, int]:
-    """Where the telemetry of an instance arrives, and where its commands go."""
+    """Return the port of an instance's telemetry, and the port of its commands."""
     return 13_000 + number, 14_000 + number
 
 
@@ -102,10 +102,10 @@ def running(home: Path) -> Iterator[None]:
 
 
 def call(path: str, body: Mapping[str, Any] | None = None) -> Any:
-    """Ask it something, as JSON.
+    """Send it a request, as JSON. Returns the answer.
 
     Raises:
-        AssertionError: it refused; with what it said.
+        AssertionError: it refused; the text is its answer.
     """
     data = None if body is None else json.dumps(body).encode()
     request = urllib.request.Request(URL + path, data, {"Content-Type": "application/json"})
@@ -117,7 +117,7 @@ def call(path: str, body: Mapping[str, Any] | None = None) -> Any:
 
 
 def value_of(said: Mapping[str, Any]) -> object:
-    """A value of a parameter, from its JSON, in which a float is as short as it can be."""
+    """Return a value of a parameter from its JSON, in which floats are as short as possible."""
     kind = said["type"]
     value = said[_VALUES[kind]]
     if kind in ("UINT64", "SINT64"):
@@ -130,10 +130,10 @@ def value_of(said: Mapping[str, Any]) -> object:
 
 
 def parameters(instance: str, names: Iterable[str]) -> dict[str, object]:
-    """The newest values of parameters, by name; those that there are.
+    """Return the newest values of parameters, by name; missing ones are left out.
 
     Args:
-        instance: of the server.
+        instance: instance of the server.
         names: with their space system, such as "/lab/SRC_SEQ_CTR".
     """
     ids = [{"name": name} for name in names]

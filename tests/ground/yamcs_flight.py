@@ -1,7 +1,7 @@
-"""What a real Yamcs makes of our XTCE, in a network of its own (`tests.own_network`).
+"""Compares a real Yamcs that uses our XTCE with cfepy, in a network of its own (`tests.own_network`).
 
-`python -m tests.ground.yamcs_flight loop` gives the commands of docs/how_to/ground_tools.md; `compare TIMES` lets Yamcs
-send every command of every shipped mission and read all of their telemetry, with random values.
+`python -m tests.ground.yamcs_flight loop` executes the commands of docs/how_to/ground_tools.md. `compare TIMES` lets
+Yamcs send every command of every shipped mission and read all of their telemetry, with random values.
 """
 
 from __future__ import annotations
@@ -53,12 +53,12 @@ def loop() -> None:
 
 
 class Comparison:
-    """One mission: what Yamcs sends and reads, and what cfepy does.
+    """One mission: the packets and values of Yamcs, and those of cfepy.
 
     Args:
-        name: of the mission.
-        number: of its instance.
-        home: of Yamcs.
+        name: name of the mission.
+        number: number of its instance.
+        home: home folder of Yamcs.
     """
 
     def __init__(self, name: str, number: int, home: Path) -> None:
@@ -72,7 +72,7 @@ class Comparison:
         (home / f"mdb/{self.name}.xml").write_text(xtce_of(self.name, self.dictionary), encoding="utf-8")
 
     def commands(self, times: int) -> int:
-        """Let Yamcs send each command; how many packets were compared."""
+        """Let Yamcs send each command. Returns how many packets were compared."""
         compared = 0
         for declared in self.dictionary.commands.values():
             for _ in range(times if declared.payload.fields else 1):
@@ -97,7 +97,7 @@ class Comparison:
         assert theirs == bytes(ours), f"{declared.name} {arguments}\n{theirs.hex()}\n{ours.hex()}"
 
     def telemetry(self, times: int) -> int:
-        """Send each packet to Yamcs; how many values were compared."""
+        """Send each packet to Yamcs. Returns how many values were compared."""
         compared = sequence = 0
         for declared in declared_telemetry(self.dictionary):
             for _ in range(times):
@@ -126,18 +126,18 @@ def _avoid_the_smallest(cell: Cell, payload: bytearray) -> None:
 
 
 def _argument(cell: Cell, value: object) -> object:
-    """A value as Yamcs takes it in JSON."""
+    """Return a value as Yamcs takes it in JSON."""
     if isinstance(value, float) and not math.isfinite(value):
         return "Infinity" if value > 0 else "-Infinity"
     return str(value) if cell.type in ("u64", "i64") else value
 
 
 class Topics:
-    """ROS messages of a flight: what Yamcs reads, and what space_packet_parser does.
+    """ROS messages of a flight: the values of Yamcs, and those of space_packet_parser.
 
     Args:
-        number: of its instance.
-        home: of Yamcs.
+        number: number of its instance.
+        home: home folder of Yamcs.
     """
 
     name = "topics"
@@ -150,7 +150,7 @@ class Topics:
         (home / f"mdb/{self.name}.xml").write_text(self._export.text, encoding="utf-8")
 
     def compare(self) -> int:
-        """Send one message of each topic to Yamcs; how many values were compared."""
+        """Send one message of each topic to Yamcs. Returns how many values were compared."""
         compared = 0
         topics = [each for each in self._export.dictionary.telemetry.values() if isinstance(each, Topic)]
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as link:

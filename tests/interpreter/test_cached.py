@@ -1,4 +1,4 @@
-"""A value that is made once."""
+"""A value that is computed once."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_it_is_made_once_for_each_object() -> None:
 
 
 def test_it_takes_no_lock() -> None:
-    """One object's value may need that of another, which another thread makes."""
+    """One object's value may need another's, which another thread computes."""
 
     class Link:
         def __init__(self, following: Link | None = None) -> None:

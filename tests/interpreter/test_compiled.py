@@ -1,4 +1,4 @@
-"""Whether the kernel and the bus are compiled, and from which sources; all tests run compiled, too (`.ci/run`)."""
+"""Whether the kernel and the bus are compiled, and from which sources. All tests also run compiled (`.ci/run`)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def build(root: Path) -> None:
-    """Put there what mypyc makes, by its names."""
+    """Create files with the names of mypyc's results."""
     for module in compiled.MODULES:
         (root / module).with_suffix(SUFFIX).touch()
     (root / f"{compiled.library_name(root)}__mypyc{SUFFIX}").touch()

@@ -1,4 +1,4 @@
-"""Faces of packages: what they offer is what type checkers see, and nothing is loaded before it is used."""
+"""Package interfaces: type checkers see the same names as programs, and nothing is loaded before its first use."""
 
 from __future__ import annotations
 

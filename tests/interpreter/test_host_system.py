@@ -1,4 +1,4 @@
-"""What a Python lacks on which cfepy runs in part."""
+"""Features missing in a Python that supports cfepy only in part."""
 
 from __future__ import annotations
 

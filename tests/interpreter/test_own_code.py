@@ -1,4 +1,4 @@
-"""Whose code a file is."""
+"""Whether a file belongs to cfepy or to a mission."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Syntax trees, also when garbage is waiting whose finalizer makes another."""
+"""Syntax trees, also while garbage is waiting whose finalizer makes another."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SOURCE = "\n".join(f"def f{number}(a, b=[1, (2, 3)]):\n    return a + b[{number}
 
 
 class Circle:
-    """Garbage that parses when it goes, as a logged traceback does."""
+    """Garbage that parses in its finalizer, as a logged traceback does."""
 
     def __init__(self) -> None:
         self.me = self

@@ -1,4 +1,4 @@
-"""What tests with real sockets have in common: an application to talk to, a clock, and how long they have patience."""
+"""Common parts of tests with real sockets: a peer application, a clock, and a time limit."""
 
 from __future__ import annotations
 

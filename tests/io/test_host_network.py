@@ -1,7 +1,7 @@
 """Real sockets: a ground system on this computer talks to a paced mission, and to sockets of its own applications.
 
-Every test has ports of its own that the computer chose. None looks at the clock: the pacer is driven until what is
-expected is there, and a run that never brings it ends at a virtual time.
+Every test has ports that the computer chose. No test looks at the clock: the pacer runs until the expected result is
+there, and a run without it ends at a virtual time.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Session:
         return any(text in line for line in self.mission.console.lines)
 
     def packet(self) -> bytes | None:
-        """What came to the ground, if anything."""
+        """Return the ground's next packet, if there is one."""
         try:
             return self.ground.recv(70_000)
         except BlockingIOError:
@@ -123,7 +123,7 @@ def test_a_noop_over_udp_yields_its_event_and_telemetry(tmp_path: Path) -> None:
 
 
 def test_three_spacecraft_side_by_side(tmp_path: Path) -> None:
-    """Each with ports and an id of its own: a command reaches one of them, and its telemetry its own ground."""
+    """Each has its own ports and id: a command reaches one of them, and its telemetry its own ground."""
     numbers = (66, 67, 68)
     with ExitStack() as stack:
         crafts: list[Session] = []
@@ -148,7 +148,7 @@ def test_three_spacecraft_side_by_side(tmp_path: Path) -> None:
 
 
 def has_no_event(craft: Session, events: list[bytes]) -> bool:
-    """Whether no event has come to the ground yet; takes in those that wait."""
+    """Return whether no event has reached the ground yet. Reads the waiting ones."""
     while packet := craft.packet():
         events.extend([packet] if packet.startswith(b"\x08\x08") else [])
     return not events

@@ -1,4 +1,4 @@
-"""A connection that neither side waits for: what goes out while it is paused, and at its end."""
+"""A connection on which neither side waits: its data while it is paused, and at its end."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cfepy.io import PeerSocket
 
 MESSAGE = bytes(1 << 16)
 COUNT = 200  # messages, more than the system keeps for a connection
-LOOK_S = 10.0  # at most; something is always to be done
+LOOK_S = 10.0  # at most; there is always data to transfer
 
 
 class Ends(NamedTuple):
@@ -25,7 +25,7 @@ class Ends(NamedTuple):
     came: list[bytes]
 
     def read_all(self) -> int:
-        """Bytes that come out at the other side, up to the end, while this side does what it may."""
+        """Return the bytes that the other side receives up to the end, while this side sends."""
         total = 0
         self.far.setblocking(False)
         while True:

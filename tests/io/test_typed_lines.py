@@ -1,4 +1,4 @@
-"""Lines that somebody types, for a loop that has other things to do."""
+"""Typed lines, for a loop that has other tasks."""
 
 from __future__ import annotations
 

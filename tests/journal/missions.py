@@ -1,4 +1,4 @@
-"""Small missions in which something happens that a journal must have, each by its name."""
+"""Small missions whose events a journal must contain, each by its name."""
 
 from __future__ import annotations
 
@@ -49,23 +49,23 @@ RACE = """
 
 
 def keyboard(folder: Path) -> str:
-    """A node that reads its terminal."""
+    """Return a node that reads its terminal."""
     keys = 'nodes:\n  TYPIST: {keys: ["a", 0.3, "bc", "\\x03"]}\n'
     return write_mission(folder, NODE.format(name="typist", app="TYPIST") + "!", typist=TYPIST, mission_yaml=keys)
 
 
 def resets(folder: Path) -> str:
-    """An application that dies, whose exception resets the processor twice."""
+    """Write an application that dies, and whose exception resets the processor twice."""
     return write_mission(folder, "CFE_APP, crasher, crasher_main, CRASHER, 50, 16384, 0x0, 1;\n!", crasher=CRASHER)
 
 
 def restarts(folder: Path) -> str:
-    """The same, but that it is only started again."""
+    """Return the same, except that it is only started again."""
     return write_mission(folder, "CFE_APP, crasher, crasher_main, CRASHER, 50, 16384, 0x0, 0;\n!", crasher=CRASHER)
 
 
 def race(folder: Path) -> str:
-    """Two nodes, whose threads and random numbers show who goes first."""
+    """Write two nodes, whose threads and random numbers show the order of tasks."""
     lines = NODE.format(name="race", app="RACE_A") + NODE.format(name="race", app="RACE_B")
     return write_mission(folder, lines + "!", race=RACE)
 

@@ -16,12 +16,12 @@ CONTEXTS = ("thread", "greenlet")
 
 
 def assert_replays(plan: RunPlan, folder: Path, attachments: Sequence[Attachment] = ()) -> Flown:
-    """Record a run, and see that its journal gives the same run on threads and on greenlets.
+    """Record a run, and assert that its journal gives the same run on threads and on greenlets.
 
     Args:
-        plan: what to run.
-        folder: where the journal may be written.
-        attachments: what looks on while it is recorded; for each replay there must be none.
+        plan: the plan to run.
+        folder: folder in which the journal may be written.
+        attachments: observers of the recorded run; a replay must need none of them.
 
     Returns:
         The recorded run.
@@ -32,7 +32,7 @@ def assert_replays(plan: RunPlan, folder: Path, attachments: Sequence[Attachment
 
 
 def assert_same_again(journal: Journal, trace: str) -> None:
-    """See that a journal gives a certain run on threads and on greenlets, and that this is what was recorded."""
+    """Assert that a journal gives a certain run on threads and on greenlets, and that this was the recorded one."""
     assert journal.end is not None
     assert journal.end.trace == trace
     for tasks in CONTEXTS:
@@ -44,6 +44,6 @@ def assert_same_again(journal: Journal, trace: str) -> None:
 
 
 def plan_for(mission: str, seconds: float | None = None, schedule: str = "fifo", **options: object) -> RunPlan:
-    """The plan of `cfepy run MISSION`."""
+    """Return the plan of `cfepy run MISSION`."""
     plan = RunPlan((mission,), seconds=seconds, schedule=Schedule.parse(schedule))
     return replace(plan, **options)  # type: ignore[arg-type]

@@ -1,4 +1,4 @@
-"""Where a replay parts is told for the first checkpoint that does not agree, however records come in."""
+"""A replay's deviation is reported at the first checkpoint that does not agree, in whatever portions records arrive."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def checkpoint(count: int) -> Checkpoint:
 
 
 def checked(records: Sequence[bytes], batches: Sequence[int]) -> Checker:
-    """A checker with checkpoints after 3, 6, 9 and 12 records that got these, cut into batches."""
+    """Return a checker with checkpoints after 3, 6, 9 and 12 records that got these, cut into batches."""
 
     def describe(records: TimedRecords) -> list[str]:
         return [f"{record[0]} at {time}" for record, time in zip(records, records.times, strict=True)]

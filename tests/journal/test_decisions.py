@@ -1,4 +1,4 @@
-"""The decisions of a run that a journal has, and those that come after its end, are those of the run."""
+"""The recorded decisions of a run, and those after the end of the journal, are the decisions of the run."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from cfepy.schedules import Schedule, make_kernel
 
 
 def fly(policy: Policy) -> list[int]:
-    """The decisions of three tasks that make five calls each."""
+    """Return the decisions of three tasks that make five calls each."""
     recorded = NotingPolicy(policy)
 
     def work() -> None:

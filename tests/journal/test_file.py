@@ -1,4 +1,4 @@
-"""The file of a journal: what is in it, and what happens to one that is truncated, damaged, or from elsewhere."""
+"""The file of a journal: its content, and the handling of truncated, damaged and foreign ones."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def run(tmp_path: Path) -> Path:
 
 
 def rewritten(path: Path, change: Callable[[str, dict[str, Any]], None]) -> Path:
-    """A copy in which frames were changed."""
+    """Return a copy with changed frames."""
     writer = FrameWriter(path.with_suffix(".other"))
     for kind, body in read_frames(path):
         change(kind, body)

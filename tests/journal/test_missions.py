@@ -111,5 +111,5 @@ def test_the_files_of_the_journal_are_enough(mission: str, change: str, tmp_path
 
 
 def results_of(results: Results) -> list[object]:
-    """What a user sees of them, paths aside."""
+    """Return the user's view of results, except for paths."""
     return [results.topics, results.apps, results.events, results.resets, results.problems]

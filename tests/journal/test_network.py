@@ -1,6 +1,6 @@
 """A paced run with real sockets is replayed without them, in virtual time, to the same digest.
 
-No test looks at the clock: the pacer is driven until what is expected is there.
+No test looks at the clock: the pacer runs until the expected result is there.
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ def answer(run: Session, server: socket.socket) -> None:
 
 
 def broken_off(folder: Path, plan: RunPlan, at_ns: int, paced: float | None = None) -> Journal:
-    """The journal of a run that ends with Ctrl-C in the middle of a task."""
+    """Return the journal of a run that ends with Ctrl-C in the middle of a task."""
     (folder / "startup.scr").write_text("CFE_APP, spin, __main__, SPIN, 100, 16384, 0, 0;!", encoding="utf-8")
     (folder / "spin.py").write_text("import time\ntime.sleep(20)\n", encoding="utf-8")
     path = folder.with_suffix(".cfepy")

@@ -1,4 +1,4 @@
-"""Whatever mission, seed, schedule, board and length: a journal gives the run again."""
+"""With any mission, seed, schedule, board and length, a journal reproduces the run."""
 
 from __future__ import annotations
 

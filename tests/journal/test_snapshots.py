@@ -1,4 +1,4 @@
-"""What a run was told of files that it did not open: a replay is told the same, whatever its computer has there."""
+"""Facts about files that a run did not open: a replay gets the same ones on any computer."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ STARTUP = {
 
 @pytest.fixture
 def place(tmp_path: Path) -> Path:
-    """A folder outside of the mission, with something of each kind."""
+    """Return a folder outside of the mission with one entry of each kind."""
     found = tmp_path / "place"
     (found / "folder").mkdir(parents=True)
     (found / "empty").mkdir(mode=0o700)

@@ -1,4 +1,4 @@
-"""A journal's kind of tasks, where it is not installed."""
+"""A journal's kind of tasks, on a computer where it is not installed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def test_a_run_on_greenlets_is_replayed_on_threads_where_there_are_none(
 
 
 def test_a_run_that_had_threads_by_itself_is_the_same_on_greenlets(tmp_path: Path) -> None:
-    """As one in a thread of its own, or under coverage: why it was on threads is no difference."""
+    """Some runs need threads, such as one in a separate thread or under coverage. The reason makes no difference."""
     with ThreadPoolExecutor(1) as pool:
         flown = pool.submit(record, plan_for("lab", 0.1), tmp_path / "run.cfepy").result()
     assert flown.results.why_tasks

@@ -1,4 +1,4 @@
-"""Comparing our console with one of NASA's, line by line, times masked, differences on purpose declared."""
+"""Compares our console with one of NASA's, line by line, with masked times and declared differences."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 DATA = Path(__file__).parents[1] / "data"
 STAMP = re.compile(r"\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5}")
 
-# Lines that only NASA's console has: (pattern, why ours is silent or says something else).
+# Lines that only NASA's console has: (pattern, the reason why ours has none or another).
 ONLY_THEIRS = [
     (r"OS_Posix_", "the POSIX scheduler's policies: there is no such scheduler here"),
     (r"CFE_PSP: initializing module '(timebase_posix_clock|eeprom_mmap_file|iodriver|linux_sysmon)'", "host drivers"),
@@ -30,13 +30,13 @@ ONLY_OURS = [
 
 
 def masked(lines: list[str], but: list[tuple[str, str]]) -> list[str]:
-    """Lines with the time masked, without those that a pattern declares to be different."""
+    """Return lines with the time masked, without those that a pattern declares to be different."""
     kept = [line for line in lines if not any(re.search(pattern, line) for pattern, _ in but)]
     return [STAMP.sub("<time>", line) for line in kept]
 
 
 def golden(name: str, last: str) -> list[str]:
-    """The lines of a recorded console up to the one that contains `last`."""
+    """Return the lines of a recorded console up to the one that contains `last`."""
     lines = (DATA / name).read_text(encoding="utf-8").splitlines()
     end = max(number for number, line in enumerate(lines) if last in line)
     return masked(lines[: end + 1], ONLY_THEIRS)

@@ -1,7 +1,7 @@
-"""A flight in which much happens, for tests of determinism: `python eventful.py MISSION TASKS PIECES SCHEDULE` prints
-its digest.
+"""A flight with many events, for tests of determinism: `python eventful.py MISSION TASKS PIECES SCHEDULE` prints its
+digest.
 
-Traffic on the ground link, commands on the bus, a processor reset by command and a power-on reset by the host.
+It has traffic on the ground link, commands on the bus, a processor reset by command and a power-on reset by the host.
 """
 
 from __future__ import annotations
@@ -21,12 +21,12 @@ RESTART, NOOP = 2, 0
 
 
 def fly(name: str, tasks: str, pieces: int, schedule: int | None) -> str:
-    """Fly a mission so.
+    """Fly a mission with these options.
 
     Args:
-        name: of the mission.
+        name: name of the mission.
         tasks: "thread" or "greenlet".
-        pieces: into how many each leg of the run is cut.
+        pieces: number of pieces of each leg of the run.
         schedule: seed of a random order among equals; None for first come, first served.
     """
     policy = None if schedule is None else SeededRandom(schedule)

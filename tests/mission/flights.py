@@ -10,12 +10,12 @@ def write_mission(folder: Path, startup: str, **sources: str) -> str:
     """Write a mission's files.
 
     Args:
-        folder: where to.
+        folder: folder of the mission.
         startup: the startup script.
-        sources: file stem to Python source (indented as it stands in the test); `mission_yaml` is the mission file.
+        sources: file stem to Python source (with the test's indentation); `mission_yaml` is the mission file.
 
     Returns:
-        What `Mission` takes.
+        The argument for `Mission`.
     """
     for stem, source in sources.items():
         name = "mission.yaml" if stem == "mission_yaml" else f"{stem}.py"

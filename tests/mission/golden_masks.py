@@ -1,7 +1,7 @@
-"""What may differ between a recorded packet of the real cFE and ours: which fields, and why. All other bits are equal.
+"""Allowed differences between a recorded packet of the real cFE and ours: fields and reasons. All other bits are equal.
 
-The time in a packet's header is masked everywhere, and so is the sequence count of event packets, because the recorded
-TIME fell into flywheel mode and came back all the time, with two events each.
+The time in a packet's header is masked everywhere. So is the sequence count of event packets, because the recorded
+TIME kept entering and leaving flywheel mode, with two events each.
 """
 
 from __future__ import annotations

@@ -33,9 +33,9 @@ CFE_ASSERT = """
         cfe.es.write_to_sys_log("[BEGIN] 01 CFE-STARTUP")
         return 0
 """
-CLOCK_STEP_S = 0.85  # by which the recorded spacecraft clock stepped back at its first tone; ours never steps
+CLOCK_STEP_S = 0.85  # step back of the recorded spacecraft clock at its first tone; ours never steps
 STAMP = re.compile(r"^EVS Port1 \S+ 66/1/")
-UPLINK_LEAD_S = 0.45  # what was noted is when a command had its effect: before, it waited for CI_LAB's next pass
+UPLINK_LEAD_S = 0.45  # the record has the time of a command's effect; before, it waited for CI_LAB's next pass
 
 
 class Session(NamedTuple):
@@ -47,25 +47,25 @@ class Session(NamedTuple):
 
 
 def commands() -> list[dict[str, Any]]:
-    """The recorded commands: what, when in s, bytes, events."""
+    """Return the recorded commands: name, time in s, bytes, events."""
     found: list[dict[str, Any]] = json.loads((DATA / "command_events.json").read_text(encoding="utf-8"))
     return found
 
 
 def recorded_telemetry() -> list[dict[str, Any]]:
-    """The recorded packets: name, MsgId, bytes."""
+    """Return the recorded packets: name, MsgId, bytes."""
     found: list[dict[str, Any]] = json.loads((DATA / "golden_telemetry.json").read_text(encoding="utf-8"))
     return found
 
 
 def instant(command: dict[str, Any]) -> int:
-    """Virtual ns at which a command was sent."""
+    """Return the virtual ns at which a command was sent."""
     return round((command["at"] + CLOCK_STEP_S - UPLINK_LEAD_S) * NS_PER_S)
 
 
 @cache
 def fly(folder: Path) -> Session:
-    """Fly the session up to the processor reset with which it ended; the files are those of shortly before."""
+    """Fly the session up to its final processor reset. The files are from shortly before."""
     path = write_mission(folder, STARTUP, cfe_assert=CFE_ASSERT, mission_yaml='cfe_version: "7.0.0"')
     (folder / "hk_cpy_tbl.tbl").write_bytes((DATA / "hk_cpy_tbl.tbl").read_bytes())  # NASA's, with its wrong offsets
     with Mission(path, console=Console(quiet=True)) as mission:
@@ -83,7 +83,7 @@ def fly(folder: Path) -> Session:
 
 
 def events_in(lines: list[str]) -> Iterator[str]:
-    """The lines of the event port, without their stamps."""
+    """Yield the lines of the event port, without their stamps."""
     for line in lines:
         if STAMP.match(line):
             yield STAMP.sub("", line)

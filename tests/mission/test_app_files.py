@@ -1,4 +1,4 @@
-"""What applications do with Python's own files is their run's, as it is with nodes."""
+"""Files that applications write with Python's own functions belong to their run, as with nodes."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def test_nothing_of_it_is_past_the_simulated_computer(
 
 
 def flown_with(tmp_path: Path, startup: str, **sources: str) -> list[str]:
-    """The lines of the console of a mission that flies for two seconds."""
+    """Return the lines of the console of a mission that flies for two seconds."""
     (tmp_path / "other").mkdir(exist_ok=True)
     flown = fly(RunPlan((write_mission(tmp_path / "other", startup, **sources),), seconds=2.0))
     return list(flown.mission.console.lines)

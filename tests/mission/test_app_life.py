@@ -138,7 +138,7 @@ def test_many_restarts_leave_nothing_behind(tmp_path: Path, tasks: str, count: i
 
 
 def held(mission: Mission) -> dict[str, int]:
-    """How many of everything there are."""
+    """Return the number of objects of every kind."""
     cfe = mission.cfe
     return {
         "tasks": len(mission.kernel.tasks),

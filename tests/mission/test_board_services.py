@@ -1,4 +1,4 @@
-"""What applications ask of OSAL and of the board, in whole missions: loading code, the watchdog, EEPROM."""
+"""Requests of applications to OSAL and the board, in whole missions: loading code, the watchdog, EEPROM."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STARTUP = "CFE_APP, app, MAIN, APP, 50, 4096, 0x0, 0;\n"
 
 
 def flight(folder: Path, app: str, seconds: float, board: str = "linux", **sources: str) -> list[str]:
-    """The console of a mission with one application."""
+    """Return the console of a mission with one application."""
     console = Console(quiet=True)
     with Mission(write_mission(folder, STARTUP, app=app, **sources), board=board, console=console) as mission:
         mission.run_for(seconds)

@@ -1,7 +1,7 @@
 """The console of a boot against NASA's, recorded on the real system: same lines, same order.
 
-The apps of the recording are played by stand-ins that do the same in view of the console; executive, events, tables and
-clean-up are the real ones.
+Stand-ins that write the same lines play the apps of the recording. Executive, events, tables and clean-up are the real
+ones.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ CFE_APP, ./bad/../name?.so, X_Main,      BADPATH,      50, 16384, 0x0, 0;
 
 
 def flight(folder: Path, startup: str, files: dict[str, str] = APPS) -> list[str]:
-    """The console lines of three seconds of a mission made of `files`."""
+    """Return the console lines of three seconds of a mission made of `files`."""
     for name, source in files.items():
         lines = source.splitlines()
         (folder / name).write_text("\n".join(line.removeprefix(" " * 8) for line in lines) + "\n", encoding="utf-8")
@@ -104,7 +104,7 @@ def flight(folder: Path, startup: str, files: dict[str, str] = APPS) -> list[str
 
 
 def wrong_table() -> bytes:
-    """A table file of another application, as the recording had one."""
+    """Return a table file of another application, as the recording had one."""
     from cfepy.tbl import TableImage, build
 
     return build(TableImage("TO_LAB_APP.TO_LAB_Subs", bytes(256)))

@@ -1,4 +1,5 @@
-"""Where others may get in while schedules are explored: before each call of an app, and behind those that let go."""
+"""Possible preemptions while schedules are explored: before each call of an app, and after calls that release an
+object."""
 
 from __future__ import annotations
 
@@ -53,7 +54,7 @@ def test_there_are_such_calls() -> None:
 
 
 class Listener(Attachment):
-    """Keeps what the kernel's observer is told."""
+    """Keeps the notifications of the kernel's observer."""
 
     def __init__(self) -> None:
         self.told: list[tuple[str, str]] = []

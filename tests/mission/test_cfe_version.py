@@ -1,4 +1,4 @@
-"""The release of cFE that a mission flies on: what `cfe_version` changes outside of Table Services."""
+"""The release of cFE that a mission flies on: the effects of `cfe_version` outside of Table Services."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The mission of NASA's applications: its tables are what its texts say; with the code, its scenario comes about."""
+"""The mission of NASA's applications: its tables match their texts, and with the compiled code its scenario happens."""
 
 from __future__ import annotations
 

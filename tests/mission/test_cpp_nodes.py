@@ -1,4 +1,4 @@
-"""The section `cpp_nodes:` of a mission file, as far as it can be read without definitions of messages."""
+"""The section `cpp_nodes:` of a mission file, as far as it is readable without definitions of messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes that use whatever of Python could tell one run from another: one trace, whatever runs them."""
+"""Nodes that use every part of Python that could distinguish runs: one trace on every kind of tasks."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def folder(tmp_path: Path) -> str:
 
 
 def check(folder: str, runs: int, *options: str) -> int:
-    """Compare runs; the exit status."""
+    """Compare runs. Returns the exit status."""
     return main(["run", folder, "--for", "26", "--check-determinism", str(runs), *options])
 
 

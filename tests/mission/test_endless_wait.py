@@ -1,4 +1,4 @@
-"""Waits that nobody is left to end are told; those that a message, a time or a thread may end are not."""
+"""Waits that no task can end are reported; waits that a message, a time or a thread may end are not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tracebacks that nodes print, read from the console."""
+"""Tracebacks of nodes, parsed from the console."""
 
 from __future__ import annotations
 

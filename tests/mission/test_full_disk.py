@@ -1,4 +1,4 @@
-"""A RAM disk without room: every command that writes a file says so with NASA's event, and the mission goes on."""
+"""A full RAM disk: every command that writes a file reports it with NASA's event, and the mission continues."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def fill(mission: Mission, blocks_left: int = 0) -> None:
 
 
 def send(mission: Mission, command: Command, **values: object) -> list[str]:
-    """Send a command, and wait for its file; the events."""
+    """Send a command, and wait for its file. Returns the events."""
     mission.console.lines.clear()
     mission.cfe.sb.transmit_msg(command.packet(values))
     mission.run_for(8)

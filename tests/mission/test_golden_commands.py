@@ -1,4 +1,4 @@
-"""Ground commands recorded on the real cFE, byte for byte, and the events they caused there: ours are the same."""
+"""Ground commands recorded on the real cFE, byte for byte, and their events there: ours are the same."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 from tests.mission.golden_session import Session, commands, fly
 
 BUILD = re.compile(r"Build .*")
-LONGEST = 131  # characters of an event on the recorded console, which cut its lines; ours does not
+LONGEST = 131  # characters of an event on the recorded console, which truncated its lines; ours does not
 
 
 def comparable(event: str) -> str:

@@ -1,4 +1,4 @@
-"""Telemetry of the real cFE, packet by packet: ours is the same, but for what `golden_masks` lists."""
+"""Telemetry of the real cFE, packet by packet: ours is the same, except for the fields in `golden_masks`."""
 
 from __future__ import annotations
 
@@ -49,14 +49,15 @@ def mid_of(name: str) -> int:
 
 
 def pairs(session: Session) -> list[Pair]:
-    """The n-th recorded packet of a MsgId and our n-th, both since telemetry was switched on; events aside."""
+    """Return pairs of the n-th recorded packet of a MsgId and our n-th, since telemetry was switched on, without
+    events."""
     ours = {msg_id: iter(packets) for msg_id, packets in by_msg_id(session.telemetry).items()}
     rows = [row for row in recorded_telemetry() if row["mid"] not in EVENTS]
     return [Pair(row["name"], bytes.fromhex(row["hex"]), next(ours[row["mid"]])) for row in rows]
 
 
 def differing(declared: dict[str, Telemetry], pair: Pair) -> set[str]:
-    """The fields that differ; what is in no field (padding, header) is told by offset."""
+    """Return the differing fields. Bytes outside of fields (padding, header) are named by offset."""
     assert len(pair.ours) == len(pair.recorded)
     offsets = {at for at in range(len(pair.ours)) if pair.ours[at] != pair.recorded[at]}
     offsets -= set(range(len(pair.ours))[TIME_OF_HEADER])
@@ -94,7 +95,7 @@ def test_every_event_is_the_recorded_one(session: Session) -> None:
 
 
 def comparable(packets: list[bytes]) -> Iterator[bytes]:
-    """Event packets without those that are not compared, and without what is masked in the others."""
+    """Yield the compared event packets, without their masked parts."""
     for packet in packets:
         event: dict[str, Any] = LONG_EVENT_MSG.read(packet.ljust(LONG_EVENT_MSG.length, b"\0"))
         source = event["PacketID"]["AppName"], event["PacketID"]["EventID"]

@@ -1,4 +1,4 @@
-"""Spacecraft and processor ids that a run is given, in place of the mission's own."""
+"""Spacecraft and processor ids given to a run, in place of the mission's own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Launch files in a mission: their nodes beside those of the startup script, parameters merged, errors with places."""
+"""Launch files in a mission: their nodes beside those of the startup script, merged parameters, errors with
+locations."""
 
 from __future__ import annotations
 
@@ -29,7 +30,7 @@ LAUNCH = """
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A mission of one node, OWN, with a package `pack` beside it."""
+    """Return a mission of one node, OWN, with a package `pack` beside it."""
     pack = tmp_path / "pack"
     pack.mkdir()
     (pack / "package.xml").write_text("<package><name>pack</name></package>", encoding="utf-8")
@@ -105,7 +106,7 @@ def test_a_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_burst_waits_as_on_a_pc(tmp_path: Path) -> None:
-    """A thousand messages for a subscriber that has not come round to the first of them."""
+    """A thousand messages for a subscriber that has not handled the first of them."""
     script = tmp_path / "burst.py"
     script.write_text(
         "import rospy\nfrom std_msgs.msg import UInt32\nrospy.init_node('burst')\nseen = []\n"

@@ -1,4 +1,4 @@
-"""What a mission leaves in its process when it is over: nothing, and nobody has to call the garbage collector."""
+"""A finished mission leaves nothing in its process, without an explicit call of the garbage collector."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PARTS = (Mission, Kernel, Universe)
 
 @pytest.fixture(scope="module", autouse=True)
 def no_collector() -> Iterator[None]:
-    """Garbage is not found by chance, and is looked for at the end of each mission."""
+    """Prevent collections by chance, and collect garbage at the end of each mission."""
     before = gc.get_threshold()
     gc.set_threshold(0)
     collect_every(1)
@@ -40,13 +40,13 @@ def no_collector() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def nothing_else() -> None:
-    """What other tests left is not looked at."""
+    """Ignore the remains of other tests."""
     gc.collect()
     gc.freeze()
 
 
 def parts() -> Counter[str]:
-    """How many parts of missions there are, without those that were there before the test."""
+    """Return how many parts of missions there are, without those that were there before the test."""
     return Counter(type(each).__name__ for each in gc.get_objects() for kind in PARTS if isinstance(each, kind))
 
 
@@ -62,9 +62,9 @@ def test_missions_do_not_pile_up(tasks: str, flights: int) -> None:
     for _ in range(flights):
         fly(tasks=tasks)
     found = parts()
-    assert found["Mission"] <= 1  # of the last one, which nobody has looked for since
+    assert found["Mission"] <= 1  # the last one, for which no collection has run since
     assert found["Kernel"] <= 1
-    assert found["Universe"] <= 4  # of which each flight makes four
+    assert found["Universe"] <= 4  # each flight makes four of them
 
 
 def test_garbage_is_looked_for_as_seldom_as_a_suite_wants() -> None:

@@ -1,4 +1,4 @@
-"""An application that takes all there is of everything: it gets NASA's status, and what is its own is given back."""
+"""An application that exhausts every resource: it gets NASA's status, and its own objects are released."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_all_of_everything(tmp_path: Path, board: str | None) -> None:
         es.restart_app(es.get_app_id_by_name("TAKER"))
         mission.run_for(8)
         again = [line for line in mission.console.lines if line.startswith("took ")][len(took) :]
-        assert again[:-2] == took[:-2]  # generic counters and blocks of the CDS belong to nobody and stay
+        assert again[:-2] == took[:-2]  # generic counters and blocks of the CDS have no owner and stay
         es.delete_app(es.get_app_id_by_name("TAKER"))
         mission.run_for(8)
         kept = left(mission)

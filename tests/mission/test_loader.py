@@ -1,4 +1,4 @@
-"""The loader asks its finders in order, and code of another kind than Python is one finder more."""
+"""The loader asks its finders in order. Code of another kind than Python needs only one more finder."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Compiled:
 
 
 class CompiledApps:
-    """Finds compiled applications by what their file begins with, as one for the files of a linker would."""
+    """Finds compiled applications by the first bytes of their file, like a finder for shared objects."""
 
     def __init__(self, files: FileSystem) -> None:
         self.files = files

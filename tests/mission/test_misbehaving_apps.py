@@ -1,4 +1,4 @@
-"""Applications and libraries that misbehave: the mission goes on, says what happened, and its digest stays the same."""
+"""Misbehaving applications and libraries: the mission continues, reports the error, and its digest stays the same."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def test_all_who_die_at_one_instant_are_restarted(tmp_path: Path, in_timer: bool
     mission = fly(tmp_path, source, startup, seconds=35)
     history = mission.cfe.es.history
     assert [(history[name].deaths, history[name].restarts) for name in names] == [(1, 1)] * 3
-    assert ("in TaskID 0:" in text_of(mission)) == in_timer  # a time base is no task of OSAL's
+    assert ("in TaskID 0:" in text_of(mission)) == in_timer  # a time base is not a task of OSAL's
 
 
 FAILING_HANDLERS = {

@@ -1,4 +1,4 @@
-"""The table of sections: one reading for a run, which ends with the first mistake, and for a check, which goes on."""
+"""The table of sections: a run's reading stops at the first mistake, and a check's reading continues."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_the_startup_script_is_read_once(tmp_path: Path) -> None:
 
 def test_a_record_has_a_part_for_each_attachment() -> None:
     class Count(list[int]):
-        """What an attachment counts."""
+        """Counts the calls of an attachment."""
 
     record, other = RunRecord(), RunRecord()
     record.part(Count).append(1)

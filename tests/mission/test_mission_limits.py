@@ -1,4 +1,4 @@
-"""`limits:` of a mission file: what it raises and lowers, what a board forbids, and room for many nodes."""
+"""`limits:` of a mission file: limits that it raises and lowers, limits of a board, and room for many nodes."""
 
 from __future__ import annotations
 

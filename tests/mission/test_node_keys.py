@@ -1,4 +1,4 @@
-"""`keys` of a node in a mission file: what is typed at its terminal, and what cannot be."""
+"""`keys` of a node in a mission file: its terminal input, and invalid values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Looking on at the Software Bus changes nothing and misses nothing."""
+"""Observing the Software Bus changes nothing and misses nothing."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""ROS parameters from YAML: in a mission file, and in the files that it names."""
+"""ROS parameters from YAML: in a mission file, and in files named there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Applications whose code is on the virtual file system only."""
+"""Applications whose code is only on the virtual file system."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ NEW = (
 
 @pytest.fixture
 def patched(tmp_path: Path) -> Iterator[Mission]:
-    """A mission whose application LATE was started from its folder."""
+    """Return a mission whose application LATE was started from its folder."""
     startup = "CFE_APP, late, main, LATE, 50, 8192, 0, 0;!"
     with Mission(write_mission(tmp_path, startup, late=OLD), console=Console(quiet=True)) as mission:
         mission.run_for(2)

@@ -1,4 +1,4 @@
-"""Thousands of commands with fields of any value, to every application: nothing dies of an exception, nothing leaks."""
+"""Thousands of commands with arbitrary fields to every application: none dies of an exception, nothing leaks."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Commander:
 
 
 def survive(name: str, seed: int, count: int, board: str | None = None) -> int:
-    """Send so many commands, see that nobody dies, stop all applications, and see that nothing of them is left.
+    """Send commands, assert that no application dies, stop all applications, and assert that nothing of them remains.
 
     Returns:
         The number of resets.
@@ -113,7 +113,7 @@ def survive(name: str, seed: int, count: int, board: str | None = None) -> int:
 
 
 def _stop_all(mission: Mission) -> None:
-    mission.run_for(30)  # whatever is under way comes to its end
+    mission.run_for(30)  # all pending work ends
     for app in list(mission.cfe.es.apps):
         if not app.is_core:
             mission.cfe.es.delete_app(app.app_id)
@@ -121,7 +121,7 @@ def _stop_all(mission: Mission) -> None:
 
 
 def left(mission: Mission) -> dict[str, object]:
-    """What exists when only the core is left."""
+    """Return the objects that exist with only the core running."""
     sb: SoftwareBus = mission.cfe.sb
     tables = {table.kind: len(table) for table in mission.processor.osal._tables.values() if table.kind != "module"}
     tables["file"] -= len(left_by_loads(mission))
@@ -137,7 +137,7 @@ def left(mission: Mission) -> dict[str, object]:
 
 
 def left_by_loads(mission: Mission) -> list[int]:
-    """The files of good LOAD commands, which CFE_TBL never closes, as in NASA's code."""
+    """Return the files of good LOAD commands, which CFE_TBL never closes, as in NASA's code."""
     osal, (services,) = mission.processor.osal, (app for app in mission.cfe.es.apps if app.name == "CFE_TBL")
     opened: list[int] = []
     osal.for_each_object_of_type(OS_STREAM_BASE, services.main_task_id, lambda number, _: opened.append(number))

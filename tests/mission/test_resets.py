@@ -1,4 +1,4 @@
-"""Resets of the processor inside a run: what is lost, what is kept, and that nothing is left behind."""
+"""Resets of the processor inside a run: lost data, kept data, and no leaked objects."""
 
 from __future__ import annotations
 
@@ -143,14 +143,14 @@ def test_one_trace_on_both_contexts_and_in_any_number_of_pieces(tmp_path: Path, 
 
 
 def osal_objects(mission: Mission) -> Counter[int]:
-    """How many OSAL objects of each kind there are."""
+    """Return the number of OSAL objects of each kind."""
     found: Counter[int] = Counter()
     mission.cfe.os.for_each_object(OS_OBJECT_CREATOR_ANY, lambda object_id, _: found.update([get_base(object_id)]))
     return found
 
 
 def objects(mission: Mission) -> int:
-    """How many objects there are that can have others in them; lines of the console are no news."""
+    """Return the number of objects that can contain others. Lines of the console do not count."""
     mission.console.lines.clear()
     gc.collect()
     return len(gc.get_objects())

@@ -1,4 +1,4 @@
-"""A run in pieces: Ctrl-C in the middle of anything, after which the run goes on as if nothing had been."""
+"""A run in pieces: Ctrl-C at any point, after which the run continues unchanged."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_flight_goes_on_after_it(tasks: str, packet: int, seconds: float) -> N
 
 
 class LongPiece(PressedInTheBus):
-    """What happens at that packet then takes long on a busy computer."""
+    """Makes the work at that packet take long, as on a busy computer."""
 
     def __init__(self, packet: int, clocks: Clocks) -> None:
         super().__init__(packet)
@@ -152,7 +152,7 @@ def test_pieces_go_after_what_they_take() -> None:
     length = PieceLength()
     length.took(FIRST_PIECE_NS, SHORT_NS - 1)
     assert length.ns == 2 * FIRST_PIECE_NS
-    length.took(FIRST_PIECE_NS, SHORT_NS - 1)  # a short one, since the run ended there: it says nothing
+    length.took(FIRST_PIECE_NS, SHORT_NS - 1)  # a short one, because the run ended there: it is not representative
     assert length.ns == 2 * FIRST_PIECE_NS
     length.took(length.ns, SHORT_NS)
     assert length.ns == 2 * FIRST_PIECE_NS

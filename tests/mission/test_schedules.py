@@ -1,4 +1,5 @@
-"""Whole missions under schedules: the same one gives the same trace, on the other context too, and nothing piles up."""
+"""Whole missions under schedules: the same schedule gives the same trace, also on the other context, and nothing
+leaks."""
 
 from __future__ import annotations
 
@@ -40,7 +41,7 @@ LOCKED = """
 def fly(
     mission: str, schedule: Schedule | None, tasks: str = "greenlet", seconds: float = 0.65
 ) -> tuple[str, NotingPolicy]:
-    """Digest and decisions of one flight; without a schedule, of one on the plain kernel."""
+    """Return digest and decisions of one flight. Without a schedule, it uses the plain kernel."""
     recorded = NotingPolicy(None if schedule is None else schedule.policy())
     policy = None if schedule is None else recorded
     with Mission(mission, console=Console(quiet=True), tasks=tasks, policy=policy) as flight:
@@ -103,10 +104,10 @@ def flown_again_and_again(tasks: str, seconds: float, count: int) -> list[tuple[
     ("tasks", "seconds", "count"), [("thread", 0.2, 5_000), ("greenlet", 0.2, 5_000), ("greenlet", 0.65, 500)]
 )
 def test_thousands_of_schedules_leave_nothing_in_the_process(tasks: str, seconds: float, count: int) -> None:
-    """Cut short before the nodes start, so that most of the time goes into boot and end; and, fewer, with nodes.
+    """Most flights end before the nodes start, so that most of the time goes into boot and end. Fewer include nodes.
 
-    Those are on greenlets: the C library keeps memory for each thread, and takes a thousand flights to have enough. The
-    process is a new one: what other tests have left in theirs would be measured, too.
+    The latter are on greenlets: the C library keeps memory for each thread, and takes a thousand flights to have
+    enough. The process is a new one, because the remains of other tests would be measured, too.
     """
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         seen = pool.apply(flown_again_and_again, (tasks, seconds, count))

@@ -1,4 +1,4 @@
-"""Parameters that a run has in place of those of its mission."""
+"""Parameters given to a run, in place of those of its mission."""
 
 from __future__ import annotations
 

@@ -30,7 +30,7 @@ class AnyName(ModuleType):
 
 @pytest.fixture
 def params(monkeypatch: pytest.MonkeyPatch) -> Iterator[dict[str, Any]]:
-    """Parameters that the nodes will find; the stand-in for rospy has nothing else."""
+    """Return parameters for the nodes. The stand-in for rospy has nothing else."""
     values: dict[str, Any] = {}
     rospy = ModuleType("rospy")
     rospy.__dict__["get_param"] = values.get

@@ -1,4 +1,4 @@
-"""The capture mission's nodes under resets at random instants: they come back, and nothing of the old ones stays."""
+"""The capture mission's nodes under resets at random instants: they restart, and nothing of the old ones remains."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a 3D view of the capture shows: the arm where its joints are, and the debris in the hand when it is caught."""
+"""A 3D view of the capture: the arm has its joint positions, and the debris is in the hand after the capture."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def run() -> cfepy.Run:
 
 
 def matrix(transform: Any) -> Any:
-    """A geometry_msgs/Transform as a matrix."""
+    """Return a geometry_msgs/Transform as a matrix."""
     turn, place = transform.rotation, transform.translation
     x, y, z, w = turn.x, turn.y, turn.z, turn.w
     made = numpy.identity(4)
@@ -34,7 +34,8 @@ def matrix(transform: Any) -> Any:
 
 
 def hands(run: cfepy.Run) -> Iterator[tuple[int, Any]]:
-    """The time of each message on /tf, in ns, and where the hand is by it and /tf_static, in the arm's base."""
+    """Yield the time of each message on /tf, in ns, and the hand's position from it and /tf_static, in the arm's
+    base."""
     (fixed,) = run.messages("/tf_static")
     last = next(each for each in fixed.transforms if each.child_frame_id == "hand_link")
     for message in run.messages("/tf"):

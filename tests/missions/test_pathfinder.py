@@ -1,4 +1,4 @@
-"""The lander of 1997: it works, until the weather station is late by a millisecond; mended, it always does."""
+"""The lander of 1997: it works until the weather station is late by a millisecond. The mended form always works."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The missions that cfepy brings along, flown whole."""
+"""The shipped missions, flown completely."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ BOTH_WAYS = ("/left_to_right", "/right_to_left")
 
 
 def with_rate(folder: Path, rate: int) -> str:
-    """The rx64m mission with nodes of another rate."""
+    """Return the rx64m mission with nodes of another rate."""
     copy = folder / f"rate{rate}"
     shutil.copytree(MISSIONS / "rx64m_pubsub", copy)
     text = (copy / "mission.yaml").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Invariants about what has to come: again and again, and at least once."""
+"""Invariants about required events: repeatedly, and at least once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ BEATS = """
 
 
 def violations(folder: Path, invariant: str, seconds: float = 2.0) -> list[str]:
-    """What a run with beats from 0.65 s to 1.35 s says of an invariant."""
+    """Return the violations of an invariant in a run with beats from 0.65 s to 1.35 s."""
     path = missions.write(folder, {"HEART": BEATS})
     (path / "mission.yaml").write_text(
         f"nodes: {{HEART: {{name: heart}}}}\ninvariants:\n  it: {invariant}\n", encoding="utf-8"

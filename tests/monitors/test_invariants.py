@@ -1,4 +1,4 @@
-"""Invariants of a mission file: read, judged with every message, and told in the report."""
+"""Invariants of a mission file: read, judged with every message, and reported."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def denies(message):
 
 
 def watched(folder: Path) -> Mission:
-    """The mission in a folder, with what its mission file asks to be judged."""
+    """Return the mission in a folder, with the invariants of its mission file."""
     spec = read_mission(str(folder))
     return Mission(spec, console=Console(quiet=True), attachments=judges_of(spec))
 
@@ -81,7 +81,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def held(folder: Path, invariants: str, seconds: float = 1.5) -> dict[str, InvariantRecord]:
-    """What became of the invariants, by name."""
+    """Return the results of the invariants, by name."""
     text = textwrap.indent(textwrap.dedent(invariants).strip(), "  ")
     (folder / "mission.yaml").write_text(f"invariants:\n{text}\n", encoding="utf-8")
     with watched(folder) as mission:

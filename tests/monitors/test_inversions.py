@@ -1,4 +1,4 @@
-"""Priority inversions: what is one, what is none, and what is told of it."""
+"""Priority inversions: cases that are inversions, cases that are not, and the report."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def inversions(
     is_lock: bool = True,
     shortest_ns: int = 1_000_000,
 ) -> list[Inversion]:
-    """Those of a run in which IDLE has the lock when MEDIUM begins to compute, and URGENT then wants it."""
+    """Return the inversions of a run: IDLE has the lock when MEDIUM begins to compute, and URGENT then wants it."""
     take, give = f"{kind}_{take}", f"{kind}_give(lock)"
     back, again = (f"cfe.os.{give}", f"cfe.os.{take}") if is_lock else ("pass", "pass")
     apps = APPS.format(kind=kind, create=create, take=take, give=give, back=back, again=again, urgent=1)
@@ -80,7 +80,7 @@ def inversions(
 def test_a_semaphore_that_is_used_as_a_lock(tmp_path: Path, kind: str, create: str, take: str) -> None:
     (found,) = inversions(tmp_path, kind, create, take)
     assert (found.victim, found.holder, found.others) == ("URGENT", "IDLE", (("MEDIUM", 80, 15_000_000),))
-    assert found.waited_ns == 17_000_000  # IDLE has 2 ms of its own work left, which is no inversion
+    assert found.waited_ns == 17_000_000  # IDLE has 2 ms of its own work left, which is not an inversion
     assert found.text == (
         "URGENT (priority 40) waited 17 ms for semaphore LOCK held by IDLE (priority 120) while MEDIUM (priority 80) "
         "ran for 15 ms"

@@ -1,4 +1,4 @@
-"""Looking on from inside: which transmission a packet belongs to, who has the processor, and that nothing changes."""
+"""Observing from inside: the transmission of a packet, the task on the processor, and that nothing changes."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def READER_AppMain(cfe):
 
 
 class Seen(Observer):
-    """Keeps what it is told."""
+    """Keeps its notifications."""
 
     def __init__(self) -> None:
         super().__init__()

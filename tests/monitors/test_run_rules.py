@@ -1,4 +1,4 @@
-"""What a mission file demands of a run: read by one table, for a run and for a check."""
+"""A mission file's requirements for a run: one table reads them for a run and for a check."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rates and latencies of what the bus carries."""
+"""Rates and latencies of messages on the bus."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ def test_one_handler_each() -> None:
 
 
 def test_the_function_code_of_a_packet_that_ends_with_it() -> None:
-    """A length field of 0 leaves 7 bytes; NASA's looks for the code all the same."""
+    """A length field of 0 leaves 7 bytes. NASA's code reads the function code nevertheless."""
     codes: list[bytes] = []
     table = CommandTable()
     table.add(0x1880, 1, 0, codes.append)

@@ -38,7 +38,7 @@ C_TYPES = {
 
 
 def from_c(name: str) -> Layout:
-    """A layout made of nothing but the field types of a C struct, in order."""
+    """Return a layout made of nothing but the field types of a C struct, in order."""
     return Layout(name, [(field.name, _kind(field.type)) for field in c_structs()[name].fields])
 
 

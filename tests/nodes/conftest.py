@@ -30,7 +30,7 @@ class Program:
 
     @property
     def lines(self) -> list[str]:
-        """What it printed, without the node's name."""
+        """Return its output, without the node's name."""
         start = len(self.universe.name) + 3
         return [line[start:] for line in self.universe.output]
 
@@ -40,7 +40,7 @@ class Program:
         return "\n".join(self.lines)
 
     def global_(self, name: str) -> Any:
-        """A global of its `__main__`."""
+        """Return a global of its `__main__`."""
         return getattr(self.universe.importer.modules["__main__"], name)
 
 

@@ -1,4 +1,4 @@
-"""Small programs that leave in `out` what they compute, for tests of what is done to code of nodes."""
+"""Small programs that leave their results in `out`, for tests of the transformation of node code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is told of the accesses of code with hooks: which object and key, in which order; how long objects live."""
+"""Recorded accesses of code with hooks: object and key, order, and lifetime of objects."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ QUIET = Kinds(accesses=True)
 
 
 def touches(body: str) -> list[str]:
-    """What a function with this body touches: `r name` or `w name`, a WHOLE container with a `*`."""
+    """Return the accesses of a function with this body: `r name` or `w name`, a WHOLE container with a `*`."""
     lines = "".join(f"    {line}\n" for line in body.split("; "))
     (_, ended), seen, _ = flown(f"{PRELUDE}{lines}change()\n", QUIET)
     assert ended is None

@@ -1,4 +1,4 @@
-"""Where objects are in memory must not show: it is another place in each run."""
+"""Memory addresses of objects must not be visible, because they differ in each run."""
 
 from __future__ import annotations
 

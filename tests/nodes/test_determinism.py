@@ -1,4 +1,4 @@
-"""One trace and one output, whatever the task context, the hash seed and the addresses of the process."""
+"""One trace and one output, with any task context, hash seed and addresses of the process."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ from cfepy.rtos import Kernel
 
 @pytest.fixture
 def package(tmp_path):
-    """A package `robot` beside the script, with relative imports and a module that imports it back."""
+    """Return a package `robot` beside the script, with relative imports and a circular import."""
     folder = tmp_path / "robot"
     (folder / "parts").mkdir(parents=True)
     (folder / "__init__.py").write_text(

@@ -1,4 +1,4 @@
-"""Code with hooks does what it does without them, and its hooks tell of what it touches."""
+"""Code with hooks behaves the same as without, and its hooks report its accesses."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FILE = "program.py"
 
 
 def flown(source: str, kinds: Kinds | None, policy: Policy | None = None) -> tuple[Any, list[Touch], Accesses]:
-    """What a program comes to: what it leaves in `out`, how it ends, with which lines; and what it touched."""
+    """Return the results of a program: the content of `out`, its end, its lines, and its accesses."""
     kernel = make_kernel(policy=policy)
     accesses, seen = Accesses(kernel), list[Touch]()
     accesses.observers.append(seen.append)

@@ -1,4 +1,4 @@
-"""Modules whose code runs late: a node cannot tell, whatever it does with them first."""
+"""Modules whose code runs late: a node cannot detect it, whatever it does with them first."""
 
 from __future__ import annotations
 

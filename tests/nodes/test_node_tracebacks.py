@@ -1,4 +1,4 @@
-"""What a node sees of its own stack: its own lines, on threads and on greenlets."""
+"""A node's view of its own stack: its own lines, on threads and on greenlets."""
 
 from __future__ import annotations
 

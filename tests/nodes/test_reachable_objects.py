@@ -1,4 +1,4 @@
-"""What code can still get hold of."""
+"""Objects that code can still reach."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from cfepy.nodes import held_by, is_private, reaches
 
 
 class Thing:
-    """What is looked for."""
+    """The object to look for."""
 
 
 THING = Thing()
@@ -201,16 +201,16 @@ def in_statement(thing: Thing, here: Callable[[], object]) -> object:
 
 
 def holds(function: Callable[[Thing, Callable[[], object]], object]) -> bool:
-    """Whether a task that stands where the function calls `here` still has the thing in its hands."""
+    """Return whether a task at the call of `here` can still reach the thing."""
     frames: list[FrameType] = []
     arrived, go = threading.Event(), threading.Event()
 
-    def here() -> None:  # which does not name what is looked for
+    def here() -> None:  # which does not name the object
         frames.append(sys._getframe(1))
         arrived.set()
         go.wait(10)
 
-    _thread.start_new_thread(function, (THING, here))  # below it there are no other frames
+    _thread.start_new_thread(function, (THING, here))  # there are no other frames below it
     assert arrived.wait(10)
     found = reaches(held_by(frames[0]), THING)
     go.set()

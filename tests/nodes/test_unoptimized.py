@@ -1,4 +1,4 @@
-"""A run is the same where Python was started with -O or -OO: the asserts of a mission's programs stay."""
+"""A run is the same if Python was started with -O or -OO: the asserts of a mission's programs stay active."""
 
 from __future__ import annotations
 

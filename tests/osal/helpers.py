@@ -1,4 +1,4 @@
-"""What OSAL tests share: an Osal on a kernel, and tasks that run to their end."""
+"""Common parts of OSAL tests: an Osal on a kernel, and tasks that run to their end."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ class Bench:
         self.log: list[Any] = []
 
     def task(self, body: Callable[[], object], priority: int = 100, name: str = "", owner: Any = None) -> int:
-        """Start an OSAL task; named after its function unless told otherwise."""
+        """Start an OSAL task. Its default name is the function's."""
         return self.os.task_create(name or body.__name__, body, 4096, priority, owner=owner)
 
     def run(self, body: Callable[[], object], until_ms: int = 60_000) -> Any:
-        """Run `body` in a task called MAIN until the run is over; what it returned."""
+        """Run `body` in a task called MAIN until the run is over. Returns the result of `body`."""
         results: list[Any] = []
         self.task(lambda: results.append(body()), name="MAIN")
         self.kernel.run(until_ns=until_ms * MS)

@@ -1,4 +1,4 @@
-"""Sockets for tests: bound ones, connected ones, and what is none."""
+"""Sockets for tests: bound ones, connected ones, and invalid ones."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def bound(bench: Bench, port: int, kind: int = DATAGRAM, host: str = "127.0.0.1"
 
 
 def connection(bench: Bench, port: int = 9997) -> tuple[int, int, int]:
-    """A server, the client's end and the server's end of a connection."""
+    """Return a server, the client's end and the server's end of a connection."""
     server, client = bound(bench, port, STREAM), bench.os.socket_open(INET, STREAM)
     assert bench.os.socket_connect(client, address(port), OS_CHECK)
     accepted = bench.os.socket_accept(server, OS_CHECK)

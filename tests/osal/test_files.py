@@ -44,7 +44,7 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def files(folder: Path) -> FileSystem:
-    """A file system whose /cf is that folder."""
+    """Return a file system whose /cf is that folder."""
     return FileSystem(folder, ram_bytes=1000)
 
 

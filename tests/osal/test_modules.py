@@ -23,22 +23,22 @@ from tests.osal.test_queues import status_of
 
 
 class Shelf:
-    """Gives modules that know who owns them; /cf/bad.so is none."""
+    """Gives modules that know their owners; /cf/bad.so is not a module."""
 
     def load_module(self, file: str, owner: str) -> object:
-        """The module."""
+        """Return the module."""
         if file == "/cf/bad.so":
             raise OsalError(OS_ERROR, "no such code")
         return SimpleNamespace(owner=owner, **{owner.split()[1].lower(): f"symbol of {file}"})
 
     def library_symbol(self, name: str) -> object | None:
-        """The symbol of a library."""
+        """Return the symbol of a library."""
         return "symbol of a library" if name == "LIB_Function" else None
 
 
 @pytest.fixture
 def loader(bench: Bench) -> Bench:
-    """A bench whose OSAL can load code."""
+    """Return a bench whose OSAL can load code."""
     bench.os.modules = Shelf()
     return bench
 

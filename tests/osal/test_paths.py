@@ -160,7 +160,7 @@ def test_directories(bench: Bench) -> None:
 
 
 def test_a_directory_has_what_is_in_it_at_the_first_read(bench: Bench) -> None:
-    """And again after a rewind, as the C library under NASA's OSAL has it; FM's listing names itself."""
+    """It is read again after a rewind, as with the C library under NASA's OSAL. FM's listing names itself."""
     os = bench.os
     os.mkdir("/ram/d")
     dir_id = os.directory_open("/ram/d")

@@ -1,4 +1,4 @@
-"""OS_Select*: what NASA's select-test asks for."""
+"""OS_Select*: the requirements of NASA's select-test."""
 
 from __future__ import annotations
 

@@ -11,7 +11,7 @@ from tests.osal.test_queues import status_of
 
 
 def said(bench: Bench, command: str) -> bytes:
-    """What a command writes."""
+    """Return the output of a command."""
     filedes = bench.os.open_create("/ram/out", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
     bench.os.shell_output_to_file(command, filedes)
     bench.os.close(filedes)

@@ -1,4 +1,4 @@
-"""OS_Socket*: what NASA's network-api-test asks for, and what a network in virtual time promises beside it."""
+"""OS_Socket*: the requirements of NASA's network-api-test, and further guarantees of a network in virtual time."""
 
 from __future__ import annotations
 
@@ -289,7 +289,10 @@ def test_traffic_of_many_tasks_is_the_same_on_threads_and_greenlets() -> None:
 
 
 def crowd(context: str) -> tuple[str, list[object]]:
-    """Four tasks of equal priority that echo to each other; the trace's digest, and who got what when."""
+    """Run four tasks of equal priority that echo to each other.
+
+    Returns the trace's digest, and the receptions with times.
+    """
     bench = Bench(context=context)
     os = bench.os
 

@@ -1,4 +1,4 @@
-"""The statuses that the public unit tests of NASA's OSAL ask of every kind of object, and of single functions."""
+"""The statuses that the public unit tests of NASA's OSAL require of every kind of object, and of single functions."""
 
 from __future__ import annotations
 

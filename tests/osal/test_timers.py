@@ -1,4 +1,4 @@
-"""OS_Timer* and OS_TimeBase*: when callbacks come, and who may call what."""
+"""OS_Timer* and OS_TimeBase*: the times of callbacks, and the allowed callers."""
 
 from __future__ import annotations
 

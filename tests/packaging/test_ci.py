@@ -1,4 +1,4 @@
-"""The workflow of docs/how_to/ci.md is the file of the example, and its steps work, the first time and later."""
+"""The workflow of docs/how_to/ci.md is the file of the example, and its steps work the first time and later."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ KEPT = {"restore": "actions/cache/restore", "save": "actions/cache/save", "artif
 
 
 def job_of(file: Path, name: str) -> dict[str, Any]:
-    """A job of a workflow."""
+    """Return a job of a workflow."""
     found: dict[str, Any] = yaml.safe_load(file.read_text(encoding="utf-8"))["jobs"][name]
     return found
 

@@ -1,7 +1,7 @@
-"""cfepy goes without what other systems lack: every module is imported, and the demonstration is the same run.
+"""cfepy works without features that other systems lack: all modules are imported, and the demonstration is the same.
 
-What is taken away here is what Windows' or macOS's Python does not have. What those have instead is not there either,
-so this finds code that cannot do without, and nothing more; docs/how_to/install.md lists runs on real ones.
+The tests remove the features that Windows' or macOS's Python lacks. Replacements on those systems are missing here,
+too. So the tests only find code that cannot do without a feature. docs/how_to/install.md lists runs on real systems.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""`python -m dev.release`, as docs/how_to/install.md has it: what it refuses, and a whole one."""
+"""`python -m dev.release`, as in docs/how_to/install.md: its refusals, and a complete release."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def committed(folder: Path) -> None:
 
 
 def git(folder: Path, *words: str) -> str:
-    """Call git, as nobody in particular."""
+    """Call git with an identity for tests."""
     who = ["-c", "user.name=somebody", "-c", "user.email=somebody@example.org"]
     return subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True, text=True).stdout
 

@@ -12,14 +12,14 @@ import pytest
 
 from tests.docs.pages import ROOT, commands
 
-PLACE = "<cfepy>"  # what a page says for the checkout's folder
+PLACE = "<cfepy>"  # the page's placeholder for the checkout's folder
 LEFT = shutil.ignore_patterns(
     *(".git", ".venv", ".hypothesis", "__pycache__", ".*_cache", "dist", "build", "*.egg-info", ".site", "tests")
 )
 
 
 def lines_of(page: str) -> list[str]:
-    """The lines of a page that make an environment; .ci/run gives the one that runs the tests in it."""
+    """Return the lines of a page that make an environment. .ci/run runs the tests in it with its own line."""
     return [line for line in commands(ROOT / page) if " -m venv " in line and "-m pytest" not in line]
 
 

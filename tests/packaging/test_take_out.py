@@ -1,4 +1,4 @@
-"""The core flies without its add-ons: each is taken out of a copy, and the rest goes on."""
+"""The core flies without its add-ons: each is taken out of a copy, and the rest still works."""
 
 from __future__ import annotations
 

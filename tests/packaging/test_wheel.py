@@ -1,4 +1,4 @@
-"""A wheel of cfepy, installed in an environment of its own, works away from the checkout."""
+"""A wheel of cfepy, installed in a separate environment, works away from the checkout."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def home(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A folder that is not the checkout, with an environment in which the wheel is installed."""
+    """Return a folder away from the checkout, with an environment in which the wheel is installed."""
     folder = tmp_path_factory.mktemp("elsewhere")
     venv.create(folder / "venv", with_pip=True)
     execute([str(folder / "venv/bin/python"), "-m", "pip", "install", "--quiet", str(wheel)], folder)

@@ -1,4 +1,4 @@
-"""Takes away what a system lacks, imports all of cfepy, and flies a mission: `without.py SYSTEM MISSION SECONDS`.
+"""Removes features that a system lacks, imports all of cfepy, and flies a mission: `without.py SYSTEM MISSION SECONDS`.
 
 The last line that it prints is the digest of the run.
 """
@@ -57,7 +57,7 @@ POSIX_ONLY = {"windows": ("cfepy.nodes.stdlib.terminal", "cfepy.nodes.stdlib.cur
 
 
 def take_away(system: str) -> None:
-    """What the system lacks is not there any more."""
+    """Remove the features that the system lacks."""
     import multiprocessing.connection  # the standard library's own look at the system comes before
     import subprocess
     import tempfile

@@ -1,4 +1,4 @@
-"""Tests over public test files run where their sources are; where they are not, the end of the test run says so."""
+"""Tests of public test files run only with their sources. Without them, the summary of the test run says so."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ HOW += ENVIRONMENT
 
 
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
-    """One test for each file, or one that says that there are no sources."""
+    """Make one test for each file, or one that reports the missing sources."""
     if "peer_name" in metafunc.fixturenames:
         names = list(read_peers().files)
         absent = [pytest.param("", marks=pytest.mark.skip(reason=HOW), id="no-sources")]
@@ -22,7 +22,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Say what was not tried."""
+    """Report the tests that did not run."""
     skipped = terminalreporter.stats.get("skipped", [])
     if any(HOW in str(report.longrepr) for report in skipped):
         terminalreporter.write_line(HOW, yellow=True)

@@ -1,4 +1,4 @@
-"""Of every public test file as many tests pass as on ROS."""
+"""As many tests of every public test file pass as on ROS."""
 
 from __future__ import annotations
 

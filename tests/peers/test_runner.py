@@ -76,7 +76,7 @@ def sources(tmp_path: Path) -> Sources:
 
 
 def peer_of(path: str, kind: str, passed: int | None = None, **fields: object) -> Peer:
-    """A file of that repository."""
+    """Return a file of that repository."""
     basis = Peer("own", "us/robots", path, kind, passed, passed, ("us/robots:own",))
     return replace(basis, **fields)  # type: ignore[arg-type]
 

@@ -1,4 +1,4 @@
-"""Comparing streams of trace records, looking at one of them, and guessing at lines of source."""
+"""Comparing streams of trace records, describing one of them, and finding probable lines of source."""
 
 from __future__ import annotations
 

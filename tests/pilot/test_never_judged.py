@@ -1,4 +1,4 @@
-"""Invariants, deadlines, results and measures of which a run had nothing: told, with the name that was meant."""
+"""Invariants, deadlines, results and measures that a run never evaluated: reported, with the probably intended name."""
 
 from __future__ import annotations
 

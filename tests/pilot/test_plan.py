@@ -1,4 +1,4 @@
-"""A run plan: a value that flies, and that says how to fly it again."""
+"""A run plan: a value that flies, and that describes how to fly it again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a program publishes is in the digest of its run, whether or not a subscriber gets it."""
+"""Everything that a program publishes is in the digest of its run, with or without a subscriber."""
 
 from __future__ import annotations
 

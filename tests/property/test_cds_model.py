@@ -23,7 +23,7 @@ SIZES = st.sampled_from((1, 4, 12, 13, 100, 900))
 
 
 class CdsAgainstModel(RuleBasedStateMachine):
-    """`blocks` is what has to be in the store: name to what it was last written with; None when its bytes are lost."""
+    """`blocks` is the expected content of the store: name to the last written data, or None if its bytes are lost."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -78,7 +78,7 @@ class CdsAgainstModel(RuleBasedStateMachine):
 
     @rule()
     def power_on(self) -> None:
-        self.board.memory[:] = bytes(len(self.board.memory))  # what the PSP does
+        self.board.memory[:] = bytes(len(self.board.memory))  # as the PSP does
         self.board.boot(RST_TYPE_POWERON)
         self.blocks.clear()
 

@@ -93,7 +93,7 @@ class Peer:
 
 @pytest.fixture(scope="module")
 def peer() -> Iterator[Peer]:
-    """Real genpy, or a skip that says that it is missing."""
+    """Yield real genpy, or skip the test with the reason that it is missing."""
     try:
         found = subprocess.run([ROS_PYTHON, "-c", "import genpy.dynamic"], capture_output=True, check=False)
     except OSError:

@@ -1,4 +1,4 @@
-"""Files that were damaged in any way: every command that reads them ends with a status, and never with a traceback."""
+"""Files with any damage: every command that reads them ends with a status, and never with a traceback."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def damaged(data: bytes, random: Random) -> bytes:
 
 
 def garbled(text: bytes, random: Random) -> bytes:
-    """Words taken out, put in or put elsewhere; lines doubled, indented or lost."""
+    """Return the text with words removed, inserted or moved, and lines doubled, indented or lost."""
     lines = text.split(b"\n")
     for _ in range(random.randint(1, 3)):
         at = random.randrange(len(lines))
@@ -69,7 +69,7 @@ def garbled(text: bytes, random: Random) -> bytes:
 
 
 def command(*arguments: str) -> int:
-    """Run the command as a process would, whose output has to be UTF-8; its exit status."""
+    """Run the command as a process would, whose output must be UTF-8. Returns its exit status."""
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2))
     err.reconfigure(errors="backslashreplace")
     with redirect_stdout(out), redirect_stderr(err):

@@ -1,4 +1,4 @@
-"""Ids stay unique however things come and go."""
+"""Ids stay unique with any sequence of creations and deletions."""
 
 from __future__ import annotations
 

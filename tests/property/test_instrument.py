@@ -1,4 +1,4 @@
-"""Programs that are drawn at random do the same with hooks at their accesses, lines and calls as without."""
+"""Random programs behave the same with hooks at their accesses, lines and calls as without."""
 
 from __future__ import annotations
 
@@ -99,5 +99,5 @@ def test_a_program_does_the_same_with_hooks(statements: list[str], has_calls: bo
 
 
 def shown(outcome: object) -> str:
-    """What a program came to, with its objects as text."""
+    """Return a program's result, with its objects as text."""
     return repr(outcome)

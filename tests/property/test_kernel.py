@@ -60,7 +60,7 @@ Program = Sequence[tuple[int, Sequence[tuple[object, ...]]]]
 
 @dataclass
 class Outcome:
-    """What a run of a program showed."""
+    """Observations of a program's run."""
 
     digest: str
     log: list[tuple[object, ...]] = field(default_factory=list)
@@ -69,7 +69,7 @@ class Outcome:
 
 
 class Machine:
-    """Runs one program on one kernel, and checks what must always hold."""
+    """Runs one program on one kernel, and checks the invariants."""
 
     def __init__(self, kernel: Kernel, program: Program) -> None:
         self.kernel = kernel
@@ -97,7 +97,7 @@ class Machine:
             self.log.append((self.kernel.now, self.kernel.current.name, step, operation, repr(result)))
 
     def check(self) -> None:
-        """The running task is the most urgent one, and time never goes back."""
+        """Check that the running task has the highest priority, and that time never goes back."""
         kernel = self.kernel
         current = kernel.current
         assert kernel.now >= self.last_now
@@ -188,7 +188,7 @@ class Machine:
 def execute(
     program: Program, context: str, ends: Sequence[int] = (END_NS,), policy: Policy | None = None, **board: int
 ) -> Outcome:
-    """Run a program to its end and tell what happened."""
+    """Run a program to its end. Returns its observations."""
     trace = Trace()
     with make_kernel(context, trace, policy, **board) as kernel:
         machine = Machine(kernel, program)
@@ -229,7 +229,7 @@ def test_slices_give_the_same_run_on_a_board(program: Program, cost: int, tick: 
 @QUICK
 @given(TASKS, SCHEDULES, ENDS)
 def test_every_schedule_can_be_given_again(program: Program, schedule: Schedule, ends: list[int]) -> None:
-    """By itself, as deviations from fifo, on the other context, and in slices."""
+    """It is repeated as recorded, as deviations from fifo, on the other context, and in slices."""
     recorded = NotingPolicy(schedule.policy())
     first = execute(program, "greenlet", policy=recorded)
     again = schedule.at(recorded.deviations)

@@ -23,7 +23,7 @@ class Model:
     interval_us: int
 
     def tick(self, tick_us: int) -> int:
-        """How many callbacks a tick makes."""
+        """Return how many callbacks a tick makes."""
         was_running = self.left_us > 0
         self.left_us -= tick_us
         calls = 0

@@ -1,4 +1,4 @@
-"""The Software Bus against a model of a few lines: whatever is called in whatever order, both agree."""
+"""The Software Bus against a model of a few lines: both agree on any calls in any order."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class ModelPipe:
 
 
 class BusAgainstModel(RuleBasedStateMachine):
-    """Pipes by name; routes keep subscriptions, newest first, and stay when they are empty."""
+    """Pipes by name. Routes keep subscriptions, newest first, and stay when they are empty."""
 
     @initialize()
     def start(self) -> None:

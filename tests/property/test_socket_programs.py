@@ -1,4 +1,4 @@
-"""Tasks that do whatever they like with connections: bytes stay in order, and a run is the same on both contexts."""
+"""Tasks with random operations on connections: bytes stay in order, and a run is the same on both contexts."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STEPS = st.lists(
 
 @dataclass
 class Side:
-    """One end of a connection: what it sent and what it got; `done` when its task has ended."""
+    """One end of a connection: sent and received data; `done` after its task has ended."""
 
     sent: bytearray = field(default_factory=bytearray)
     got: bytearray = field(default_factory=bytearray)
@@ -30,7 +30,7 @@ class Side:
 
 
 def perform(bench: Bench, sock: int, steps: list[Step], side: Side) -> None:
-    """Do the steps; the first one that fails is the last."""
+    """Execute the steps up to the first one that fails."""
     os = bench.os
     try:
         for number, (what, amount) in enumerate(steps):

@@ -1,4 +1,4 @@
-"""No bytes upset the startup script's reader."""
+"""The startup script's reader accepts any bytes without an exception."""
 
 from __future__ import annotations
 

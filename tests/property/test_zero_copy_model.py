@@ -1,4 +1,4 @@
-"""Zero-copy buffers against a model: who may send or release which, and what the pool has left."""
+"""Zero-copy buffers against a model: which task may send or release which buffer, and the free pool memory."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ APPS = st.sampled_from(("A", "B"))
 
 
 class BuffersAgainstModel(RuleBasedStateMachine):
-    """`held` are the buffers that somebody has, with their owners; `gone` those that were sent or released."""
+    """`held` are the buffers in use, with their owners; `gone` are those that were sent or released."""
 
     def __init__(self) -> None:
         super().__init__()

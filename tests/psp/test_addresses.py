@@ -1,4 +1,4 @@
-"""Memory by address: ranges, reading and writing, EEPROM that outlives every reset, hardware that is not there."""
+"""Memory by address: ranges, reading and writing, EEPROM that survives every reset, missing hardware."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stored exceptions: read once, contexts for a while, kept through a processor reset."""
+"""Stored exceptions: read once, contexts kept for a while, preserved through a processor reset."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.psp.test_psp import Board
 
 @pytest.fixture
 def board() -> Iterator[Board]:
-    """A board that has not been booted."""
+    """Return a board that has not been booted."""
     made = Board()
     with made.kernel:
         yield made

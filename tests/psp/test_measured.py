@@ -1,4 +1,4 @@
-"""Profiles from measured times: the simulation charges what was measured."""
+"""Profiles from measured times: the simulation charges the measured times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The memory budget: what is booked, by whom, and what happens when the board is full."""
+"""The memory budget: the allocations, their owners, and the behaviour of a full board."""
 
 from __future__ import annotations
 

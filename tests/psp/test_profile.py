@@ -1,4 +1,4 @@
-"""Board profiles: the shipped ones, and what is said of wrong ones."""
+"""Board profiles: the shipped ones, and the errors of invalid ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The board: boot lines, clock, resets and what outlives them, watchdog."""
+"""The board: boot lines, clock, resets and the data that survives them, watchdog."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Board:
 
 @pytest.fixture
 def board() -> Iterator[Board]:
-    """A board that has not been booted."""
+    """Return a board that has not been booted."""
     made = Board()
     with made.kernel:
         yield made
@@ -210,7 +210,7 @@ def _served(board: Board, psp: Psp, times: int, period_ms: int) -> None:
 
 
 class Watched(Board):
-    """A board with a watchdog that counts to 10 s at most; `resets` are the times in ms at which it bit."""
+    """A board with a watchdog that counts to 10 s at most. `resets` are the times in ms at which it expired."""
 
     def __init__(self, retained: Retained | None = None) -> None:
         self.resets: list[int] = []

@@ -1,4 +1,4 @@
-"""Planted bugs are found by exploring, not by flying the mission as always; mended missions never fail."""
+"""Planted bugs are found by exploring, not by an ordinary flight; mended missions never fail."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
 
 
 def shrinks(bug: Bug) -> None:
-    """What shrinking leaves fails in the same way, on both contexts."""
+    """Assert that the shrunk schedule fails in the same way, on both contexts."""
     verdicts = simplest(reference_trial(bug.folder), shown_by(load(), bug.name))
     assert verdicts
     small = shrunk(bug, verdicts)

@@ -1,4 +1,4 @@
-"""The programs that others try: the default schedule shows none that does not hang, mended ones never fail."""
+"""Programs of other benchmarks: the default schedule shows no bug except hangs, and mended ones never fail."""
 
 from __future__ import annotations
 

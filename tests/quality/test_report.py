@@ -1,4 +1,4 @@
-"""The page of planted bugs is made of what was measured, and says what it is to say."""
+"""The page of planted bugs is made from the measurements, with all expected content."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The cause that is told of each planted bug is the one that was read and found true."""
+"""The reported cause of each planted bug is the reviewed one."""
 
 from __future__ import annotations
 

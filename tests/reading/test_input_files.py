@@ -1,4 +1,4 @@
-"""Files of somebody else's are opened by one helper: regular files, and what the command line hands over."""
+"""Foreign files are opened by one helper: regular files, and streams from the command line."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cfepy.status import UsageError
 
 ROOT = Path(__file__).parents[2]
 OPENERS = {
-    # reads or writes what cfepy itself made, or what its user's own options name for writing
+    # these read or write cfepy's own files, or files that the user's options name for writing
     "cfepy/cli/json_output.py": "writes",
     "cfepy/cli/user_notes.py": "writes",
     "cfepy/plugins.py": "what pip wrote of installed packages",
@@ -135,7 +135,7 @@ def test_inputs_are_opened_by_the_helper_alone() -> None:
 
 
 def _opens(node: ast.AST) -> bool:
-    """Whether code opens a file: `open(...)`, `path.open("...")`, `path.read_bytes()`, `path.read_text(...)`."""
+    """Return whether code opens a file: `open(...)`, `path.open("...")`, `path.read_bytes()`, `path.read_text(...)`."""
     if not isinstance(node, ast.Call):
         return False
     if isinstance(node.func, ast.Name):

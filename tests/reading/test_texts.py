@@ -1,4 +1,4 @@
-"""Texts are bytes in C: what is not UTF-8 goes through unchanged."""
+"""Texts are bytes in C: bytes that are not UTF-8 pass through unchanged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An application that asks a running executive something, for requirements about the API."""
+"""An application that queries a running executive, for requirements about the API."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ def idle(cfe: Cfe) -> None:
 def ask(
     make_lab: Make, question: Callable[[Cfe], Any], seconds: float = 1, **mains: Callable[[Cfe], Any]
 ) -> tuple[Any, Lab]:
-    """What the application ONE finds out, and the mission, which also has IDLE and the library LIB.
+    """Return the answer for the application ONE, and the mission, which also has IDLE and the library LIB.
 
     Args:
         make_lab: the fixture.
         question: called by ONE.
-        seconds: how long the mission goes on then.
+        seconds: how long the mission continues then.
         mains: code of more files, or in place of idle.
     """
     found: list[Any] = []

@@ -1,4 +1,4 @@
-"""The clock of a running mission, as the tests of Time Services look at it and drive it."""
+"""The clock of a running mission, observed and controlled by the tests of Time Services."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ ON_ITS_OWN = {"time_cfg_fake_tone": False}
 
 
 def housekeeping(flight: Flight) -> dict[str, Any]:
-    """The housekeeping packet."""
+    """Return the housekeeping packet."""
     return flight.ask(pk.SEND_HK, pk.HK_TLM)
 
 
 def diagnostic(flight: Flight) -> dict[str, Any]:
-    """The diagnostic packet."""
+    """Return the diagnostic packet."""
     return flight.ask(pk.SEND_DIAGNOSTIC, pk.DIAG_TLM)
 
 

@@ -14,7 +14,7 @@ from tests.requirements.flight import Flight
 
 @pytest.fixture
 def fly(tmp_path: Path) -> Iterator[Callable[..., Flight]]:
-    """Start missions; arguments as for `Flight`, without the folder."""
+    """Start missions. The arguments are those of `Flight`, without the folder."""
     flights: list[Flight] = []
 
     def start(*listen: int, **options: Any) -> Flight:
@@ -30,7 +30,7 @@ def fly(tmp_path: Path) -> Iterator[Callable[..., Flight]]:
 
 @pytest.fixture
 def make_lab(tmp_path: Path) -> Iterator[Callable[..., Lab]]:
-    """Start missions whose applications are functions; arguments as for `Lab`, without the folder."""
+    """Start missions whose applications are functions. The arguments are those of `Lab`, without the folder."""
     labs: list[Lab] = []
 
     def make(**mains: Any) -> Lab:

@@ -1,4 +1,4 @@
-"""Which requirement a test is about: its own name says the first id, `covers` says all of them."""
+"""The requirements of a test: its own name has the first id, `covers` has all of them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ Test = TypeVar("Test", bound=Callable[..., object])
 
 
 def covers(*ids: str) -> Callable[[Test], Test]:
-    """Mark a test as evidence for requirement ids such as "cES1005.1"; the tests' sources are read for it."""
+    """Mark a test as evidence for requirement ids such as "cES1005.1", which are read from the tests' sources."""
 
     def mark(test: Test) -> Test:
         return test

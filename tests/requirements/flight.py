@@ -1,6 +1,6 @@
-"""A running mission and an operator: commands go up, telemetry comes down, and an application calls the API.
+"""A running mission and an operator, with commands, telemetry, and an application that calls the API.
 
-The mission has the application PROBE, in whose name a test calls services and listens on the bus, and MUTE, which
+The mission has the application PROBE, as which a test calls services and listens on the bus, and MUTE, which
 never registered for events.
 """
 
@@ -54,13 +54,13 @@ class Flight:
     """A mission that has booted, on a board whose limits a test may change.
 
     Args:
-        folder: for the mission's files.
-        listen: MsgIds of telemetry and other messages to note, beside events.
-        startup: more lines of the startup script.
-        sources: more code of the mission, by stem.
+        folder: folder for the mission's files.
+        listen: MsgIds of telemetry and other messages to record, in addition to events.
+        startup: further lines of the startup script.
+        sources: further code of the mission, by stem.
         tables: table files by name.
-        cfe_version: the release of cFE; most of what tests compare with was recorded on 7.0.0.
-        limits: of the board.
+        cfe_version: the release of cFE; most recordings for the tests are from 7.0.0.
+        limits: limits of the board.
     """
 
     def __init__(
@@ -114,11 +114,11 @@ class Flight:
         return self.mission.cfe
 
     def run_for(self, seconds: float) -> None:
-        """Let virtual time go by; zero is a moment."""
+        """Run for a virtual time; zero is a moment."""
         self.mission.run_for(seconds or 0.001)
 
     def call(self, function: Callable[[], Result], app: str = "PROBE") -> Result:
-        """What a function returns or raises when an application calls it."""
+        """Return a function's result, or raise its exception, as called by an application."""
         results: list[Result] = []
         errors: list[Exception] = []
 
@@ -140,13 +140,13 @@ class Flight:
         self.run_for(0)
 
     def send(self, command: Command, **fields: Any) -> list[Event]:
-        """Send a command; the events that it brings about at once."""
+        """Send a command. Returns its immediate events."""
         self.packets.clear()
         self.transmit(command.packet(fields))
         return self.events()
 
     def events(self) -> list[Event]:
-        """The long events since the last command."""
+        """Return the long events since the last command."""
         return [
             Event(packet_id["AppName"], packet_id["EventID"], packet_id["EventType"], fields["Message"])
             for fields in self.all(evs_packets.LONG_EVENT_MSG)
@@ -154,7 +154,7 @@ class Flight:
         ]
 
     def all(self, telemetry: Telemetry | Command) -> list[dict[str, Any]]:
-        """The fields of every packet of a kind since the last command."""
+        """Return the fields of every packet of a kind since the last command."""
         return [telemetry.read(packet) for packet in self.packets if get_msg_id(packet) == telemetry.msg_id]
 
     def ask(self, command: Command, telemetry: Telemetry) -> dict[str, Any]:

@@ -28,18 +28,18 @@ class Ground:
         self.send(command(EVS_CMD_MID, ENABLE_APP_EVENT_TYPE_CC, _APP_BITS.pack(AppName=app, BitMask=0x0F)))
 
     def send(self, packet: bytes | bytearray, seconds: float = 0.2) -> list[str]:
-        """Send a packet and let some time pass; the events meanwhile, as "APP id: text"."""
+        """Send a packet and run for some time. Returns the events meanwhile, as "APP id: text"."""
         before = len(self.mission.console.lines)
         self.mission.cfe.sb.transmit_msg(bytes(packet), is_origination=False)
         self.mission.run_for(seconds)
         return [found[1] for line in self.mission.console.lines[before:] if (found := _EVENT.match(line))]
 
     def command(self, kind: Command, seconds: float = 0.2, /, **fields: Any) -> list[str]:
-        """Send a command and let some time pass; the events meanwhile."""
+        """Send a command and run for some time. Returns the events meanwhile."""
         return self.send(kind.packet(fields), seconds)
 
     def answer(self, kind: Command, telemetry: Telemetry, /, **fields: Any) -> dict[str, Any]:
-        """Send a command or request; the fields of the one packet that answers it."""
+        """Send a command or request. Returns the fields of the one packet that answers it."""
         sb = self.mission.cfe.sb
         pipe = sb.create_pipe(4, "GROUND_PIPE")
         sb.subscribe(telemetry.msg_id, pipe)

@@ -1,4 +1,4 @@
-"""A mission that is reset: a library, an application, and code that asks for resets; what telemetry says of them."""
+"""A mission for resets: a library, an application, and code that requests resets, with the resulting telemetry."""
 
 from __future__ import annotations
 
@@ -48,14 +48,14 @@ SOURCES = {
 
 
 def booted(folder: Path) -> Mission:
-    """The mission, operational."""
+    """Return the mission, operational."""
     mission = Mission(write_mission(folder, STARTUP, **SOURCES), console=Console(quiet=True))
     mission.run_for(2)
     return mission
 
 
 def housekeeping(ground: Ground) -> dict[str, int]:
-    """The housekeeping packet of Executive Services."""
+    """Return the housekeeping packet of Executive Services."""
     return ground.answer(pk.SEND_HK, pk.HK_TLM)
 
 
@@ -65,6 +65,6 @@ def reset(ground: Ground, kind: int) -> None:
 
 
 def causes(ground: Ground) -> list[tuple[int, int, str]]:
-    """What the exception and reset log says: type, subtype, description."""
+    """Return the entries of the exception and reset log: type, subtype, description."""
     slots = ground.mission.cfe.es.reset.er_log.slots
     return [(entry.reset_type, entry.reset_subtype, entry.description) for entry in slots if entry is not None]

@@ -34,15 +34,15 @@ class ProbeTable:
         self.handle: TableHandle = self.call("register", "T", SIZE, options, validator)
 
     def call(self, function: str, *args: Any) -> Any:
-        """What a function of Table Services gives PROBE."""
+        """Return the result of a function of Table Services for PROBE."""
         return self.flight.call(lambda: getattr(self.flight.cfe.tbl, function)(*args))
 
     def mine(self, function: str, *args: Any) -> Any:
-        """The same with PROBE's handle first."""
+        """Return the same with PROBE's handle first."""
         return self.call(function, self.handle, *args)
 
     def status(self, function: str, *args: Any) -> int:
-        """The status that a function of PROBE's handle fails with."""
+        """Return the status that a function of PROBE's handle fails with."""
         try:
             result = self.mine(function, *args)
         except CfeError as error:
@@ -50,17 +50,17 @@ class ProbeTable:
         raise AssertionError(f"{function} gave {result!r}")
 
     def content(self) -> bytes:
-        """The active image."""
+        """Return the active image."""
         data = bytes(self.mine("get_address")[0])
         self.mine("release_address")
         return data
 
     def info(self) -> Any:
-        """What CFE_TBL_GetInfo tells of it."""
+        """Return its CFE_TBL_GetInfo."""
         return self.call("get_info", NAME)
 
     def upload(self, data: bytes, offset: int = 0, path: str = "/ram/t.tbl") -> list[Event]:
-        """Write a table file and LOAD it; the events."""
+        """Write a table file and LOAD it. Returns the events."""
         put(self.flight, data, offset, path)
         return self.flight.send(pk.LOAD, LoadFilename=path)
 
@@ -70,7 +70,7 @@ class ProbeTable:
         self.mine("manage")
 
     def activate(self) -> int:
-        """ACTIVATE, and let the owner manage; what that returned."""
+        """ACTIVATE, and let the owner manage. Returns the result of the latter."""
         self.flight.send(pk.ACTIVATE, TableName=NAME)
         status: int = self.mine("manage")
         return status
@@ -82,17 +82,17 @@ def put(flight: Flight, data: bytes, offset: int = 0, path: str = "/ram/t.tbl", 
 
 
 def fields_of(time: tuple[int, int]) -> dict[str, int]:
-    """A time as packets have it."""
+    """Return a time as packets have it."""
     return {"Seconds": time[0], "Subseconds": time[1]}
 
 
 def housekeeping(flight: Flight) -> dict[str, Any]:
-    """The housekeeping packet of Table Services."""
+    """Return the housekeeping packet of Table Services."""
     return flight.ask(pk.SEND_HK, pk.HK_TLM)
 
 
 def free_bytes(flight: Flight) -> int:
-    """What is left of the tables' memory pool."""
+    """Return the free bytes of the tables' memory pool."""
     pool = housekeeping(flight)["MemPoolHandle"]
     left: Any = flight.call(lambda: flight.cfe.es.get_mem_pool_stats(pool))["NumFreeBytes"]
     assert isinstance(left, int)
@@ -100,6 +100,6 @@ def free_bytes(flight: Flight) -> int:
 
 
 def registry(flight: Flight, name: str = NAME) -> dict[str, Any]:
-    """A table's registry entry in telemetry."""
+    """Return a table's registry entry in telemetry."""
     flight.send(pk.SEND_REGISTRY, TableName=name)
     return flight.ask(pk.SEND_HK, pk.REG_TLM)

@@ -1,4 +1,4 @@
-"""NASA's requirements for what is kept over a reset, what is made anew, and what is started then (cES1501 to 1523)."""
+"""NASA's requirements for data kept over a reset, data made anew, and the following start (cES1501 to 1523)."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def ground(tmp_path: Path) -> Iterator[Ground]:
         yield Ground(mission)
 
 
-# -- what is kept and what is not --------------------------------------------------------------------------------------
+# -- kept and lost data ------------------------------------------------------------------------------------------------
 
 
 @covers("cES1511", "cES1522")

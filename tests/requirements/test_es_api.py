@@ -1,4 +1,4 @@
-"""NASA's requirements for what applications ask of Executive Services (cES13xx): who is who, running, waiting."""
+"""NASA's requirements for requests of applications to Executive Services (cES13xx): identity, running, waiting."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from tests.requirements.covers import covers
 from tests.requirements.ground import Ground
 from tests.statuses import status_of
 
-# -- who is who --------------------------------------------------------------------------------------------------------
+# -- identity ----------------------------------------------------------------------------------------------------------
 
 
 @covers("cES1304", "cES1306", "cES1307")
@@ -44,7 +44,7 @@ def test_cES1304_an_application_is_told_its_id_and_names(make_lab: Make) -> None
     (mine, by_name, name, index), lab = ask(make_lab, question)
     assert mine == by_name == lab.es.app_named("ONE").app_id  # type: ignore[union-attr]  # None fails as well
     assert (name, index) == ("ONE", mine & 0xFFFF)
-    assert status_of(lab.es.get_app_id) == CFE_ES_ERR_RESOURCEID_NOT_VALID  # the host is no application
+    assert status_of(lab.es.get_app_id) == CFE_ES_ERR_RESOURCEID_NOT_VALID  # the host is not an application
     assert status_of(lab.es.app_id_to_index, 0x120001) == CFE_ES_ERR_RESOURCEID_NOT_VALID
 
 
@@ -187,7 +187,7 @@ def test_cES1334_waiting_ends_after_its_time(make_lab: Make) -> None:
 
 
 def test_check_values_over_data(make_lab: Make) -> None:
-    """With the values of NASA's functional test; algorithms other than CRC-16/ARC are names only, and give 0."""
+    """The values are from NASA's functional test. Algorithms other than CRC-16/ARC are names only, and give 0."""
     data = b"123456789"
 
     def question(cfe: Cfe) -> list[int]:

@@ -39,7 +39,7 @@ def register(flight: Flight, size: int = len(DATA_BYTES), name: str = "Data") ->
 
 
 def saved(flight: Flight) -> int:
-    """A block with DATA_BYTES; its handle."""
+    """Return the handle of a block with DATA_BYTES."""
     handle, _ = register(flight)
     flight.cfe.es.copy_to_cds(handle, DATA_BYTES)
     return handle

@@ -19,12 +19,12 @@ NOBODY = {"Application": "NOBODY"}
 
 
 def pool(flight: Flight) -> Fields:
-    """A memory pool that is there."""
+    """Return an existing memory pool."""
     return {"PoolHandle": flight.call(lambda: flight.cfe.es.pool_create(1024))}
 
 
 def orphan(flight: Flight) -> Fields:
-    """A CDS block whose owner is gone."""
+    """Return a CDS block whose owner is gone."""
     es = flight.cfe.es
     flight.call(lambda: es.register_cds(10, "Data"), app="MUTE")
     flight.call(lambda: es.delete_app(es.get_app_id_by_name("MUTE")))

@@ -1,4 +1,4 @@
-"""NASA's requirements for how applications control applications and tasks (cES1309 to 1314, 1319, 1332)."""
+"""NASA's requirements for control of applications and tasks by applications (cES1309 to 1314, 1319, 1332)."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ END_S = 8
 
 
 class Family:
-    """Code of an application with a child task; notes when they run."""
+    """Code of an application with a child task. Records the times at which they run."""
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -41,7 +41,7 @@ class Family:
             cfe.os.task_delay(100)
 
     def is_running(self, lab: Lab) -> bool:
-        """Whether the child task does anything."""
+        """Return whether the child task does anything."""
         before = self.beats
         lab.mission.run_for(1)
         return self.beats > before
@@ -133,7 +133,7 @@ def test_cES1310_2_restart_and_reload_need_the_file(make_lab: Make) -> None:
 
 
 def test_cES1310_3_a_restart_that_fails_later_ends_the_application(make_lab: Make) -> None:
-    """The file goes away between the request, which is fine, and the new start; there the status is in the event."""
+    """The file disappears between the request, which succeeds, and the new start. The event then has the status."""
 
     def question(cfe: Cfe) -> int:
         es, target = cfe.es, cfe.es.get_app_id_by_name("IDLE")

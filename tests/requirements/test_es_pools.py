@@ -21,7 +21,7 @@ Fly = Callable[..., Flight]
 
 
 def logged(flight: Flight, text: str) -> bool:
-    """Whether the system log has a line with a text."""
+    """Return whether the system log has a line with a text."""
     return any(text in line for line in flight.mission.console.lines)
 
 

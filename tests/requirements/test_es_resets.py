@@ -172,7 +172,7 @@ def test_cES1510_a_reset_by_the_watchdog_is_told_apart(tmp_path: Path) -> None:
 def test_cES1500_the_subtype_of_a_reset_is_told_apart(
     ground: Ground, kind: int, subtype: int, kept: int, text: str
 ) -> None:
-    """As at a boot for which nobody asked."""
+    """The same as at a boot that was not requested."""
     es = ground.mission.cfe.es
     es.setup_reset_variables(kind, subtype, 1)
     assert es.get_reset_type() == (kind, kept)

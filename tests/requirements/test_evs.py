@@ -1,4 +1,5 @@
-"""Event Services, requirement by requirement: what commands do, what telemetry and files tell (cEVS3000 to 3020)."""
+"""Event Services, requirement by requirement: effects of commands, contents of telemetry and files (cEVS3000 to
+3020)."""
 
 from __future__ import annotations
 
@@ -30,21 +31,21 @@ def housekeeping(flight: Flight) -> dict[str, Any]:
 
 
 def of_app(flight: Flight, app: str = "PROBE") -> dict[str, Any]:
-    """What housekeeping says of an application."""
+    """Return the housekeeping entry of an application."""
     app_id = flight.cfe.es.get_app_id_by_name(app)
     rows: list[dict[str, Any]] = housekeeping(flight)["AppData"]
     return next(row for row in rows if row["AppID"] == app_id)
 
 
 def say(flight: Flight, event_type: int = INFORMATION, event_id: int = 5, text: str = "hello") -> list[Event]:
-    """Let PROBE send an event; the events that come of it."""
+    """Let PROBE send an event. Returns the resulting events."""
     flight.packets.clear()
     flight.call(lambda: flight.cfe.evs.send_event(event_id, event_type, text))
     return flight.events()
 
 
 def probe_types(flight: Flight) -> list[int]:
-    """The types of which PROBE's events come through."""
+    """Return the event types of PROBE that pass."""
     return [event.event_type for kind in (DEBUG, INFORMATION, ERROR, CRITICAL) for event in say(flight, kind)]
 
 
@@ -282,7 +283,7 @@ def test_cEVS3018_housekeeping(flight: Flight) -> None:
         "OutputPort": 5,
         "LogFullFlag": 1,
         "LogMode": 0,
-        "MessageSendCounter": 25,  # beside the 22 a NOOP, a refusal and the unregistered application
+        "MessageSendCounter": 25,  # 22, a NOOP, a refusal and the unregistered application
         "LogOverflowCounter": 5,
         "LogEnabled": 1,
         "Spare1": 0,

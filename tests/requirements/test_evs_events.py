@@ -176,7 +176,7 @@ def test_cEVS3109_events_are_text_on_every_port_that_is_enabled(flight: Flight) 
 
 
 def flood(flight: Flight, count: int) -> list[int]:
-    """Let PROBE send events at once; what each call returned."""
+    """Let PROBE send events at once. Returns the results of the calls."""
     flight.packets.clear()
     return flight.call(lambda: [flight.cfe.evs.send_info(5, "again") for _ in range(count)])
 

@@ -28,7 +28,7 @@ def number(flight: Flight, count: int, first: int = 0) -> None:
 
 
 def logged(flight: Flight, path: str = "") -> list[str]:
-    """The texts of the event log, written to a file."""
+    """Return the texts of the event log from a written file."""
     flight.send(pk.WRITE_LOG_DATA_FILE, LogFilename=path)
     data = flight.mission.files.read_file(path or "/ram/cfe_evs.log")
     assert read_header(data).subtype == 16
@@ -64,7 +64,7 @@ def test_cEVS3014_a_full_log_overwrites_or_discards(flight: Flight) -> None:
 
 @covers("cEVS3015", "cEVS3015.1", "cEVS3016", "cEVS3108")
 def test_cEVS3015_the_log_is_written_to_a_file(flight: Flight) -> None:
-    """Events are logged in the long format whatever the format mode; a time that is set back changes no order."""
+    """Events are logged in the long format in any format mode. Setting the time back changes no order."""
     flight.send(pk.CLEAR_LOG)
     flight.send(pk.SET_EVENT_FORMAT_MODE, MsgFormat=pk.FORMAT_SHORT)
     say(flight, text="first")
@@ -143,7 +143,7 @@ def test_cEVS3207_after_a_processor_reset(flight: Flight) -> None:
     assert restored.endswith(" CFE_EVS_EarlyInit: Event Log restored, n=0, c=20, f=1, m=1, o=5")
     full, overflow, mode = state(flight)
     assert (full, mode) == (1, DISCARD)
-    assert overflow == 5 + housekeeping(flight)["MessageSendCounter"]  # those of the new start find no room
+    assert overflow == 5 + housekeeping(flight)["MessageSendCounter"]  # the events of the new start find no room
     assert logged(flight) == before == [str(text) for text in range(20)]
 
 

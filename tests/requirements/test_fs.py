@@ -128,7 +128,8 @@ def test_cES1605_names_of_files_are_completed(ask: Callable[..., Any]) -> None:
 
 
 def test_cES1606_files_are_written_in_the_background(ask: Callable[..., Any]) -> None:
-    """10000 bytes a second: a file of 20064 bytes takes more than a second, and the application goes on meanwhile."""
+    """It writes 10000 bytes per second: a file of 20064 bytes takes more than a second, while the application
+    continues."""
     events: list[tuple[int, ...]] = []
 
     def question(cfe: Cfe) -> Any:

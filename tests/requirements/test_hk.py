@@ -42,8 +42,10 @@ def start(
     schedule: bytes | None = None,
     **sources: str,
 ) -> Flight:
-    """A mission with HK, whose copy table is the test's, and SCH_LAB, if there is a schedule; DEBUG events of HK come
-    down too."""
+    """Start a mission with HK, whose copy table is the test's, and SCH_LAB, if there is a schedule.
+
+    DEBUG events of HK are received, too.
+    """
     tables = {"hk_cpy_tbl.tbl": build(hk.COPY_TABLE.image(rows(*entries)))}
     startup = APP.format(module)
     if schedule is not None:
@@ -64,14 +66,14 @@ def housekeeping(flight: Flight) -> dict[str, Any]:
 
 
 def feed(flight: Flight, msg_id: int, data: bytes) -> list[Event]:
-    """Send telemetry of an application; the events that come of it."""
+    """Send telemetry of an application. Returns the resulting events."""
     flight.packets.clear()
     flight.transmit(bytes(telemetry(msg_id, data)))
     return flight.events()
 
 
 def combined(flight: Flight, msg_id: int = COMBINED) -> tuple[list[bytes], list[Event]]:
-    """Ask for a combined packet; the payloads that came, and the events."""
+    """Request a combined packet. Returns the received payloads, and the events."""
     events = flight.send(hk.SEND_COMBINED_PKT, OutMsgToSend=msg_id)
     return [packet[TLM_HEADER_SIZE:] for packet in flight.packets if get_msg_id(packet) == msg_id], events
 
@@ -167,7 +169,7 @@ def test_HK2000_1_a_bad_copy_table_is_refused(fly: Fly, entry: tuple[int, int, i
 
 
 def validate_new_table(flight: Flight, *entries: tuple[int, int, int, int, int]) -> list[Event]:
-    """Load another copy table and let HK look at it; the events."""
+    """Load another copy table and let HK validate it. Returns the events."""
     flight.mission.files.write_file("/ram/new.tbl", build(hk.COPY_TABLE.image(rows(*entries))))
     flight.send(tbl.LOAD, LoadFilename="/ram/new.tbl")
     flight.send(tbl.VALIDATE, ActiveTableFlag=0, TableName="HK.CopyTable")

@@ -1,4 +1,4 @@
-"""The page of requirements: true, complete, and nine tenths of it backed by tests."""
+"""The page of requirements: true, complete, and nine tenths of it covered by tests."""
 
 from __future__ import annotations
 

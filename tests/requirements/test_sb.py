@@ -138,7 +138,7 @@ SUBTYPES = {pk.WRITE_PIPE_INFO: 20, pk.WRITE_ROUTING_INFO: 21, pk.WRITE_MAP_INFO
 
 
 def dumped(flight: Flight, kind: Command, path: str, row: Layout, name: str = "") -> list[dict[str, object]]:
-    """Have a file written; its rows."""
+    """Command a file to be written. Returns its rows."""
     flight.send(kind, Filename=name)
     flight.run_for(3)
     data = flight.mission.files.read_file(path)

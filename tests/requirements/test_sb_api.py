@@ -34,7 +34,7 @@ def flight(fly: Fly) -> Flight:
 
 
 def refusal(flight: Flight, call: Callable[[], object], app: str = "PROBE") -> int:
-    """The status with which a call fails."""
+    """Return the status with which a call fails."""
     flight.packets.clear()
     with pytest.raises(CfeError) as caught:
         flight.call(call, app)

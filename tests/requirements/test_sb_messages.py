@@ -1,4 +1,5 @@
-"""Requirements of the Software Bus about single messages: what `cfe.msg` reads and writes (cSB4311-4328, 4335-4352)."""
+"""Requirements of the Software Bus about single messages: reading and writing by `cfe.msg` (cSB4311-4328,
+4335-4352)."""
 
 from __future__ import annotations
 

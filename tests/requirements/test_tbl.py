@@ -111,7 +111,7 @@ def test_cTBL6002_validate_both_images(table: ProbeTable) -> None:
 
 @covers("cTBL6002", "cTBL6002.1")
 def test_cTBL6002_both_images_may_wait_for_their_validation(table: ProbeTable) -> None:
-    """One after the other: a request while one is pending is told of, and counts as done."""
+    """They are handled in order. A request during a pending one is reported, and counts as done."""
     table.upload(NEW)
     for which, event_ids in ((pk.ACTIVE_BUFFER, []), (pk.INACTIVE_BUFFER, [104])):
         assert ids(table.flight.send(pk.VALIDATE, ActiveTableFlag=which, TableName=NAME)) == event_ids
@@ -151,7 +151,8 @@ def test_cTBL6003_1_2_without_validation_function_a_table_is_valid(fly: Fly) -> 
 
 
 def three_tables(table: ProbeTable) -> None:
-    """PROBE.T, loaded, shared, and with a load that waits for its owner; PROBE.Other, never loaded; PROBE.Dump."""
+    """Prepare PROBE.T (loaded, shared, with a load that waits for its owner), PROBE.Other (never loaded) and
+    PROBE.Dump."""
     put(table.flight, OLD, path="/ram/old.tbl")
     table.mine("load", "/ram/old.tbl")
     table.flight.call(lambda: table.flight.cfe.tbl.share(NAME), app="MUTE")
@@ -163,7 +164,7 @@ def three_tables(table: ProbeTable) -> None:
 
 
 def loaded(table: ProbeTable) -> dict[str, object]:
-    """What both packet and file tell of PROBE.T."""
+    """Return the common content of packet and file about PROBE.T."""
     return {
         "Size": SIZE,
         "Crc": crc16(OLD),
@@ -179,7 +180,7 @@ def loaded(table: ProbeTable) -> dict[str, object]:
 
 
 def empty() -> dict[str, object]:
-    """What both tell of PROBE.Other."""
+    """Return the common content of both about PROBE.Other."""
     return {
         "Size": 16,
         "Crc": 0,
@@ -299,7 +300,7 @@ def test_cTBL6010_invalid_commands_are_counted(table: ProbeTable) -> None:
     ):
         table.flight.packets.clear()
         table.flight.transmit(bytes(packet))
-        expected = [] if event_id is None else [(event_id, ERROR)]  # VALIDATE and ACTIVATE say nothing
+        expected = [] if event_id is None else [(event_id, ERROR)]  # VALIDATE and ACTIVATE send no event
         assert [(event.event_id, event.event_type) for event in table.flight.events()] == expected
         values = housekeeping(table.flight)
         assert (values["CommandCounter"], values["CommandErrorCounter"]) == (0, count)

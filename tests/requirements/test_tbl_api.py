@@ -1,4 +1,4 @@
-"""Requirements of Table Services that applications see, and what resets leave (cTBL6300-6501)."""
+"""Requirements of Table Services that applications see, and the state after resets (cTBL6300-6501)."""
 
 from __future__ import annotations
 

@@ -101,7 +101,7 @@ def test_cTIME2007_current_time(fly: Fly, utc: bool) -> None:
 
 @pytest.mark.parametrize(("command", "after"), [("ADD", (1_000_001, 0)), ("SUB", (999_999, 0))])
 def test_cTIME2009_stcf_is_adjusted_every_second(flight: Flight, command: str, after: tuple[int, int]) -> None:
-    """What each second adds stays until another command takes it away, and no tone undoes it."""
+    """Each second's adjustment stays until another command removes it, and no tone reverts it."""
     adjust: Command = getattr(pk, f"{command}_ONE_HZ_ADJUSTMENT")
     direction = 1 if command == "ADD" else 2
     text = f"STCF 1Hz Adjust -- secs = 0, ssecs = 0x40000000, dir[1=Pos, 2=Neg] = {direction}"

@@ -1,4 +1,4 @@
-"""Time Services, requirement by requirement: what applications ask for (cTIME2300 to 2323)."""
+"""Time Services, requirement by requirement: requests of applications (cTIME2300 to 2323)."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def test_cTIME2308_clock_state_and_flags(flight: Flight) -> None:
 
 
 def test_cTIME2320_flags_of_other_boards(fly: Fly) -> None:
-    """An external source, the redundant signal and no tone yet; and a client with a tone that comes too early."""
+    """An external source, the redundant signal and no tone yet; and a client with a tone that arrives too early."""
     external = fly(**EXTERNAL, time_cfg_src_met=True, time_cfg_signal=True)
     external.send(pk.SET_SIGNAL, ToneSource=2)
     assert external.cfe.time.get_clock_info() == 0x4BC0

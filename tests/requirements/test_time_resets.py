@@ -1,4 +1,4 @@
-"""Time Services, requirement by requirement: what a reset keeps of the time (cTIME2500 to 2700)."""
+"""Time Services, requirement by requirement: the time data that a reset keeps (cTIME2500 to 2700)."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.requirements.flight import POWERON_RESET, PROCESSOR_RESET, Flight
 
 
 def change_everything(flight: Flight) -> None:
-    """Set what a reset may keep, and let housekeeping save it."""
+    """Change everything that a reset may keep, and let housekeeping save it."""
     flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
     flight.send(pk.SET_MET, Seconds=50_000)
     flight.send(pk.SET_STCF, Seconds=5)
@@ -23,7 +23,7 @@ def change_everything(flight: Flight) -> None:
 
 @pytest.fixture
 def switchable(fly: Fly) -> Flight:
-    """A board whose tone signal may be switched."""
+    """Return a board whose tone signal can be switched."""
     return fly(pk.HK_TLM_MID, pk.DIAG_TLM_MID, time_cfg_signal=True)
 
 
@@ -47,7 +47,7 @@ def test_cTIME2500_power_on_reset(switchable: Flight) -> None:
 def test_cTIME2501_processor_reset(switchable: Flight) -> None:
     flight = switchable
     change_everything(flight)
-    flight.run_for(10)  # nobody saves the time of these
+    flight.run_for(10)  # the time of these is not saved
     flight.reset(PROCESSOR_RESET)
     time = flight.cfe.time
     assert (time.get_met().seconds, time.get_stcf(), time.get_leap_seconds()) == (50_003, (5, 0), 3)

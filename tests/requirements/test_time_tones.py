@@ -120,7 +120,7 @@ def test_cTIME2018_a_message_triggers_the_one_hz_cycle(fly: Fly) -> None:
 
 
 def test_a_lost_tone_starts_flywheel_mode_once(fly: Fly) -> None:
-    """Tones stop: after two seconds the clock says so and goes on; a tone that comes back ends it."""
+    """Without tones, the clock enters flywheel mode after two seconds and continues. A new tone ends it."""
     flight = fly(pk.DIAG_TLM_MID, **ON_ITS_OWN)
     flight.send(pk.SET_STATE, ClockState=CLOCK_VALID)
     for _ in range(3):
@@ -155,14 +155,14 @@ def time_of(seconds: int, subseconds: int = 0) -> dict[str, int]:
 
 
 def is_about(time: SysTime, seconds: float) -> bool:
-    """Whether it is this time, or up to 10 ms later: what the steps of a test take."""
+    """Return whether a time is this one, or up to 10 ms later, the duration of a test's steps."""
     return 0 <= time.seconds + time.subseconds / 2**32 - seconds < 0.01
 
 
 @pytest.mark.parametrize(("command", "sign"), [(pk.ADD_DELAY, 1), (pk.SUB_DELAY, -1)], ids=["add", "subtract"])
 @covers("cTIME2020", "cTIME2021")
 def test_cTIME2020_time_is_adjusted_beside_tone_and_stcf(fly: Fly, command: Command, sign: int) -> None:
-    """What a client adds stays, whatever tones and their messages say, until a command takes it away."""
+    """A client's adjustment stays, with any tones and tone messages, until a command removes it."""
     client = fly(pk.DIAG_TLM_MID, time_cfg_client=True, time_cfg_fake_tone=False)
     follow(client, 5000)
     assert is_about(client.cfe.time.get_met(), 5000)

@@ -1,4 +1,4 @@
-"""Nodes that the tests of actionlib share: a server that counts, and pieces of clients."""
+"""Common nodes of the tests of actionlib: a server that counts, and parts of clients."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ rospy.init_node("client")
 
 
 def bring(original: str, folder: Path) -> None:
-    """Put the source of a library that Debian has installed beside the nodes; "" leaves them ours."""
+    """Copy the source of Debian's installed library beside the nodes. "" leaves cfepy's own."""
     if not original:
         return
     if not (DEBIAN / original).is_dir():

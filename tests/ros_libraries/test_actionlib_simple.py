@@ -1,4 +1,4 @@
-"""SimpleActionClient and SimpleActionServer: what the callbacks get, how goals end, and the texts that go with it."""
+"""SimpleActionClient and SimpleActionServer: arguments of callbacks, ends of goals, and their texts."""
 
 from __future__ import annotations
 

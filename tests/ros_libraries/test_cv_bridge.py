@@ -1,4 +1,4 @@
-"""cv_bridge: images as arrays, with NumPy alone, and what is said where OpenCV is needed."""
+"""cv_bridge: images as arrays, with NumPy alone, and the errors where OpenCV is needed."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ def test_without_opencv(bridge: Any, package: Any, monkeypatch: pytest.MonkeyPat
 
 
 def test_with_opencv() -> None:
-    """How OpenCV is called; a small stand-in for it, which keeps images as they are."""
+    """This tests the calls of OpenCV, with a small stand-in that leaves images unchanged."""
     cv2: Any = ModuleType("cv2")
     cv2.IMREAD_UNCHANGED, cv2.COLOR_BAYER_BG2BGR, cv2.COLOR_YUV2GRAY_UYVY = -1, 46, 123
     cv2.imencode = lambda ending, array: (ending == ".png", np.frombuffer(array.tobytes(), np.uint8))

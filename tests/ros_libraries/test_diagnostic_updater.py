@@ -1,4 +1,4 @@
-"""diagnostic_updater: statuses, tasks and what an updater publishes."""
+"""diagnostic_updater: statuses, tasks and an updater's messages."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tests.rospy_shim.missions import run_nodes
 
 
 def printed(folder: Path, script: str) -> list[str]:
-    """What a node prints that begins with the usual imports."""
+    """Return the output of a node that begins with the usual imports."""
     head = "import rospy\nfrom diagnostic_updater import *\nrospy.init_node('n')\n"
     return run_nodes(folder, {"N": head + script}, seconds=6.0).printed.get("n", [])
 

@@ -1,4 +1,4 @@
-"""dynamic_reconfigure: a server and its clients in a mission, and what .cfg scripts become."""
+"""dynamic_reconfigure: a server and its clients in a mission, and the results of .cfg scripts."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ rospy.spin()
 
 
 def fly(folder: Path, *, rest: str = "", params: dict[str, Any] | None = None, **clients: str) -> Run:
-    """A mission with the package pan_tilt, its server and some clients."""
+    """Return a mission with the package pan_tilt, its server and some clients."""
     (folder / "pan_tilt" / "cfg").mkdir(parents=True)
     (folder / "pan_tilt" / "package.xml").write_text("<package><name>pan_tilt</name></package>", encoding="utf-8")
     (folder / "pan_tilt" / "cfg" / "Head.cfg").write_text(CFG, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""genmsg: definitions read from texts and files, what they need, and their md5sums."""
+"""genmsg: definitions read from texts and files, their dependencies, and their md5sums."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""genpy.generator: sources that, when they are run, do what the classes do that cfepy makes in memory."""
+"""genpy.generator: its sources define classes that behave like the classes that cfepy makes in memory."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ MESSAGES = [pytest.param(each, id=each["type"]) for each in recorded()["messages
 
 
 def loaded(full_name: str, full_text: str) -> tuple[Any, Any]:
-    """A context with all types of a full text, and the spec of the first."""
+    """Return a context with all types of a full text, and the spec of the first."""
     core, *others = full_text.split("\n" + "=" * 80 + "\n")
     context = generator.MsgContext.create_default()
     for other in others:
@@ -30,7 +30,7 @@ def loaded(full_name: str, full_text: str) -> tuple[Any, Any]:
 
 
 def run(lines: Any) -> dict[str, Any]:
-    """What a source defines, run in the universe."""
+    """Return the names that a source defines when it runs in the universe."""
     scope: dict[str, Any] = {"__builtins__": vars(WORLD.builtins)}
     exec("\n".join(lines), scope)
     return scope

@@ -1,4 +1,4 @@
-"""What is unpacked of an LZ4 frame that is damaged or cut off, beside the package lz4, which unpacks whole ones."""
+"""Decompression of damaged or truncated LZ4 frames, compared with the package lz4, which decompresses complete ones."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FRAMES = [
 
 
 def tokens(block: bytes) -> Iterator[int]:
-    """Where the sequences of a block begin, by the description of the format (lz4_Block_format.md)."""
+    """Yield where the sequences of a block begin, by the description of the format (lz4_Block_format.md)."""
     at = 0
     while at < len(block):
         yield at
@@ -35,7 +35,7 @@ def tokens(block: bytes) -> Iterator[int]:
 
 
 def full_length(block: bytes, at: int, length: int) -> tuple[int, int]:
-    """A length with the bytes that go on with it, and where they end."""
+    """Return a length with its continuation bytes, and their end."""
     if length == 15:
         rest = next(index for index in range(at, len(block)) if block[index] != 255)
         return 15 + sum(block[at : rest + 1]), rest + 1

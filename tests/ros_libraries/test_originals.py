@@ -1,8 +1,8 @@
-"""A library may stand beside the original source of another one: it takes from that what the original has.
+"""A library may run beside the original source of another one, and uses only names that the original has.
 
-`library_names.txt` has what the libraries take from each other and the originals have (Debian 12: ros_comm 1.15.15,
-genmsg 0.6.0, genpy 0.6.16, rospkg 1.4.0, roslib and rosunit 1.15.8, geometry2 0.7.6, actionlib 1.14.0). What is no
-package of ROS (`OWN`), or is in none of those, is left out.
+`library_names.txt` has the names that the libraries use of each other and the originals define (Debian 12: ros_comm
+1.15.15, genmsg 0.6.0, genpy 0.6.16, rospkg 1.4.0, roslib and rosunit 1.15.8, geometry2 0.7.6, actionlib 1.14.0).
+Libraries that are not a package of ROS (`OWN`), or that are in none of those, are left out.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ NOT_RECORDED = ("PyKDL", "tf", "sensor_msgs", "tf2_geometry_msgs", "cv_bridge")
 
 
 def taken(file: Path) -> Iterator[str]:
-    """What a library's file takes from other libraries."""
+    """Yield the names that a library's file uses of other libraries."""
     own = file.relative_to(FOLDER).parts[0]
     others = library_names() - {own, *OWN, *NOT_RECORDED}
     tree = ast.parse(file.read_text(encoding="utf-8"))

@@ -23,7 +23,7 @@ def pc2(world: Any) -> Any:
 
 
 def mixed(pc2: Any) -> Any:
-    """Two points of a float, a gap, a pair of uint16 and a byte; bytes as ROS's sensor_msgs writes them."""
+    """Return two points of a float, a gap, a pair of uint16 and a byte, with bytes as ROS's sensor_msgs writes them."""
     kind = pc2.PointField
     fields = [kind("d", 10, kind.UINT8, 1), kind("x", 0, kind.FLOAT32, 1), kind("n", 6, kind.UINT16, 2)]
     return pc2.create_cloud(None, fields, [(1.5, 7, 8, 9), (NAN, 1, 2, 3)])

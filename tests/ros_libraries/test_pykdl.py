@@ -1,4 +1,4 @@
-"""PyKDL: what vectors, rotations, frames, twists and wrenches compute."""
+"""PyKDL: calculations with vectors, rotations, frames, twists and wrenches."""
 
 from __future__ import annotations
 

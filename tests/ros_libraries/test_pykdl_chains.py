@@ -15,7 +15,7 @@ PLACES = ((0, 0, 0), (0, 0, 0.9), (-0.4, 0, 0), (0, 0, 1.2), (0.4, 0, 0), (0, 0,
 
 
 def six_axes() -> Any:
-    """A chain with three rotations, three translations, and fixed parts between."""
+    """Return a chain with three rotations, three translations, and fixed parts between."""
     chain = KDL.Chain()
     for name, place in zip(JOINTS, PLACES, strict=True):
         chain.addSegment(KDL.Segment(KDL.Joint(getattr(KDL.Joint, name)), KDL.Frame(KDL.Vector(*place))))

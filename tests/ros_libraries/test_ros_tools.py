@@ -1,4 +1,5 @@
-"""rosgraph, rosnode, rostopic, rosservice, rosparam and the master's proxy say of two nodes what they say on ROS."""
+"""rosgraph, rosnode, rostopic, rosservice, rosparam and the master's proxy: the same output about two nodes as on
+ROS."""
 
 from __future__ import annotations
 

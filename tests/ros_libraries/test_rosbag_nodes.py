@@ -41,7 +41,7 @@ LOOKS = """
 
 
 def recorded(folder: Path, *args: str, seconds: float = 3.0) -> list[str]:
-    """What is in the bags of a mission that was recorded."""
+    """Return the contents of the bags of a mission that was recorded."""
     flight, bags, look = folder / "flight", folder / "bags", folder / "look"
     for each in (flight, bags, look):
         each.mkdir()
@@ -82,7 +82,7 @@ def test_several_bags(tmp_path: Path) -> None:
 
 
 def played(folder: Path, *args: str, sim_time: bool = False, seconds: float = 3.0) -> Run:
-    """A mission in which a bag of 11 messages in a second, and a latched one, is played."""
+    """Fly a mission that plays a bag of 11 messages in a second, and a latched one."""
     bag = folder / "in.bag"
     write = f"""
         import rosbag, rospy

@@ -1,4 +1,4 @@
-"""Others read the bags that are written here: ROS's own rosbag, where it is installed, and the package rosbags."""
+"""Other readers of cfepy's bags: ROS's own rosbag, if it is installed, and the package rosbags."""
 
 from __future__ import annotations
 
@@ -45,14 +45,14 @@ print(bag._get_entry(at(1020.5)).time, bag._get_entry_after(at(1020.5)).position
 
 @cache
 def has_rosbag() -> bool:
-    """Whether ROS's own rosbag is on this computer."""
+    """Return whether ROS's own rosbag is on this computer."""
     if shutil.which(PYTHON) is None:
         return False
     return subprocess.run([PYTHON, "-c", "import rosbag"], capture_output=True, check=False).returncode == 0
 
 
 def written(folder: Path, kind: str) -> Path:
-    """A bag that a node wrote."""
+    """Return a bag that a node wrote."""
     file = folder / "out.bag"
     (folder / "write").mkdir()
     run_nodes(folder / "write", {"WRITES": WRITES.format(file=str(file), kind=kind)}, seconds=0.7)
@@ -84,7 +84,7 @@ def test_rosbag_says_the_same_of_a_bag(tmp_path: Path, kind: str) -> None:
 
 
 def _is_date(line: str) -> bool:
-    """Whether a line has a date in the local time of the computer."""
+    """Return whether a line has a date in the local time of the computer."""
     return line.startswith(("start:  ", "end:  "))
 
 

@@ -1,4 +1,4 @@
-"""Bags that ROS's own rosbag wrote, read in a node: counts, times, values, and what `rosbag info` shows of them."""
+"""Bags that ROS's own rosbag wrote, read in a node: counts, times, values, and the output of `rosbag info`."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ BEGIN = """
 
 
 def printed(folder: Path, code: str) -> list[str]:
-    """What a node prints that works in the folder of the recorded bags."""
+    """Return the output of a node in the folder of the recorded bags."""
     begin = textwrap.dedent(BEGIN).format(folder=str(BAGS))
     run = run_nodes(folder, {"READS": begin + textwrap.dedent(code)}, seconds=1.0)
     return run.printed.get("READS", [])
@@ -169,7 +169,7 @@ def test_what_is_no_bag_is_refused(tmp_path: Path) -> None:
 
 
 def test_messages_are_of_the_definition_in_the_bag(tmp_path: Path) -> None:
-    """As with ROS: their class is not the one that an import gives, but goes wherever that one goes."""
+    """As with ROS, their class differs from the imported one, but can be published in its place."""
     code = """
         from std_msgs.msg import String
         message = next(rosbag.Bag("golden.bag").read_messages("/chatter")).message

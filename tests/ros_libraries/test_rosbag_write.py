@@ -22,7 +22,7 @@ BEGIN = """
 
 
 def printed(folder: Path, code: str) -> list[str]:
-    """What a node prints that works in an empty folder."""
+    """Return the output of a node in an empty folder."""
     begin = textwrap.dedent(BEGIN).format(bags=str(BAGS), folder=str(folder))
     return run_nodes(folder, {"WRITES": begin + textwrap.dedent(code)}, seconds=1.0).printed.get("WRITES", [])
 

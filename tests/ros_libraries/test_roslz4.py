@@ -1,4 +1,4 @@
-"""roslz4 in a node: ours, and a user's copy of ROS's Python half, whose compiled half is nowhere."""
+"""roslz4 in a node: cfepy's own, and a user's copy of ROS's Python half without its compiled half."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""rosnode: nodes that have gone, machines, connections; the rest is in test_ros_tools.py."""
+"""rosnode: dead nodes, machines, connections. test_ros_tools.py has the other tests."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TALKS = """
 
 
 def said(folder: Path, script: str) -> list[str]:
-    """What a node prints beside one that publishes."""
+    """Return a node's output beside a node that publishes."""
     run = run_nodes(folder, {"TALKS": TALKS, "TOOL": script}, seconds=5)
     return run.printed["tool"]
 

@@ -1,4 +1,4 @@
-"""rosparam: YAML files and the command; reading and writing one by one is in test_ros_tools.py."""
+"""rosparam: YAML files and the command. test_ros_tools.py tests reading and writing of single parameters."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ picture: !!binary AP8=
 
 
 def said(folder: Path, script: str) -> list[str]:
-    """What a node prints."""
+    """Return a node's output."""
     return run_nodes(folder, {"TOOL": script}, seconds=1).printed["TOOL"]
 
 

@@ -1,4 +1,4 @@
-"""rospkg and roslib: packages, manifests and files, from the places that message definitions come from as well."""
+"""rospkg and roslib: packages, manifests and files, also from the folders of message definitions."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def packages(folder: Path) -> None:
 
 
 def said(folder: Path, script: str) -> list[str]:
-    """What a node prints that sees the packages."""
+    """Return the output of a node that sees the packages."""
     packages(folder)
     nodes = {"NODE": NodeConfig("NODE", env={"ROS_PACKAGE_PATH": str(folder / "src"), "HOME": "/home/me"})}
     return run_nodes(folder, {"NODE": script}, seconds=1, nodes=nodes).printed["NODE"]

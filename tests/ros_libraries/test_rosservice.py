@@ -1,4 +1,4 @@
-"""rosservice: calling by name; what it says of services is in test_ros_tools.py."""
+"""rosservice: calling by name. test_ros_tools.py tests its information on services."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ OFFERS = """
 
 
 def said(folder: Path, script: str) -> list[str]:
-    """What a node prints beside one that offers services."""
+    """Return a node's output beside a node that offers services."""
     run = run_nodes(folder, {"OFFERS": OFFERS, "TOOL": script}, seconds=3)
     return next(lines for name, lines in run.printed.items() if name != "offers")
 

@@ -1,4 +1,4 @@
-"""rostopic: watching and publishing; what it says of topics is in test_ros_tools.py."""
+"""rostopic: printing and publishing. test_ros_tools.py tests its information on topics."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TALKS = """
 
 
 def said(folder: Path, script: str, *, seconds: float = 5) -> list[str]:
-    """What a node prints beside one that talks."""
+    """Return a node's output beside a node that talks."""
     run = run_nodes(folder, {"TALKS": TALKS, "TOOL": script}, seconds=seconds)
     return next(lines for name, lines in run.printed.items() if name != "talks")
 

@@ -1,4 +1,4 @@
-"""rosunit and rostest in a node: results as XML, exit status, questions about the graph."""
+"""rosunit and rostest in a node: results as XML, exit status, queries of the graph."""
 
 from __future__ import annotations
 

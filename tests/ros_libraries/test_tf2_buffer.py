@@ -1,4 +1,4 @@
-"""tf2_ros and tf2_geometry_msgs in one universe: what goes into a buffer, and data that is transformed with it."""
+"""tf2_ros and tf2_geometry_msgs in one universe: the content of a buffer, and data that is transformed with it."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def stamped(load: Any, parent: str, child: str, seconds: float, *numbers: float)
 
 
 def buffer_of(load: Any) -> Any:
-    """A buffer with `base` a quarter turn left of `map`, 1 m ahead."""
+    """Return a buffer with `base` a quarter turn left of `map`, 1 m ahead."""
     buffer = load("tf2_ros").Buffer(debug=False)
     buffer.set_transform(stamped(load, "map", "base", 5, 1, 0, 0, 0, 0, HALF, HALF), "me")
     return buffer
@@ -159,7 +159,7 @@ def test_names_that_tf2_ros_does_not_have(node: Universe) -> None:
 
 
 def test_a_type_that_nobody_has_registered(node: Universe) -> None:
-    """The words are those of tf2_ros 0.7.6."""
+    """The texts are those of tf2_ros 0.7.6."""
     load = node.importer.load
     error = load("tf2_ros").TypeException
     with pytest.raises(error, match=r"^Type <class 'int'> if not loaded or supported$"):

@@ -1,4 +1,4 @@
-"""tf.linear_math gives the numbers that the C++ headers of LinearMath give (recorded from compiled code)."""
+"""tf.linear_math gives the same numbers as the C++ headers of LinearMath (recorded from compiled code)."""
 
 from __future__ import annotations
 

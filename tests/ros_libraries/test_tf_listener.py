@@ -75,7 +75,7 @@ def test_waiting_needs_somebody_who_listens(transformer: Any) -> None:
 
 
 def moving(speed: float, turning: float) -> Any:
-    """A frame that moves along x and turns about z, heard of each 0.1 s."""
+    """Return a frame that moves along x and turns about z, with a sample each 0.1 s."""
     found = tf.Transformer()
     for tenth in range(50):
         half = turning * tenth / 20

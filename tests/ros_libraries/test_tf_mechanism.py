@@ -1,4 +1,4 @@
-"""Libraries are found behind a node's own code, executed for each node, and read only when they are imported."""
+"""Libraries are found after a node's own code, executed for each node, and read only when they are imported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes that tell each other where frames are, on a running mission."""
+"""Nodes that exchange transforms, on a running mission."""
 
 from __future__ import annotations
 

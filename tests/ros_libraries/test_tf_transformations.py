@@ -1,4 +1,4 @@
-"""tf.transformations gives the results that the module of ROS gives (recorded from it)."""
+"""tf.transformations gives the same results as ROS's module (recorded from it)."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ PARTS: list[tuple[str, Any]] = [
 
 
 def agree(found: Any, wanted: Any) -> bool:
-    """Whether nested numbers are the same but for the last digits."""
+    """Return whether nested numbers are equal except for the last digits."""
     if wanted is None or found is None:
         return wanted is found
     if isinstance(found, tuple):

@@ -14,7 +14,7 @@ from rospy_shim.types.msgs import make_module
 
 
 def universe() -> Universe:
-    """A fresh universe; `universe().importer.load(name)` is an import in it."""
+    """Return a fresh universe. `universe().importer.load(name)` is an import in it."""
     return Universe(Kernel(), name="node", library_paths=[FOLDER], find_module=_find)
 
 

@@ -1,7 +1,7 @@
 """Nodes that fly alone: programs for any computer, with the interface library and a stand-in for cFE in them.
 
-`cfe_stand_in.cpp` has a Software Bus with one pipe and a clock that goes on while the node waits. What needs more than
-one application, or cFE's own timing, is flown on cfepy and on NASA's cFE instead.
+`cfe_stand_in.cpp` has a Software Bus with one pipe and a clock that continues while the node waits. Tests that need
+several applications, or cFE's own timing, fly on cfepy and on NASA's cFE instead.
 """
 
 from __future__ import annotations
@@ -31,9 +31,9 @@ class Alone:
     """The interface library with its stand-in, compiled once for a kind of computer.
 
     Args:
-        folder: where it is made.
-        nodes: sources that are to fly, which say what of the library is needed.
-        target: what it is for.
+        folder: folder of the results.
+        nodes: sources of the nodes to fly; they determine the needed parts of the library.
+        target: the target computer.
     """
 
     def __init__(self, folder: Path, nodes: Sequence[Path], target: Target = HERE) -> None:
@@ -48,7 +48,7 @@ class Alone:
         self._library = [*library, *self._objects([FOLDER / "cfe_stand_in.cpp"], FLIGHT_FLAGS)]
 
     def fly(self, source: Path) -> list[str]:
-        """What a node prints; it has the name, the namespace and the remappings of `dev.roscfe.probing`."""
+        """Return a node's output. It has the name, the namespace and the remappings of `dev.roscfe.probing`."""
         main = self._folder / "main.h"
         main.write_text(main_header(True), encoding="utf-8")
         ids = {f"/probes/{name}": (FIRST_ID + at, False) for at, name in enumerate(TOPICS)}

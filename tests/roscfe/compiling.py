@@ -20,14 +20,14 @@ def compiled(
     name: str = "program",
     headers: Sequence[Path] = (HEADERS, BOOST),
 ) -> Path:
-    """A program made of sources, in C++17.
+    """Return a program made from sources, in C++17.
 
     Args:
-        folder: where it goes.
+        folder: folder of the result.
         sources: files.
-        options: of g++.
-        name: of the program.
-        headers: folders where headers are.
+        options: options of g++.
+        name: name of the program.
+        headers: folders of headers.
     """
     program = folder / name
     includes = [f"-I{path}" for path in headers]

@@ -10,7 +10,7 @@ STEP = 1_000_000_000 // 512
 
 
 def rotation(chance: random.Random) -> list[float]:
-    """A quaternion of length 1, also with few digits."""
+    """Return a quaternion of length 1, also with few digits."""
     if chance.random() < 0.2:
         return chance.choice(([0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.6, 0.0, -0.8], [0.5, -0.5, 0.5, 0.5]))
     numbers = [chance.gauss(0, 1) for _ in range(4)]

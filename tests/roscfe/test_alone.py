@@ -1,6 +1,6 @@
-"""The whole library on computers of other kinds, big-endian and of 32 bits: nodes print what roscpp's printed.
+"""The whole library on computers of other kinds, big-endian and of 32 bits: nodes have the same output as with roscpp.
 
-The probes of `dev.roscfe.probing` with a stand-in for cFE, here and emulated.
+The probes of `dev.roscfe.probing` run with a stand-in for cFE, here and emulated.
 """
 
 from __future__ import annotations

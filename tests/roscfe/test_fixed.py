@@ -1,4 +1,4 @@
-"""Strings and vectors of fixed capacity: as nodes use std's, and loud where something does not fit."""
+"""Strings and vectors of fixed capacity: used like std's, with an error if data does not fit."""
 
 from __future__ import annotations
 

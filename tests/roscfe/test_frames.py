@@ -37,7 +37,7 @@ def program(folder: Path, *options: str, name: str = "ours") -> Path:
 
 
 def answers(made: Path, lines: list[str]) -> tuple[list[str], list[str]]:
-    """What a program prints, and its log."""
+    """Return a program's output, and its log."""
     text = "\n".join(lines) + "\n"
     done = subprocess.run([made, str(CACHE)], input=text, capture_output=True, text=True, check=True)
     return done.stdout.splitlines(), done.stderr.splitlines()
@@ -96,7 +96,7 @@ def asked(buffer: Any, kind: str, *words: str) -> str:
 
 
 def in_python(lines: list[str], said: list[str]) -> Iterator[str]:
-    """What Python's buffer answers to the lines of a life; `said` is its log."""
+    """Yield the answers of Python's buffer to the lines of a life; `said` is its log."""
     buffer = tf2.BufferCore(rospy.Duration(CACHE))
     for line in lines:
         kind, *words = ("" if word == "-" else word for word in line.split())
@@ -147,7 +147,7 @@ def test_as_in_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def comparable(lines: list[str]) -> list[str]:
-    """Without what tf2 says by mistake: that a fixed frame does not exist when it is the source that does not."""
+    """Return the lines without a mistake of tf2: it reports a missing fixed frame if the source is missing."""
     return [re.sub(r" ?fixed_frame: \S*does not exist\.", "", line).rstrip() for line in lines]
 
 
@@ -181,7 +181,7 @@ def test_without_exceptions_a_failure_ends_the_application(tmp_path: Path) -> No
 @pytest.mark.slow
 @pytest.mark.parametrize("sanitizers", [[], ["-fsanitize=address,undefined"]])
 def test_nothing_is_allocated_in_flight(sanitizers: list[str], tmp_path: Path) -> None:
-    """In the strict profile, for 50 s of four frames at 100 Hz, with a buffer that is too small for 10 s of them."""
+    """This holds in the strict profile, for 50 s of four frames at 100 Hz, with a buffer too small for 10 s of them."""
     messages = tmp_path / "messages"
     types = ["geometry_msgs/TransformStamped", "geometry_msgs/PoseWithCovarianceStamped", "geometry_msgs/PoseStamped"]
     types += [f"geometry_msgs/{name}Stamped" for name in ("Point", "Quaternion", "Vector3", "Wrench")]
@@ -193,7 +193,7 @@ def test_nothing_is_allocated_in_flight(sanitizers: list[str], tmp_path: Path) -
     assert done.returncode == 0, done.stderr
     printed = done.stdout.splitlines()
     assert printed[0].startswith("news: 0, ")
-    assert printed[1] == f"forgotten early: {4 * 5000 - 2048}"  # all but what the buffer holds
+    assert printed[1] == f"forgotten early: {4 * 5000 - 2048}"  # all except the capacity of the buffer
     assert printed[2] == "oldest: 1 0"  # 2048 samples are 5.12 s of four frames
     assert printed[3] == "cut: 142 of 142 refused"
     assert "The buffer of transforms is full: 2048 samples" in done.stderr

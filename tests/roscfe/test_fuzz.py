@@ -1,4 +1,4 @@
-"""Packets that are no messages: cut, lengthened, with counts that cannot be true, with bytes turned over.
+"""Packets that are not messages: truncated, lengthened, with impossible counts, with changed bytes.
 
 The program has the sanitizers for addresses and for undefined behaviour in it, which end it at the first wrong access.
 """
@@ -32,7 +32,7 @@ on 64 bits, and a vector that is read into again may take twice what it needs.""
 
 
 def mutated(frame: bytes, draw: random.Random) -> bytes:
-    """A frame with a fault in it."""
+    """Return a frame with a fault in it."""
     octets = bytearray(frame)
     fault = draw.randrange(6)
     at = draw.randrange(len(octets) + 1)
@@ -54,7 +54,7 @@ def mutated(frame: bytes, draw: random.Random) -> bytes:
 
 
 def packets(full_name: str, count: int) -> list[bytes]:
-    """Mutated messages of a type; a few have more than one fault."""
+    """Return mutated messages of a type. A few have more than one fault."""
     draw = random.Random(hash_of(full_name))
     found = []
     for frame in frames_of(full_name, count):
@@ -65,9 +65,9 @@ def packets(full_name: str, count: int) -> list[bytes]:
 
 
 class Walker:
-    """Walks over the bytes of a message by its definition, making nothing. ValueError: they are no message.
+    """Walks over the bytes of a message by its definition, making nothing. Raises ValueError if they are not a message.
 
-    genpy is no help here: it goes through an array of fixed arrays as often as a packet says, bytes or not.
+    genpy cannot be used: it iterates over an array of fixed arrays as often as a packet demands, even without bytes.
     """
 
     def __init__(self, octets: bytes) -> None:
@@ -105,7 +105,7 @@ class Walker:
 
 
 def is_message(full_name: str, octets: bytes) -> bool:
-    """Whether a packet is a message, no byte more or less."""
+    """Return whether a packet is a message, no byte more or less."""
     try:
         Walker(octets).whole(full_name)
     except ValueError:

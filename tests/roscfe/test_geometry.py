@@ -1,4 +1,4 @@
-"""tf2_geometry_msgs and tf2/utils.h in C++ give what the real ones give: recorded, and beside them where they are."""
+"""tf2_geometry_msgs and tf2/utils.h in C++ give the same results as the real ones: recorded, or run if installed."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def ours(folder: Path, *options: str) -> Path:
 
 
 def words(line: str) -> list[str | float]:
-    """The words of a line; numbers to 12 digits, since libraries differ in the last ones of sines."""
+    """Return the words of a line, with numbers to 12 digits, because libraries differ in the last digits of sines."""
     return [pytest.approx(float.fromhex(word), rel=1e-12, abs=1e-12) if "0x" in word else word for word in line.split()]
 
 

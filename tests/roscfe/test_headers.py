@@ -1,4 +1,4 @@
-"""The headers of the interface library stand by themselves; those of Boost that it lacks are refused."""
+"""The headers of the interface library compile alone; Boost headers that it lacks are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The heap of nodes in the profiles pool and strict: alignment, refusals, and the functions of C that take from it."""
+"""The heap of nodes in the profiles pool and strict: alignment, refusals, and the C functions that allocate from it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def profile(request: pytest.FixtureRequest) -> Profile:
 
 @pytest.fixture(scope="module")
 def run(profile: Profile, tmp_path_factory: pytest.TempPathFactory) -> Run:
-    """Runs a case; the lines that it prints."""
+    """Return a function that runs a case and returns its output lines."""
     made = tmp_path_factory.mktemp("heap") / "heap"
     base = [*STRICT_FLAGS, *NO_WARNINGS, *profile_flags(profile), "-O1"]
     objects = compile_objects(made, [ROSCFE / "src/heap.cpp"], base=base)
@@ -44,7 +44,7 @@ def run(profile: Profile, tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 
 def failures(lines: list[str]) -> list[str]:
-    """Lines that say of something that it is not so."""
+    """Return the lines that report a failed check."""
     return [line for line in lines if line.endswith(" 0")]
 
 

@@ -71,7 +71,7 @@ def line(name: str, *values: Any) -> Line:
 
 
 def changed(value: Any, operation: str, other: Any) -> Any:
-    """A copy after +=, -=, *= or /=."""
+    """Return a copy after +=, -=, *= or /=."""
     copy = type(value)(*value)
     return getattr(copy, operation)(other)
 
@@ -118,7 +118,7 @@ def quaternions(p: Any, q: Any, a: Any, b: Any, angles: Any, t: float) -> Iterat
 
 
 def rpy(m: Any, library: str, solution: int = 1) -> list[float]:
-    """Roll, pitch and yaw; where an axis locks, tf2 takes the roll from the last row. Python's classes are tf's."""
+    """Return roll, pitch and yaw. In gimbal lock, tf2 takes the roll from the last row; Python's classes are tf's."""
     roll, pitch, yaw = m.getRPY(solution)
     locked = library == "tf2" and abs(m[2][0]) >= 1.0
     return [math.atan2(m[2][1], m[2][2]) if locked else roll, pitch, yaw]
@@ -218,7 +218,7 @@ def test_as_in_python(library: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("library", ["tf", "tf2"])
 def test_as_in_a_real_ros(library: str, tmp_path: Path) -> None:
-    """To the bit; optimised, as Debian compiles ROS: that makes a product of the squares that ROS writes as powers."""
+    """Results are bitwise equal, optimised as in Debian's ROS, which turns the powers in ROS's code into products."""
     if not (REAL / library / "LinearMath").is_dir():
         pytest.skip(f"there is no lib{library}-dev on this computer; the comparison with Python has to do")
     define = ["-DOF_TF"] if library == "tf" else []

@@ -1,4 +1,4 @@
-"""Small nodes of roscpp print on cfepy what was recorded of them with Debian's roscpp (`dev.roscfe.probing`)."""
+"""Small nodes of roscpp have the same output on cfepy as recorded with Debian's roscpp (`dev.roscfe.probing`)."""
 
 from __future__ import annotations
 

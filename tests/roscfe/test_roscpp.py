@@ -1,4 +1,5 @@
-"""Ours beside ROS's own: what Debian's roscpp prints was recorded, and messages go through both."""
+"""The library beside ROS's own: compared with the recorded output of Debian's roscpp, and with messages through
+both."""
 
 from __future__ import annotations
 
@@ -34,7 +35,7 @@ PRINTED = [
 
 
 def output(program: Path) -> str:
-    """What a program prints."""
+    """Return a program's output."""
     return subprocess.run([program], capture_output=True, text=True, check=True).stdout
 
 

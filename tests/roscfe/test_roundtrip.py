@@ -12,7 +12,7 @@ from dev.roscfe.random_messages import all_types
 from dev.roscfe.roundtrip import Program, frames_of
 
 pytestmark = [pytest.mark.slow, needs_cpp]
-MESSAGES = {"here": 200, "powerpc": 30, "arm": 30}  # of each type; an emulated processor takes its time
+MESSAGES = {"here": 200, "powerpc": 30, "arm": 30}  # of each type; an emulated processor is slow
 
 
 @pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])

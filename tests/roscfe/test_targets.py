@@ -45,14 +45,14 @@ class There:
         write_headers([*PRINTED, *GEOMETRY], folder / "messages", Profile.HOST, LIBRARY)
 
     def compile(self, name: str, *more: Path, flags: Sequence[str] = ()) -> Path:
-        """A program of this folder, with other sources."""
+        """Return a program of this folder, with other sources."""
         given = (f"-I{self._folder / 'messages'}", "-O1", "-ffp-contract=off", *flags)
         made = self._folder / name
         sources = [FOLDER / f"{name}.cpp", *more]
         return compile_program(made, sources, *given, target=self._target, base=STRICT_FLAGS)
 
     def run(self, program: Path, *words: str, given: str = "", status: int = 0) -> tuple[str, str]:
-        """What it prints, and its log."""
+        """Return its output, and its log."""
         command = [*self._target.runner, str(program), *words]
         environ = {**os.environ, "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4"}
         done = subprocess.run(command, input=given, env=environ, capture_output=True, text=True, check=False)

@@ -1,4 +1,4 @@
-"""Nodes in C++ and in Python tell each other where things are, on one bus."""
+"""Nodes in C++ and in Python exchange transforms on one bus."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ LAUNCH = """<launch>
 
 
 def package(folder: Path) -> Path:
-    """A package of the nodes; its launch file."""
+    """Write a package of the nodes. Returns its launch file."""
     for name in ("src", "scripts", "launch"):
         (folder / "where" / name).mkdir(parents=True)
     for source in NODES.iterdir():

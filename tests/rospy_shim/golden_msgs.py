@@ -18,20 +18,20 @@ _TIMES = {"time": genpy.Time, "duration": genpy.Duration}
 
 @cache
 def recorded() -> dict[str, list[dict[str, Any]]]:
-    """All recorded types with their cases: "messages", with the requests and responses, and "services"."""
+    """Return all recorded types with their cases: "messages", with the requests and responses, and "services"."""
     found: dict[str, list[dict[str, Any]]] = json.loads(_FILE.read_text(encoding="utf-8"))
     parts = [service[part] for service in found["services"] for part in ("request", "response")]
     return {"messages": found["messages"] + parts, "services": found["services"]}
 
 
 def md5sums(kind: str) -> dict[str, str]:
-    """What genmsg computes for each shipped "msg" or "srv"."""
+    """Return genmsg's md5sum for each shipped "msg" or "srv"."""
     lines = (line.split() for line in _MD5SUMS.read_text(encoding="utf-8").splitlines())
     return {words[1]: words[2] for words in lines if words[0] == kind}
 
 
 def build(library: Library, field_type: str, value: Any) -> Any:
-    """A field's value, or a whole message, from its plain form (dicts, lists, hexadecimal for uint8[])."""
+    """Return a field's value, or a whole message, from its plain form (dicts, lists, hexadecimal for uint8[])."""
     if isinstance(value, dict) and "__bytes_hex__" in value:
         return bytes.fromhex(value["__bytes_hex__"])
     if field_type.endswith("]"):

@@ -15,7 +15,7 @@ from rospy_shim.types.config import NodeConfig, RosConfig, TopicConfig
 
 
 class Run(NamedTuple):
-    """What is left of a run: the lines that nodes printed, everything on the console, the topics' rows, the digest."""
+    """Results of a run: the output lines of nodes, everything on the console, the topics' rows, the digest."""
 
     printed: dict[str, list[str]]
     lines: list[str]
@@ -36,17 +36,17 @@ def run_nodes(
     priorities: Mapping[str, int] | None = None,
     connection_delay_ns: int = 0,
 ) -> Run:
-    """Run scripts as nodes; keys are their cFE names. What they write is on the computer afterwards.
+    """Run scripts as nodes; keys are their cFE names. Files that they write are on the computer afterwards.
 
     Args:
         folder: an empty folder to put the mission in.
         scripts: source text, or a file that is copied.
         seconds: virtual time before the nodes are asked to end.
-        nodes: what a mission file says about them.
+        nodes: their entries in a mission file.
         topics: pinned MsgIds.
         params: global parameters.
         tasks: "thread" or "greenlet".
-        priorities: of the applications, 100 by default.
+        priorities: priorities of the applications, 100 by default.
         connection_delay_ns: until a publisher and a subscriber are connected.
     """
     script_lines = []

@@ -1,4 +1,4 @@
-"""What a node finds installed: rospy and its libraries with their versions, and the host's packages."""
+"""Installed distributions as a node sees them: rospy and its libraries with their versions, and the host's packages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a node finds code not its own: PYTHONPATH, packages on ROS_PACKAGE_PATH, stand-ins for what is missing."""
+"""Sources of foreign code for a node: PYTHONPATH, packages on ROS_PACKAGE_PATH, stand-ins for missing packages."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ setup(**generate_distutils_setup(packages=['arm'], package_dir={'': 'python'}))
 
 
 def printed(folder: Path, script: str, **env: str) -> list[str]:
-    """What one node printed."""
+    """Return one node's output."""
     (folder / "mission").mkdir()
     config = NodeConfig("NODE", env=env)
     return run_nodes(folder / "mission", {"NODE": script}, nodes={"NODE": config}).printed["NODE"]

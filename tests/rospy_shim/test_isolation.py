@@ -1,4 +1,4 @@
-"""Nodes share no process: whatever one of them changes for itself, another sees nothing of it."""
+"""Nodes do not share a process: a change that one of them makes for itself is invisible to others."""
 
 from __future__ import annotations
 

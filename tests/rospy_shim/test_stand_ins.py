@@ -1,4 +1,4 @@
-"""Stand-ins for what tests and libraries of ROS import and may not be installed: nose, BSON, PNG pictures."""
+"""Stand-ins for modules that tests and libraries of ROS use and that may be missing: nose, BSON, PNG pictures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tests.rospy_shim.missions import run_nodes
 
 
 def printed(folder: Path, script: str) -> list[str]:
-    """What a node prints."""
+    """Return a node's output."""
     return [line for lines in run_nodes(folder, {"NODE": script}).printed.values() for line in lines]
 
 
@@ -74,7 +74,7 @@ def test_bson(tmp_path: Path) -> None:
 
 
 def test_pictures(tmp_path: Path) -> None:
-    """Lines of a PNG file may be packed in five ways; the file here has one of each."""
+    """Lines of a PNG file may be packed in five ways. The file here has one of each."""
     lines = b"\x00\x01\x02\x03" + b"\x01\x01\x01\x01" + b"\x02\x01\x01\x01" + b"\x03\x02\x02\x02" + b"\x04\x01\x01\x01"
     script = f"""
         import io, os, sys, zlib

@@ -1,4 +1,4 @@
-"""What kernel tests share."""
+"""Common parts of kernel tests."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ class Log(list[str]):
         self.append(text)
 
     def writer(self, text: str) -> Callable[[], None]:
-        """A task's entry point that writes one line."""
+        """Return a task's entry point that writes one line."""
         return lambda: self.append(text)
 
 
 class Clocks:
-    """Clocks of the host for a stall watch, which tell what a test says: `watch.spent = Clocks(...)`.
+    """Clocks of the host for a stall watch, controlled by a test: `watch.spent = Clocks(...)`.
 
     Args:
-        monkeypatch: lets watches look often, so that the test is soon over.
-        used: share of a CPU that the process has.
-        ready: share of the time in which it is ready for one that other programs have.
+        monkeypatch: lets watches check often, so that the test ends soon.
+        used: share of a CPU that the process uses.
+        ready: share of the time in which it is ready while other programs use the CPU.
     """
 
     def __init__(self, monkeypatch: pytest.MonkeyPatch, used: float, ready: float) -> None:

@@ -1,4 +1,4 @@
-"""A task that computes: what is due meanwhile happens when it is due, and the work takes as long as it takes."""
+"""A task that computes: due events happen in time meanwhile, and the work takes its full time."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MS = 1_000_000
 
 
 class World:
-    """Tasks that note when they did what."""
+    """Tasks that record their actions with times."""
 
     def __init__(self, kernel: Kernel) -> None:
         self.kernel = kernel
@@ -37,7 +37,7 @@ class World:
 
 @pytest.fixture
 def world(kernel: Kernel) -> World:
-    """Nobody computes yet."""
+    """Return a world in which no task computes yet."""
     return World(kernel)
 
 

@@ -1,4 +1,4 @@
-"""Which kind of tasks a run gets that names none."""
+"""The kind of tasks of a run that does not name one."""
 
 from __future__ import annotations
 

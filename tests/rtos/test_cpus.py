@@ -1,4 +1,4 @@
-"""The CPU that a process's runs share: processes spread, the user may say, and it is given back."""
+"""The CPU that a process's runs share: processes spread, the user may choose, and it is released."""
 
 from __future__ import annotations
 
@@ -130,7 +130,7 @@ def test_a_kernel_sits_while_it_has_tasks(monkeypatch: pytest.MonkeyPatch) -> No
 
 
 def test_processes_are_on_cpus_of_their_own() -> None:
-    """Two processes at the same time, each of which says where its tasks ran."""
+    """Two processes at the same time each report the CPU of their tasks."""
     if len(os.sched_getaffinity(0)) < 2:
         pytest.skip("this computer has one CPU")
     code = textwrap.dedent("""

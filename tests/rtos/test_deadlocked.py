@@ -1,4 +1,4 @@
-"""Who waits for whom in a circle."""
+"""Deadlocks: circles of waiting tasks."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from cfepy.rtos import Kernel, Task, WaitList
 
 
 class World:
-    """Tasks that wait for what others hold."""
+    """Tasks that wait for objects that others hold."""
 
     def __init__(self, kernel: Kernel) -> None:
         self.kernel = kernel
         self.tasks: dict[str, Task] = {}
 
     def add(self, name: str, holder: str, timeout_ns: int = -1) -> None:
-        """A task that waits for something that others hold, by name; nobody holds what "" holds."""
+        """Add a task that waits for an object of another task, by name; "" means that no task holds it."""
         waits = WaitList(f"lock of {holder}")
         waits.holders = lambda: [self.tasks[name] for name in holder.split() if name in self.tasks]
         self.tasks[name] = self.kernel.spawn(name, lambda: self.kernel.wait_on(waits, timeout_ns))
 
     def found(self) -> list[list[str]]:
-        """What the kernel tells, after some time."""
+        """Return the kernel's report after some time."""
         self.kernel.run(1000)
         return [[str(wait) for wait in circle] for circle in self.kernel.deadlocked()]
 
 
 @pytest.fixture
 def world(kernel: Kernel) -> World:
-    """Nobody waits yet."""
+    """Return a world in which no task waits yet."""
     return World(kernel)
 
 

@@ -1,4 +1,4 @@
-"""How tasks end: by themselves, by an error, killed, refusing to die, and by Ctrl-C on the host."""
+"""Ends of tasks: return, error, kill, refusal to die, and Ctrl-C on the host."""
 
 from __future__ import annotations
 

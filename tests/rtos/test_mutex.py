@@ -1,4 +1,4 @@
-"""Mutexes: recursion, transitive priority inheritance, hand-over, and what happens when an owner dies."""
+"""Mutexes: recursion, transitive priority inheritance, hand-over, and the death of an owner."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A host that has no more threads: said in words, and the run can still end."""
+"""A host that has no more threads: the error says so, and the run can still end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Running from the host: until when, in how many pieces, and what ends it."""
+"""Running from the host: end time, pieces, and causes of the end."""
 
 from __future__ import annotations
 

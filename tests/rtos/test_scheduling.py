@@ -1,4 +1,4 @@
-"""The kernel's promises on who runs when: strict priorities, order among equals, preemption."""
+"""The kernel's scheduling guarantees: strict priorities, order among equals, preemption."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Coverage, profilers and debuggers see what tasks on threads do."""
+"""Coverage, profilers and debuggers see the actions of tasks on threads."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cfepy.rtos import Kernel
 
 
 def counted(kernel: Kernel) -> None:
-    """What a task does."""
+    """Execute the work of a task."""
     kernel.delay(10)
 
 
@@ -52,7 +52,7 @@ def test_tasks_are_traced_as_threads_are(kind: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
 def test_a_function_can_be_traced_after_a_stall(tasks: str, tmp_path: Path) -> None:
-    """What ends a task that spins leaves nothing behind in the interpreter; a traced function hung there."""
+    """Ending a task that spins leaves nothing in the interpreter; a traced function hung there."""
     (tmp_path / "spin.py").write_text("while True:\n    pass\n", encoding="utf-8")
     script = (
         "import sys, cfepy\n"

@@ -40,7 +40,7 @@ def watched(kernel: Kernel, **options: object) -> StallWatch:
 
 
 def ended(kernel: Kernel, entry: Callable[[], object], limit_s: float = LIMIT_S) -> StallError:
-    """What a run comes to in which a task does something that has no end."""
+    """Return the error of a run in which a task never ends its work."""
     watch = watched(kernel)
     watch.limit_s = limit_s
     kernel.spawn("spinning", entry)
@@ -62,7 +62,7 @@ def spin() -> None:
 
 
 def step() -> None:
-    """A call, in which another thread may get in and look."""
+    """Call a function, during which another thread may run and look."""
 
 
 def spin_deep_down() -> None:
@@ -222,7 +222,7 @@ def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callab
 
 @pytest.mark.usefixtures("soon")
 def test_a_wish_is_given_its_time_from_when_it_is_seen(make_kernel: Callable[[], Kernel]) -> None:
-    """What was computed before the wish does not count: then one that spins is told as one that spins."""
+    """Computation before the request does not count. Only afterwards, a task that spins is reported."""
     spins = threading.Event()
     clock, seen = [0.0], [False]
 
@@ -302,7 +302,7 @@ def test_what_cannot_be_struck_is_left_behind() -> None:
         kernel.shutdown()
         watch.end()
     os.write(writer, b"x")
-    while stuck.carrier.alive:  # the thread ends, and hands the CPU to nobody
+    while stuck.carrier.alive:  # the thread ends without passing on the CPU
         threading.Event().wait(0.001)
     os.close(reader)
     os.close(writer)

@@ -26,7 +26,7 @@ class App:
 
 @dataclass
 class Events:
-    """Keeps what SB reports as (event id, text)."""
+    """Keeps SB's events as (event id, text)."""
 
     sent: list[tuple[int, str]] = field(default_factory=list)
 
@@ -34,7 +34,7 @@ class Events:
         self.sent.append((event_id, text))
 
     def ids(self) -> list[int]:
-        """Ids of the events that are no debug events of the ordinary course."""
+        """Return the ids of the events, except for debug events of normal operation."""
         return [event_id for event_id, _ in self.sent if event_id not in (5, 10, 47, 48)]
 
 
@@ -69,7 +69,7 @@ class Log:
 
 
 class Files:
-    """Keeps what is to be written; `write` does it at once, without a header."""
+    """Keeps data to be written. `write` writes it at once, without a header."""
 
     def __init__(self) -> None:
         self.waiting: list[FileWriteMetaData] = []
@@ -92,7 +92,7 @@ class Files:
 
 
 class Bench:
-    """A kernel, a bus, and what it reported."""
+    """A kernel, a bus, and its events."""
 
     def __init__(self, context: str = "thread", bus: type[SoftwareBus] = SoftwareBus, **limits: Any) -> None:
         self.kernel = Kernel(context, Trace())
@@ -111,7 +111,7 @@ class Bench:
         self.kernel.spawn(name, run, priority, app)
 
     def do(self, name: str, run: Callable[[], object]) -> object:
-        """Let an application do something now, and give back what it returned or raised."""
+        """Let an application call a function now. Returns the result or raises the exception."""
         result: list[object] = []
 
         def body() -> None:
@@ -126,5 +126,5 @@ class Bench:
 
 
 def packet(msg_id: int, payload: bytes = b"") -> bytes:
-    """A telemetry packet."""
+    """Return a telemetry packet."""
     return bytes(telemetry(msg_id, payload))

@@ -115,7 +115,7 @@ def test_message_limit(bench: Bench) -> None:
 
 
 def test_a_message_of_an_older_subscription_makes_room_for_the_newer(bench: Bench) -> None:
-    """As on NASA's cFE 7.0.0: the limit is counted by MsgId and pipe, whichever subscription a message came under."""
+    """As on NASA's cFE 7.0.0, the limit counts by MsgId and pipe, for all subscriptions together."""
     pipe = subscriber(bench, "A", limit=1)
     bench.bus.transmit_msg(packet(MID, b"old"))
     bench.do("A", lambda: (bench.bus.unsubscribe(MID, pipe), bench.bus.subscribe_ex(MID, pipe, msg_limit=1)))

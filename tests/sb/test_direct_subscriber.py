@@ -1,4 +1,4 @@
-"""An outlet of the Software Bus gets every packet at once, and nothing waits or is lost on its account."""
+"""An outlet of the Software Bus gets every packet at once, without delaying or losing other messages."""
 
 from __future__ import annotations
 

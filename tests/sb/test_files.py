@@ -1,4 +1,4 @@
-"""The three files: NASA's own, written again byte for byte after the same pipes, subscriptions and messages."""
+"""The three files: equal to NASA's own, byte for byte, after the same pipes, subscriptions and messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a listener of a Software Bus is told of each packet object."""
+"""Notifications of a Software Bus listener about each packet object."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MID = 0x0881
 
 
 class Notes:
-    """A listener that writes down what it is told, and checks that it fits together."""
+    """A listener that records its notifications, and checks that they are consistent."""
 
     def __init__(self) -> None:
         self.told: list[tuple[str, int, str]] = []
@@ -156,7 +156,7 @@ def test_nobody_hears_of_what_is_not_sent() -> None:
     bench = bench_of(notes)
 
     def run() -> None:
-        bench.bus.transmit_msg(packet(MID))  # which nobody subscribed to
+        bench.bus.transmit_msg(packet(MID))  # which has no subscriber
         pipe = bench.bus.create_pipe(4, "P")
         bench.bus.subscribe(MID, pipe)
         bench.bus.transmit_msg(b"short")
@@ -188,7 +188,7 @@ def test_puts_that_a_fault_refuses_are_drops() -> None:
 
 
 def wander(bench: Bench, seed: int) -> str:
-    """Tasks that send, receive, subscribe and delete at random; the digest of the run."""
+    """Run tasks that send, receive, subscribe and delete at random. Returns the digest of the run."""
     bus, dice = bench.bus, random.Random(seed)
     bench.bus.costs = CpuCosts(call_ns=700)
 

@@ -1,4 +1,4 @@
-"""The packets of the Software Bus have NASA's layouts, and what stands in them is true."""
+"""The packets of the Software Bus have NASA's layouts, and their contents are true."""
 
 from __future__ import annotations
 

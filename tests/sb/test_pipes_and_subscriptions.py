@@ -1,4 +1,4 @@
-"""Making pipes and subscriptions, and every way in which that fails, with NASA's status and event."""
+"""Making pipes and subscriptions, and every failure of it, with NASA's status and event."""
 
 from __future__ import annotations
 

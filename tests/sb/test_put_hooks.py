@@ -1,4 +1,4 @@
-"""Hooks before the puts into pipes: each of several is asked, whichever was added last."""
+"""Hooks before the puts into pipes: each of several is called, in any order of addition."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ MID = 0x0881
 
 
 class Least(PutHook):
-    """Lets no more messages wait than it is told to."""
+    """Limits the number of waiting messages."""
 
     def __init__(self, most: int, inner: PutHook | None) -> None:
         super().__init__(inner)

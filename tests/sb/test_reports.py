@@ -1,4 +1,4 @@
-"""Subscriptions told to other processors: as they are made, and all at once."""
+"""Subscriptions reported to other processors: as they are made, and all at once."""
 
 from __future__ import annotations
 

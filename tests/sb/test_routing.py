@@ -1,4 +1,4 @@
-"""The routing table by itself: ids, throttled walks, sequence counts, and its answers to ids that mean nothing."""
+"""The routing table alone: ids, throttled walks, sequence counts, and its answers to invalid ids."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Messages that are filled in place: who holds the buffer, when it goes back, what it takes from the pool."""
+"""Messages filled in place: the holder of the buffer, its release, its pool memory."""
 
 from __future__ import annotations
 
@@ -156,7 +156,7 @@ def test_buffers_go_back_when_their_application_ends(bench: Bench) -> None:
 
 
 class Pools:
-    """ES, as far as it lends memory; `left` blocks can be had."""
+    """The part of ES that lends memory; `left` blocks are available."""
 
     def __init__(self, left: int) -> None:
         self.left = left

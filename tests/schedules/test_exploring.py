@@ -16,7 +16,7 @@ Program = Callable[[Kernel], Callable[[], object]]
 
 
 def lost_update(kernel: Kernel) -> Callable[[], object]:
-    """Two tasks each read a number, make a call, and write it back."""
+    """Make two tasks that each read a number, make a call, and write it back."""
     box = [0]
 
     def add() -> None:
@@ -30,7 +30,7 @@ def lost_update(kernel: Kernel) -> Callable[[], object]:
 
 
 def lock_order(kernel: Kernel) -> Callable[[], object]:
-    """Two tasks take two mutexes in opposite order; the one that would close the circle dies."""
+    """Make two tasks that take two mutexes in opposite order. The one that would close the circle dies."""
     bus, file = Mutex(kernel, "BUS"), Mutex(kernel, "FILE")
     done: list[str] = []
 
@@ -52,7 +52,7 @@ def lock_order(kernel: Kernel) -> Callable[[], object]:
 
 
 def urgent_reply(kernel: Kernel) -> Callable[[], object]:
-    """A request is sent before it is noted; whoever answers is less urgent."""
+    """Make tasks that send a request before recording it. The answering task has a lower priority."""
     requests: Queue = Queue(kernel, 1)
     asked: list[str] = []
     answers: list[str] = []
@@ -71,7 +71,7 @@ def urgent_reply(kernel: Kernel) -> Callable[[], object]:
 
 
 def late_timer(kernel: Kernel) -> Callable[[], object]:
-    """A task stops a periodic one, in two steps that are no time apart; the timer is due soon after."""
+    """Make a task that stops a periodic one, in two steps without time between them. The timer is due soon after."""
     state = {"open": True, "running": True}
 
     def periodic() -> None:

@@ -1,4 +1,4 @@
-"""What is promised in numbers: the odds of random and PCT, and what the systematic search leaves out: nothing.
+"""Guarantees in numbers: the odds of random and PCT, and that the systematic search leaves nothing out.
 
 The seeds are fixed, so a test either always holds or never; bounds leave room of four standard deviations.
 """
@@ -24,7 +24,7 @@ from cfepy.trace import Trace
 
 @pytest.fixture(scope="module", autouse=True)
 def _few_objects() -> Iterator[None]:
-    """Each kernel looks how many objects there are: those of other tests shall not be among them."""
+    """Exclude objects of other tests, because each kernel counts the existing objects."""
     gc.freeze()
     yield
     gc.unfreeze()
@@ -35,7 +35,7 @@ SEEDS = 800
 
 
 def fly(program: Program, policy: Policy | None, context: str = "greenlet") -> tuple[str, NotingPolicy, str]:
-    """What the tasks wrote, the decisions, and the digest of the trace."""
+    """Return the tasks' output, the decisions, and the digest of the trace."""
     recorded, trace, written = NotingPolicy(policy), Trace(), list[str]()
     with make_kernel(context, trace, recorded) as kernel:
         program(kernel, written)
@@ -44,7 +44,7 @@ def fly(program: Program, policy: Policy | None, context: str = "greenlet") -> t
 
 
 def walkers(*steps: int) -> Program:
-    """Tasks a, b, ... that write their names so many times, with a scheduling point between two of them."""
+    """Return tasks a, b, ... that write their names that many times, with a scheduling point between two of them."""
 
     def program(kernel: Kernel, written: list[str]) -> None:
         def walk(name: str, count: int) -> None:
@@ -70,7 +70,7 @@ def words(*steps: int) -> set[str]:
 
 
 def preemptions(word: str, steps: dict[str, int]) -> int:
-    """How many times a task was taken off that had something left to write."""
+    """Return how many times a task with unwritten output was preempted."""
     left, count = dict(steps), 0
     runs = [(name, len(list(run))) for name, run in groupby(word)]
     for name, length in runs:
@@ -80,7 +80,7 @@ def preemptions(word: str, steps: dict[str, int]) -> int:
 
 
 def enough(found: int, odds: float, runs: int = SEEDS) -> bool:
-    """Whether something of at least these odds could have come so rarely."""
+    """Return whether something of at least these odds could have come so rarely."""
     return found >= runs * odds - 4 * sqrt(runs * odds * (1 - odds))
 
 
@@ -130,7 +130,7 @@ def test_random_holds_a_task_up_once_in_sixteen_times() -> None:
 
 @pytest.mark.parametrize("depth", [1, 2, 3])
 def test_pct_finds_a_bug_of_its_depth_as_often_as_promised(depth: int) -> None:
-    """Two tasks, 5 + 5 steps: what needs `depth` ordered events has odds of at least 1 / (n k^(d-1))."""
+    """Two tasks with 5 + 5 steps: a bug of `depth` ordered events has odds of at least 1 / (n k^(d-1))."""
     program, steps = walkers(5, 5), {"a": 5, "b": 5}
     decisions = len(fly(program, None)[1].choices)
     longest = max(len(fly(program, Schedule.parse(f"random:{seed}").policy())[1].choices) for seed in range(50))
@@ -232,7 +232,7 @@ PROGRAMS = st.lists(
 
 
 def made_of(tasks: list[tuple[int, list[str]]]) -> Program:
-    """A program of kernel calls of all sorts."""
+    """Return a program of kernel calls of all sorts."""
 
     def program(kernel: Kernel, written: list[str]) -> None:
         queue, mutex, semaphore = Queue(kernel, 2), Mutex(kernel), Semaphore(kernel, 0, 1)
@@ -298,9 +298,11 @@ def test_a_choice_that_is_not_there_becomes_the_last_that_is() -> None:
 
 
 def crowd(count: int) -> Program:
-    """A starter, and so many that each do two things; digits say how many have done the first when one does the second.
+    """Return a starter and `count` tasks with two steps each.
 
-    Those it starts begin while it starts others, if they may.
+    A digit is the number of first steps before a second step.
+
+    The started tasks may run while the starter starts others.
     """
 
     def program(kernel: Kernel, written: list[str]) -> None:
@@ -360,7 +362,7 @@ def test_random_starts_all_before_a_long_stretch() -> None:
 
 def test_abreast_lets_equals_collide() -> None:
     found = Counter(fly(crowd(6), Schedule.parse(f"abreast:{seed}").policy())[0] for seed in range(100))
-    assert found["666666"] > 10  # all are there before the first one goes on
+    assert found["666666"] > 10  # all are ready before the first one continues
     assert sum(word.startswith("1") for word in found) > 5
     by_chance = Counter(fly(crowd(6), Schedule.parse(f"random:{seed}").policy())[0] for seed in range(100))
     assert by_chance["666666"] < 3
@@ -372,7 +374,8 @@ def test_abreast_reaches_every_order_of_two() -> None:
 
 
 def workers_and_reader(count: int) -> Program:
-    """Many who do two things each, and a reader, started last, who writes an `x` when it sees the first thing alone."""
+    """Return many tasks with two steps each, and a reader, started last, which writes an `x` if it sees only the
+    first step."""
 
     def program(kernel: Kernel, written: list[str]) -> None:
         first, second = [False], [False]
@@ -409,13 +412,13 @@ def test_abreast_pairs_those_who_do_different_things() -> None:
 
 
 def test_abreast_lets_who_starts_many_go_on_beyond_its_time_slice() -> None:
-    """It would be taken for one that polls, and those it has not started would never meet the others."""
+    """Otherwise it would count as polling, and the tasks that it has not started would never meet the others."""
     schedule = next(each for each in map("abreast:{}".format, range(100)) if _is_together(each, slice_us=0))
     assert _is_together(schedule, slice_us=20_000)
 
 
 def _is_together(schedule: str, slice_us: int) -> bool:
-    """Whether of six all have done the first thing before the first one does its second."""
+    """Return whether all of six tasks have done the first step before any does its second."""
 
     def program(kernel: Kernel, written: list[str]) -> None:
         def come() -> None:

@@ -1,4 +1,4 @@
-"""Moves name their places by what stays when a program is edited, as text that no shell has to quote."""
+"""Moves name their places by features that survive edits of a program, as text that needs no shell quoting."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def test_a_text_that_is_no_move(text: str, wrong: str) -> None:
 
 
 def two_calls(kernel: Kernel) -> list[str]:
-    """Three tasks that make calls."""
+    """Return three tasks that make calls."""
     said: list[str] = []
 
     def look() -> None:
@@ -86,7 +86,7 @@ def flown(program: Program, policy: Policy) -> list[str]:
 
 
 def edited(kernel: Kernel) -> list[str]:
-    """The same in a larger mission: another task comes first, so all tasks have other numbers."""
+    """Return the same in a larger mission: another task comes first, so all tasks have other numbers."""
     kernel.spawn("LOGGER.x.1", lambda: kernel.charge(1))
     return two_calls(kernel)
 

@@ -1,4 +1,4 @@
-"""Mission scripts flown: verdicts, what was there instead, time, resets, determinism."""
+"""Mission scripts flown: verdicts, the actual values, time, resets, determinism."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_a_failure_says_what_there_was_instead(folder: Path, expectation: str, a
 
 
 def test_an_expectation_looks_back_to_the_last_thing_done(folder: Path) -> None:
-    """Two expectations after one command may be met in any order; what came before the command does not count."""
+    """Two expectations after one command may be met in any order. Events before the command do not count."""
     outcome = fly(
         folder,
         """

@@ -1,4 +1,4 @@
-"""Lines of a script that come one at a time, while the mission goes on."""
+"""Lines of a script that arrive one at a time, while the mission continues."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from cfepy.units import NS_PER_S
 
 
 class Told:
-    """A mission with a standing script, and the verdicts that were told."""
+    """A mission with a standing script, and its reported verdicts."""
 
     def __init__(self) -> None:
         spec = read_mission("lab")
@@ -58,7 +58,7 @@ def test_a_line_acts_at_once_whatever_others_wait_for(told: Told) -> None:
     told.add("send CFE_ES_NOOP")
     assert told.words() == ["ok 1.00 send CFE_ES_NOOP"]
     told.run(0.5)
-    told.add("expect event CFE_ES 3")  # looks back to what was sent last
+    told.add("expect event CFE_ES 3")  # looks back to the last command
     told.add("send SAMPLE_APP_NOOP")
     told.run(0.1)
     assert told.words()[1:] == [

@@ -1,4 +1,4 @@
-"""The language of mission scripts: what is understood, and what is said about mistakes before anything runs."""
+"""The language of mission scripts: accepted text, and the errors about mistakes before anything runs."""
 
 from __future__ import annotations
 

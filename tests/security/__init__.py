@@ -1,1 +1,1 @@
-"""What somebody else's files may do: tricks of an adversary, and the limits that hold them."""
+"""Foreign files: tricks of an adversary, and the limits that stop them."""

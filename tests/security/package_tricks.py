@@ -1,4 +1,4 @@
-"""Tricks of packages and sources: names that lead out of a folder, what has no end, pipes in place of files."""
+"""Tricks of packages and sources: names that lead out of a folder, endless data, pipes in place of files."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def package(
     words: str = CONVERT,
     **more: str,
 ) -> Trick:
-    """A package that is converted."""
+    """Return a package that is converted."""
     contents = {
         "evil/package.xml": MANIFEST.format(called),
         "evil/CMakeLists.txt": cmake,
@@ -37,28 +37,28 @@ def package(
 
 
 def cmake(name: str, said: str, text: str) -> Trick:
-    """A CMakeLists.txt that is read when a node of a launch file is built."""
+    """Return a CMakeLists.txt that is read when a node of a launch file is built."""
     return package(f"cmake, {name}", said, f"{text}\n{BUILT}", words="check {}/x.launch")
 
 
 def node(name: str, said: str, text: str) -> Trick:
-    """A node that is checked."""
+    """Return a node that is checked."""
     return Trick(f"python: {name}", "check {}/n.py", said, files_of({"n.py": f"import rospy\n{text}"}))
 
 
 def app(name: str, said: str, contents: dict[str, str]) -> Trick:
-    """An application that is checked."""
+    """Return an application that is checked."""
     return Trick(f"application: {name}", "check {}", said, files_of({"startup.scr": START, **contents}))
 
 
 def c_app(name: str, said: str, contents: dict[str, str]) -> Trick:
-    """An application in C that is built."""
+    """Return an application in C that is built."""
     inside = {f"evil/{file}": text for file, text in contents.items()}
     return Trick(f"application in C: {name}", "build {}/evil", said, files_of({"evil/fsw/src/a.c": "int a;", **inside}))
 
 
 def with_(trick: Trick, name: str, more: Callable[[Path], object]) -> Trick:
-    """A trick with something else in its folder."""
+    """Return a trick with another file in its folder."""
 
     def make(folder: Path) -> None:
         trick.make(folder)
@@ -68,7 +68,7 @@ def with_(trick: Trick, name: str, more: Callable[[Path], object]) -> Trick:
 
 
 def pipe(file: str) -> Callable[[Path], object]:
-    """A pipe in place of a file."""
+    """Return a pipe in place of a file."""
 
     def make(folder: Path) -> None:
         (folder / file).unlink(missing_ok=True)
@@ -79,7 +79,7 @@ def pipe(file: str) -> Callable[[Path], object]:
 
 
 def link(file: str, target: str) -> Callable[[Path], object]:
-    """A symbolic link; @ is the folder."""
+    """Make a symbolic link; @ is the folder."""
 
     def make(folder: Path) -> None:
         (folder / file).unlink(missing_ok=True)
@@ -90,7 +90,7 @@ def link(file: str, target: str) -> Callable[[Path], object]:
 
 
 def holes(file: str) -> Callable[[Path], object]:
-    """A file of a terabyte, which takes no room."""
+    """Return a file of a terabyte, which takes no room."""
 
     def make(folder: Path) -> None:
         (folder / file).parent.mkdir(parents=True, exist_ok=True)
@@ -101,7 +101,7 @@ def holes(file: str) -> Callable[[Path], object]:
 
 
 def _circles(folder: Path) -> None:
-    """Links by which a pattern goes round and round."""
+    """Make links that send a pattern in circles."""
     for name in "abc":
         (folder / "evil" / name).symlink_to(folder / "evil")
 

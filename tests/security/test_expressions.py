@@ -1,4 +1,4 @@
-"""Expressions of launch files: what roslaunch evaluates, with its values, and what ends with an error in no time."""
+"""Expressions of launch files: evaluated as by roslaunch, or ended with an error without delay."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Limits of inputs hold where they are, and say what to do."""
+"""Limits of inputs work at the right place, and their errors say what to do."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_info_of_a_journal_runs_and_unpacks_nothing(tmp_path: Path, capsys: pyte
 
     watching = False
     sys.addaudithook(hook)
-    main(["replay", "--info", str(tmp_path / "run.cfepy")])  # what is imported is imported now
+    main(["replay", "--info", str(tmp_path / "run.cfepy")])  # load all modules now
     watching = True
     assert main(["replay", "--info", str(tmp_path / "run.cfepy")]) == 0
     watching = False

@@ -1,4 +1,4 @@
-"""Names and texts of files, missions and peers reach a terminal as text: no escape sequence, nothing that reverses it.
+"""Names and texts of files, missions and peers reach a terminal as text, without escape or reversing sequences.
 
 Each case has a name or a text with control characters in another place, and the command that shows it.
 """
@@ -70,7 +70,7 @@ def mission(folder: Path, code: str = APP, yaml: str = "", app: str = "NASTY") -
 
 
 def bag(folder: Path, topics: Sequence[str] = (f"/{NASTY}", "/good\n/forged")) -> Path:
-    """A bag whose topic, node and texts are nasty; of std_msgs/Header, for its frame."""
+    """Return a bag whose topic, node and texts are nasty; of std_msgs/Header, for its frame."""
     about = message_class("std_msgs/Header")
     header = {"type": "std_msgs/Header", "md5sum": about._md5sum, "message_definition": about._full_text}
     frame = NASTY.encode()
@@ -88,7 +88,7 @@ def bag(folder: Path, topics: Sequence[str] = (f"/{NASTY}", "/good\n/forged")) -
 
 
 def dumped(folder: Path, source: Path, at: int) -> Path:
-    """A file of cFE with a nasty text from a byte on."""
+    """Return a file of cFE with a nasty text from a byte on."""
     data = bytearray(source.read_bytes())
     nasty = b"x\x1b]0;title\a\x1b[31m\x9b"
     data[at : at + len(nasty)] = nasty
@@ -104,7 +104,7 @@ def launch(folder: Path, body: str) -> Path:
 
 
 def named(folder: Path, make: Callable[[Path], object]) -> Path:
-    """A folder with a nasty name, and what is made in it."""
+    """Return a folder with a nasty name, and make its content."""
     made = folder / os.fsdecode(NASTY.encode())  # which each file system can have, whatever the locale
     made.mkdir()
     make(made)
@@ -112,7 +112,7 @@ def named(folder: Path, make: Callable[[Path], object]) -> Path:
 
 
 class Case(NamedTuple):
-    """A case: what it is about, the command with `{}` for what is made, what must show."""
+    """A case: its subject, the command with `{}` for the made file, and the expected text."""
 
     name: str
     words: str
@@ -206,7 +206,7 @@ def test_no_control_characters_are_printed(
     assert "\n/forged" not in text
 
 
-# -- journals, and what other programs read ----------------------------------------------------------------------------
+# -- journals, and input of other programs -----------------------------------------------------------------------------
 
 
 @pytest.fixture(scope="module")
@@ -251,7 +251,7 @@ def test_csv_in_a_pipe_is_what_it_was(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def on_a_terminal(words: list[str]) -> str:
-    """What a command shows on a terminal."""
+    """Return a command's output on a terminal."""
     pty = pytest.importorskip("pty")
     ours, theirs = pty.openpty()
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "200"}

@@ -1,4 +1,4 @@
-"""None of an adversary's tricks runs code, writes outside, or goes on for long: it is told, or does nothing."""
+"""None of an adversary's tricks runs code, writes outside, or takes long: it is reported, or does nothing."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_a_trick_of_a_package_does_nothing(
 
 
 def check(trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    """Do what a trick asks for, with limits that are sooner reached."""
+    """Execute a trick's command, with limits that are reached sooner."""
     for name, limit in QUICKER.items():
         monkeypatch.setattr(name, limit)
     trick.make(tmp_path)
@@ -83,7 +83,7 @@ print(os.waitstatus_to_exitcode(status), used.ru_maxrss)
 @pytest.mark.skipif(not hasattr(os, "wait4"), reason="what a process took is not told")
 @pytest.mark.parametrize("trick", PACKAGE_TRICKS, ids=[trick.name for trick in PACKAGE_TRICKS])
 def test_a_trick_of_a_package_takes_little_with_the_limits_as_they_are(trick: Trick, tmp_path: Path) -> None:
-    """All of them, in processes of their own; the test above has a third."""
+    """This runs all of them, in separate processes; the test above runs a third."""
     folder = tmp_path / "made"
     folder.mkdir()
     trick.make(folder)

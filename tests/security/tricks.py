@@ -1,7 +1,7 @@
-"""Fifty tricks of an adversary: files that try to run code, to leave their folder, or to fill memory and time.
+"""Fifty tricks of an adversary: files that try to run code, to leave their folder, or to exhaust memory and time.
 
-Each makes files in a folder and says which words of the command look at them. Where code would run, it writes the
-canary; where a path would leave the folder, it leads to the canary.
+Each makes files in a folder and names the words of the command that reads them. Code that runs would write the canary,
+and a path that leaves the folder leads to the canary.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Trick(NamedTuple):
     """A trick.
 
     Attributes:
-        name: what it tries.
-        words: of the command, with `{}` for the folder.
-        said: what the error says, `HARMLESS` where there is none.
+        name: its attempt.
+        words: words of the command, with `{}` for the folder.
+        said: text of the error, or `HARMLESS` for none.
         make: makes its files in a folder.
     """
 
@@ -38,7 +38,7 @@ class Trick(NamedTuple):
 
 
 def _file(name: str, content: str | bytes) -> Callable[[Path], object]:
-    """One file; @ in its text is the folder."""
+    """Make one file; @ in its text is the folder."""
 
     def make(folder: Path) -> None:
         path = folder / name
@@ -49,7 +49,7 @@ def _file(name: str, content: str | bytes) -> Callable[[Path], object]:
 
 
 def _files(**contents: str) -> Callable[[Path], object]:
-    """Several; two underscores stand for a point."""
+    """Make several files; two underscores in a name stand for a point."""
 
     def make(folder: Path) -> None:
         for name, content in contents.items():
@@ -59,7 +59,7 @@ def _files(**contents: str) -> Callable[[Path], object]:
 
 
 def files_of(contents: Mapping[str, str]) -> Callable[[Path], object]:
-    """Files by their paths; @ in their texts is the folder."""
+    """Make files by their paths; @ in their texts is the folder."""
 
     def make(folder: Path) -> None:
         for name, content in contents.items():
@@ -69,29 +69,29 @@ def files_of(contents: Mapping[str, str]) -> Callable[[Path], object]:
 
 
 def launch(name: str, said: str, body: str) -> Trick:
-    """A launch file that is checked."""
+    """Return a launch file that is checked."""
     return Trick(name, "check {}/x.launch", said, _file("x.launch", f"<launch>\n{body}\n</launch>\n"))
 
 
 def expression(name: str, said: str, text: str) -> Trick:
-    """An expression in a launch file."""
+    """Return an expression in a launch file."""
     text = text.replace("&", "&amp;").replace("<", "&lt;").replace('"', "&quot;")
     return launch(f"eval: {name}", said, f'<param name="p" value="$(eval {text})"/>')
 
 
 def parameters(name: str, said: str, text: str) -> Trick:
-    """A file of parameters, built into tables."""
+    """Return a file of parameters, built into tables."""
     return Trick(f"yaml: {name}", "param build {}/robot.yaml -o {}/out", said, _file("robot.yaml", text))
 
 
 def mission(name: str, said: str, text: str, **more: str) -> Trick:
-    """A mission file that is checked."""
+    """Return a mission file that is checked."""
     start = "CFE_APP, hk, HK_AppMain, HK, 90, 16384, 0x0, 0;\n!\n"
     return Trick(f"mission: {name}", "check {}", said, _files(startup__scr=start, mission__yaml=text, **more))
 
 
 def journal(name: str, said: str, change: Callable[[str, dict[str, Any], Path], object], words: str) -> Trick:
-    """A journal of which frames were changed."""
+    """Return a trick with a journal of changed frames."""
 
     def make(folder: Path) -> None:
         with_frames(folder / "run.cfepy", lambda kind, body: change(kind, body, folder))
@@ -108,7 +108,7 @@ def _look(**values: Any) -> Callable[[str, dict[str, Any], Path], object]:
 
 
 def _look_through_link() -> Callable[[str, dict[str, Any], Path], object]:
-    """A link, and a link that is to be put through it."""
+    """Return a link, and a link to be created through it."""
     names = iter(["/way", f"/way/{CANARY}"])
 
     def change(kind: str, body: dict[str, Any], folder: Path) -> None:
@@ -143,7 +143,7 @@ def _header(**changes: Any) -> Callable[[str, dict[str, Any], Path], object]:
 
 
 def _linked(kind: str, body: dict[str, Any], folder: Path) -> None:
-    """A file that the journal does not carry becomes a link; another one is to be written through it."""
+    """Turn a file that the journal does not carry into a link, through which another file is to be written."""
     if kind == "file" and body["path"].endswith("startup.scr"):
         body.update(path=f"{folder}/run.cfepy", size=0, sha256="", packed=None)
     elif kind == "file":
@@ -154,7 +154,7 @@ def _linked(kind: str, body: dict[str, Any], folder: Path) -> None:
 
 
 def _bag_bomb(folder: Path) -> None:
-    """A chunk of 20 MB of zeros in a few hundred bytes; the limit is made smaller for it."""
+    """Make a chunk of 20 MB of zeros in a few hundred bytes. The limit is smaller for it."""
     header = {
         "type": "std_msgs/String",
         "md5sum": "992ce8a1687cec8c8bd883ec73ca41d1",
@@ -175,7 +175,7 @@ def _damaged_lz4(folder: Path) -> None:
 
 
 def _wide_includes(folder: Path) -> None:
-    """Seven files, each of which includes the next one ten times: ten million tags."""
+    """Make seven files, each of which includes the next one ten times: ten million tags."""
     for level in range(7):
         inner = f'<include file="$(dirname)/l{level + 1}.launch"/>\n' * 10
         (folder / f"l{level}.launch").write_text(
@@ -185,7 +185,7 @@ def _wide_includes(folder: Path) -> None:
 
 
 def _messages(package: str, text: str) -> Callable[[Path], object]:
-    """A package with a message, and a node that imports it."""
+    """Return a package with a message, and a node that imports it."""
     return _files(
         **{
             "package__xml": f"<package><name>{package}</name></package>",
@@ -196,7 +196,7 @@ def _messages(package: str, text: str) -> Callable[[Path], object]:
 
 
 def definition(name: str, said: str, text: str) -> Trick:
-    """A message definition of a package whose node is checked."""
+    """Return a trick with a message definition of a package whose node is checked."""
     package = name.replace(" ", "_").replace(",", "").replace("50", "p50")
     return Trick(f"msg: {name}", "check {}/node.py", said, _messages(package, text))
 

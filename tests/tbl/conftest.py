@@ -36,9 +36,9 @@ POOL_ID = 0x140002
 
 
 class Store:
-    """A Critical Data Store that outlives the bench; `broken` names cannot be read, `running` apps own theirs.
+    """A Critical Data Store that survives the bench. Names in `broken` are unreadable, apps in `running` own theirs.
 
-    A block that was never written cannot be read either.
+    A block that was never written is also unreadable.
     """
 
     def __init__(self) -> None:
@@ -87,11 +87,11 @@ class Store:
 
 
 class Bench:
-    """One TableServices with everything around it that a test wants to look at.
+    """One TableServices with all of its environment, for inspection by tests.
 
     Args:
-        store: what the CDS holds from before; None for an empty one.
-        limits: fields of `PlatformConfig`, the release among them.
+        store: earlier content of the CDS; None for an empty one.
+        limits: fields of `PlatformConfig`, including the release.
     """
 
     def __init__(self, store: Store | None = None, **limits: Any) -> None:
@@ -175,7 +175,7 @@ class Bench:
         self.ground(wish, TableName=name)
 
     def background(self) -> None:
-        """Do what ES's background task does with the files that wait."""
+        """Process waiting files as ES's background task does."""
         for job in self.jobs:
             size, records, last = HEADER_SIZE, b"", False
             for number in itertools.count():
@@ -192,7 +192,7 @@ class Bench:
         self.jobs.clear()
 
     def send_hk(self) -> dict[str, Any]:
-        """Ask for housekeeping; returns its fields."""
+        """Request housekeeping. Returns its fields."""
         self.sent.clear()
         self.tbl.task.handle(bytes(command(packets.SEND_HK_MID, 0)))
         return packets.HOUSEKEEPING.unpack(self.sent[0][16:])
@@ -202,7 +202,7 @@ class Bench:
         self.files[path] = build(TableImage(name, data, "test", offset))
 
     def take_events(self) -> list[tuple[int, int, str]]:
-        """The events since the last time."""
+        """Return the events since the last time."""
         events = list(self.events)
         self.events.clear()
         return events

@@ -1,4 +1,4 @@
-"""Critical tables: what comes back after a processor reset, and what must not (cTBL6501.1, cTBL6013)."""
+"""Critical tables: data restored after a processor reset, and data that must not be (cTBL6501.1, cTBL6013)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NAME = "APP.T"
 
 
 def after_reset(bench: Bench) -> Bench:
-    """The bench that a processor reset makes of another one."""
+    """Return the bench that a processor reset makes of another one."""
     return Bench(bench.store)
 
 
@@ -48,7 +48,7 @@ def test_a_critical_table_comes_back(options: int) -> None:
     again = after.tbl.register("T", 4, options)
     assert again.status == CFE_TBL_INFO_RECOVERED_TBL
     assert after.tbl.get_address(again) == (memoryview(b"abcd"), True)
-    assert after.tbl.get_info(NAME) == before._replace(crc=0)  # cFE does not say how much came back
+    assert after.tbl.get_info(NAME) == before._replace(crc=0)  # cFE does not report how much was restored
     assert after.send_hk()["NumLoadPending"] == 0
     assert (before.critical, before.last_file_loaded, before.time_of_last_update) == (True, "/cf/t.tbl", NOW)
 

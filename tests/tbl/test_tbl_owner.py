@@ -1,4 +1,4 @@
-"""Registering, loading and updating tables as an app does it (cTBL6000 and following)."""
+"""Registering, loading and updating tables by an app (cTBL6000 and following)."""
 
 from __future__ import annotations
 

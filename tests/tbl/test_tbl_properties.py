@@ -1,4 +1,4 @@
-"""Damaged files are found or harmless; nobody's view of a table changes while it is locked."""
+"""Damaged files are detected or harmless. A locked table does not change."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def content(bench: Bench) -> bytes:
 
 
 def load_damaged(bench: Bench, handle: int, data: bytes) -> bool:
-    """Load a file and check that the table is either as before or as the file says."""
+    """Load a file and check that the table is either unchanged or has the file's content."""
     bench.files["/cf/t.tbl"] = data
     before = content(bench)
     try:

@@ -1,4 +1,4 @@
-"""The registry file of a mission with NASA's lab applications, against the one that NASA's cFE wrote of its own."""
+"""The registry file of a mission with NASA's lab applications, against NASA cFE's own."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Commands about tables in release 7.0.0 of cFE, where it says or does something else than 7.0.1.
+"""Table commands in release 7.0.0 of cFE, where texts or behaviour differ from 7.0.1.
 
-Every text and number here was seen on NASA's cFE 7.0.0.
+Every text and number here was observed on NASA's cFE 7.0.0.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ BAD = 0xFF
 
 
 def make_bench(version: str) -> tuple[Bench, int]:
-    """A bench with a table that was loaded twice, so that it can be dumped, and a good file for it."""
+    """Return a bench with a table that was loaded twice, so that it can be dumped, and a good file for it."""
     bench = Bench(cfe_version=version)
     handle = bench.tbl.register("T", 4, 0, lambda image: -5 if image[0] == BAD else 0)
     for _ in range(2):

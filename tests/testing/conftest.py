@@ -85,7 +85,7 @@ Suite = Callable[..., pytest.RunResult]
 
 
 def write_mission(folder: Path, **nodes: str) -> Path:
-    """A mission of ROS nodes: their programs by name."""
+    """Return a mission of ROS nodes: their programs by name."""
     folder.mkdir()
     lines = [NODE_LINE.format(name=name, app=name.upper()) for name in nodes]
     (folder / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
@@ -96,7 +96,7 @@ def write_mission(folder: Path, **nodes: str) -> Path:
 
 @pytest.fixture(scope="session")
 def loaded(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Every module that a mission needs is there: pytester lets go of those that a suite imports."""
+    """Load every module that a mission needs, because pytester unloads those that a suite imports."""
     folder = write_mission(tmp_path_factory.mktemp("loaded") / "talk", talker=TALKER, racy=RACY)
     for tasks in ("thread", "greenlet"):
         with Flight(RunPlan((str(folder),), tasks=tasks)) as flight:
@@ -126,14 +126,14 @@ def suite(pytester: pytest.Pytester, missions: Path) -> Suite:
 
 
 def told_command(result: pytest.RunResult) -> str:
-    """The last command that a run says does the same again."""
+    """Return the last command that a run prints for its repetition."""
     found = re.findall(r"the same again: (pytest .*)", result.stdout.str())
     assert found, result.stdout.str()
     return str(found[-1])
 
 
 def given_verbatim(command: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """A command, given to a shell as it was printed."""
+    """Give a command to a shell exactly as printed."""
     bin_folder = str(Path(sys.executable).parent)
     env = {**os.environ, "PATH": os.pathsep.join([bin_folder, os.environ["PATH"]]), "PYTHONPATH": str(ROOT)}
     env |= {"PYTEST_PLUGINS": "cfepy.testing.plugin", "PYTEST_ADDOPTS": "-p no:randomly", "COLUMNS": "300"}

@@ -1,4 +1,4 @@
-"""The example package of a user: its tests are run as its user runs them."""
+"""The example package of a user: its tests run as a user runs them."""
 
 from __future__ import annotations
 

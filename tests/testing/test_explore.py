@@ -1,4 +1,4 @@
-"""@explore: a race is found, shrunk, told, and found again by the command that is told."""
+"""@explore: a race is found, shrunk, reported, and found again by the reported command."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_a_race_is_found_and_shrunk_and_found_again(suite: Suite, missions: Path
 
 
 def check_command(text: str, command: str, folder: Path) -> None:
-    """The command that was told fails in the same way."""
+    """Check that the reported command fails in the same way."""
     again = given_verbatim(command, folder)
     assert again.returncode == 1
     instead = [re.findall(r"E +instead: (.*)", each) for each in (text, again.stdout)]
@@ -52,7 +52,7 @@ def check_command(text: str, command: str, folder: Path) -> None:
 
 
 def check_journal(folder: Path, moves: str) -> None:
-    """One journal is kept, that of the shrunk run, and replays."""
+    """Check that one journal is kept, the shrunk run's, and that it replays."""
     (path,) = folder.iterdir()
     journal = read_journal(path)
     assert journal.plan.schedule.text() == f"moves:{moves}"
@@ -65,7 +65,7 @@ def test_pct_finds_it_too_and_need_not_be_shrunk(suite: Suite) -> None:
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["failed under the *. of 60 schedules, pct:*", "*--cfepy-schedule pct:*"])
     expected = re.search(r"of 60 schedules, pct:\d+:3:(\d+)", result.stdout.str())
-    assert expected is not None  # a test is as long as it is, and not the 1000 decisions of a schedule's default
+    assert expected is not None  # a test has its own length, and not the 1000 decisions of a schedule's default
     assert int(expected[1]) < 200
     result.stdout.no_fnmatch_line("*the shortest schedule*")
 
@@ -243,7 +243,7 @@ def test_the_default_is_that_of_the_command() -> None:
 
 @pytest.mark.slow
 def test_explore_of_the_command_line_shrinks_to_the_same(suite: Suite, missions: Path) -> None:
-    """The same function with the same budget: what `cfepy explore` makes of the schedule that the test failed under."""
+    """It is the same function with the same budget: `cfepy explore` on the schedule under which the test failed."""
     result = suite(RACE.format(policy="random", shrink=None))
     result.assert_outcomes(failed=1)
     text = result.stdout.str()

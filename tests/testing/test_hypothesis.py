@@ -1,4 +1,4 @@
-"""Tests with @given: missions of their own for each example, small failures, and the command that does one again."""
+"""Tests with @given: a separate mission for each example, small failures, and the command that repeats one."""
 
 from __future__ import annotations
 

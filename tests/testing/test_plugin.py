@@ -1,4 +1,4 @@
-"""The pytest plugin: missions in tests, what it tells of a failure, what it costs those who do not need it."""
+"""The pytest plugin: missions in tests, its report of a failure, and its cost for tests that do not use it."""
 
 from __future__ import annotations
 

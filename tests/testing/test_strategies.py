@@ -1,4 +1,4 @@
-"""The strategies: what they give is good, or bad in the way that was asked for; and small where it fails."""
+"""The strategies: their values are valid, or invalid in the requested way, and small if they fail."""
 
 from __future__ import annotations
 

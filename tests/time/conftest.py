@@ -28,7 +28,7 @@ class App(NamedTuple):
 
 
 class World:
-    """TIME and what it needs; it is its own ES, bus, event services and board."""
+    """TIME and its peers; this object is its own ES, bus, event services and board."""
 
     def __init__(
         self, start_ns: int = 351_000_000, tick_ns: int = 0, kept: dict[str, Any] | None = None, **config: Any
@@ -118,7 +118,7 @@ class World:
         self.kernel.run(self.kernel.now + int(seconds * SECOND_NS))
 
     def call(self, function: Callable[[], Result], app_id: int = APP_ID) -> Result:
-        """What a function returns or raises in a task of an application."""
+        """Return the result of a function in a task of an application, or raise its exception."""
         results: list[Result] = []
         self.kernel.spawn("caller", lambda: results.append(function()), 100, App(app_id, "APP"))
         self.kernel.run(self.kernel.now)
@@ -134,17 +134,17 @@ class World:
         return replies.command_counter, replies.error_counter
 
     def housekeeping(self) -> dict[str, Any]:
-        """The fields of a fresh housekeeping packet."""
+        """Return the fields of a fresh housekeeping packet."""
         self.command(0, msg_id=pk.SEND_HK_MID)
         return self._last(pk.HK_TLM_MID, pk.HOUSEKEEPING, TLM_HEADER_SIZE)
 
     def diagnostic(self) -> dict[str, Any]:
-        """The fields of a fresh diagnostic packet."""
+        """Return the fields of a fresh diagnostic packet."""
         self.command(pk.SEND_DIAGNOSTIC_CC)
         return self._last(pk.DIAG_TLM_MID, pk.DIAGNOSTIC, TLM_HEADER_SIZE)
 
     def tone_data(self) -> dict[str, Any]:
-        """The fields of the last message about a tone."""
+        """Return the fields of the last message about a tone."""
         return self._last(pk.DATA_CMD_MID, pk.TONE_DATA, CMD_HEADER_SIZE)
 
     def _last(self, msg_id: int, layout: Layout, offset: int) -> dict[str, Any]:

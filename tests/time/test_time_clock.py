@@ -1,4 +1,4 @@
-"""The clock on virtual time: what it shows, the tone that keeps it, and flywheel mode."""
+"""The clock on virtual time: its reading, the tone that keeps it, and flywheel mode."""
 
 from __future__ import annotations
 

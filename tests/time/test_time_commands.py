@@ -190,7 +190,7 @@ def test_housekeeping(running: World) -> None:
 
 
 def test_housekeeping_has_the_bytes_of_the_real_one(running: World) -> None:
-    """All but the time stamp and MET are those of a packet of the real system."""
+    """All bytes except time stamp and MET are from a packet of the real system."""
     running.housekeeping()
     real = bytes.fromhex(
         "0805c0030029000f462ba667000000000000e033ffff2500eb030000f0ea66a640420f00000000000000000000000000"

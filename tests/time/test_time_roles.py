@@ -1,4 +1,4 @@
-"""Other processors than a server with a simulated tone: clients, external sources, tones that are foretold, UTC."""
+"""Processors other than a server with a simulated tone: clients, external sources, predicted tones, UTC."""
 
 from __future__ import annotations
 
@@ -177,7 +177,7 @@ def test_a_good_tone_comes_a_second_after_the_last(client: World, micros: int, g
 
 
 def source(make: Make, kind: str, **config: bool) -> World:
-    """A server with an external source, at its first tone."""
+    """Return a server with an external source, at its first tone."""
     world = make(time_cfg_source=True, time_cfg_fake_tone=False, **{f"time_cfg_src_{kind}": True}, **config)
     world.start()
     world.run(0.5)
@@ -199,7 +199,7 @@ def test_an_external_met(make: Make) -> None:
 
 @pytest.mark.parametrize(("new_met", "sent"), [(2001, 2001), (2002, 2000), (1999, 2000)])
 def test_a_set_clock_does_not_believe_everything(make: Make, new_met: int, sent: int) -> None:
-    """The limit is half a second; what is beyond it makes the server tell its own time."""
+    """The limit is half a second. Beyond it, the server sends its own time."""
     world = source(make, "met")
     world.call(lambda: world.time.external_met((2000, 0)))
     world.run(0.01)

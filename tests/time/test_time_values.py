@@ -140,7 +140,7 @@ def test_more_microseconds_are_not_fewer_subseconds(first: int, second: int) -> 
 
 @given(U32)
 def test_subseconds_come_back_from_microseconds_within_one(subseconds: int) -> None:
-    """A microsecond is 4294.97 subseconds, so what is lost is less than that."""
+    """A microsecond is 4294.97 subseconds, so the loss is less than that."""
     assert 0 <= subseconds - micro2sub_secs(sub2micro_secs(subseconds)) + 1 <= 4295
 
 
@@ -173,7 +173,7 @@ def test_conversions_refuse_what_is_no_fraction_of_a_second(convert: object) -> 
     ],
 )
 def test_print(time: tuple[int, int], text: str) -> None:
-    """cTIME2020: as the real system shows them; the third is an event of its log file."""
+    """cTIME2020: the texts of the real system; the third is an event of its log file."""
     assert print_(time) == text
 
 

@@ -1,9 +1,9 @@
 """A mission with SBN and another processor on its network, in real time: a mission, or NASA's cFE with NASA's SBN.
 
-NASA's SBN (github.com/nasa/SBN, main) builds with cFE 7.0.0 as an application, with `sbn_udp` and `sbn_f_remap`, when
-its CMakeLists.txt also has a folder with a header cfe_sb_events.h that includes cfe_sb_eventids.h, and
+NASA's SBN (github.com/nasa/SBN, main) builds with cFE 7.0.0 as an application, with `sbn_udp` and `sbn_f_remap`. Its
+CMakeLists.txt must also have a folder with a header cfe_sb_events.h that includes cfe_sb_eventids.h, and
 `add_definitions(-DCFE_SB_SUB_ENTRIES_PER_PKT=CFE_MISSION_SB_SUB_ENTRIES_PER_PKT)`. git must have checked it out, so
-that SBN_IDENT is what it is. For a client of the time, cfe_time_internal_cfg.h says so in place of a server.
+that SBN_IDENT has its value. For a client of the time, cfe_time_internal_cfg.h selects it in place of a server.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ class Paced:
     """A mission in real time with its ports open.
 
     Args:
-        mission: what is flown.
+        mission: the mission to fly.
         ports: numbers of this computer in place of the mission's.
 
     Attributes:
-        mission: it.
+        mission: the mission.
         seen: packets on its bus, in order.
-        heard: datagrams that came in.
+        heard: received datagrams.
     """
 
     def __init__(self, mission: str, ports: Mapping[int, int] | None = None) -> None:
@@ -81,11 +81,11 @@ class Paced:
         self.run_while(lambda: self.mission.kernel.now < end_ns)
 
     def packets(self, msg_id: int) -> list[bytes]:
-        """The packets of a MsgId so far."""
+        """Return the packets of a MsgId so far."""
         return [each.packet for each in self.seen if each.msg_id == msg_id]
 
     def says(self, text: str) -> bool:
-        """Whether a line of the console has a text."""
+        """Return whether a line of the console has a text."""
         return any(text in line for line in self.mission.console.lines)
 
     def send(self, packet: bytes) -> None:

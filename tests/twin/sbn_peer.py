@@ -1,6 +1,6 @@
-"""A processor that is nothing but its SBN messages, as a peer of NASA's cFE or of a mission in virtual time.
+"""A processor that consists of its SBN messages, as a peer of NASA's cFE or of a mission in virtual time.
 
-As the server of the time it tells a client's tones, and asks the client what it made of them.
+As the server of the time, it sends a client's tones, and requests the client's results.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ HK_OF_CLIENT = 0x0825  # as the remapping table of missions/pair has it
 
 
 class SbnPeer(ABC):
-    """A processor, 1 if nothing else is said, as the other one sees it.
+    """A processor, by default number 1, as the other one sees it.
 
     Attributes:
         processor: its id.
@@ -41,7 +41,7 @@ class SbnPeer(ABC):
 
     @abstractmethod
     def receive(self, within_s: float) -> bytes | None:
-        """The next datagram of the other processor; None when none came in that time."""
+        """Return the next datagram of the other processor, or None if there is none in that time."""
 
     @abstractmethod
     def pause(self, seconds: float) -> None:
@@ -60,7 +60,7 @@ class SbnPeer(ABC):
         self.send(pr.SUB_MSG, pr.pack_subscriptions([pr.Sub(msg_id) for msg_id in msg_ids], pr.IDENT))
 
     def packet(self, msg_id: int) -> bytes:
-        """The next packet of a MsgId; those before it, and all other messages, are left out."""
+        """Return the next packet of a MsgId. Packets before it, and all other messages, are dropped."""
         for _ in range(1000):
             data = self.receive(LIMIT_S)
             if data is None:
@@ -126,22 +126,22 @@ class VirtualPeer(SbnPeer):
 
 
 def tone_data(met: int, state: int, stcf: int, leaps: int) -> bytes:
-    """What a server tells of a tone."""
+    """Return a server's data of a tone."""
     return time.DATA_CMD.packet(
         AtToneMET={"Seconds": met}, AtToneSTCF={"Seconds": stcf}, AtToneLeapSeconds=leaps, AtToneState=state
     )
 
 
 def serve_time(peer: SbnPeer, tones: Sequence[tuple[int, int, int] | None]) -> Iterator[dict[str, object]]:
-    """Be the server of a client's time.
+    """Act as the server of a client's time.
 
     Args:
         peer: the server.
-        tones: for each tone of the client the state of the server's clock, STCF, leap seconds; None tells it nothing.
+        tones: for each tone of the client the state of the server's clock, STCF, leap seconds; None sends nothing.
 
     Yields:
-        The client's housekeeping of its time in the middle of the second after each tone, without what differs from run
-        to run: counters, and subseconds.
+        The client's housekeeping of its time in the middle of the second after each tone, without the parts that vary
+        between runs: counters, and subseconds.
     """
     peer.join([time.ONEHZ_CMD.msg_id, HK_OF_CLIENT])
     for number, tone in enumerate(tones):

@@ -1,4 +1,4 @@
-"""API calls answer as on NASA's cFE: as a real one did, and, where it is installed, as it does."""
+"""API calls answer as on NASA's cFE: compared with recorded answers, and with a real one if it is installed."""
 
 from __future__ import annotations
 

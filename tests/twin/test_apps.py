@@ -1,4 +1,4 @@
-"""Ground commands of NASA's flight applications: what is sent, and, where they are built, that both answer alike."""
+"""Ground commands of NASA's flight applications: their packets, and equal answers of both if they are built."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BUILT = installed()
 needs_apps = pytest.mark.skipif(
     BUILT is None or not (BUILT / "cf/lc.so").exists(), reason=f"{VARIABLE} names no folder with LC's code"
 )
-ENOUGH = 1500  # steps in which every command was
+ENOUGH = 1500  # steps that include every command
 
 
 def test_every_command_is_flown() -> None:

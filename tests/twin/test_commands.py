@@ -1,7 +1,7 @@
-"""Random ground commands, to the letter: what NASA's cFE answers to them, ours answers.
+"""Random ground commands, byte for byte: the same answers as NASA's cFE.
 
-The answers are on record; where NASA's executable is installed (CFEPY_REAL_CFE says where), it is asked as well. More
-commands than here are flown by `python -m dev.twin`.
+The answers are on record. If NASA's executable is installed (CFEPY_REAL_CFE names it), it is asked as well.
+`python -m dev.twin` flies more commands.
 """
 
 from __future__ import annotations

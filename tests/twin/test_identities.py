@@ -1,4 +1,4 @@
-"""Spacecraft and processor ids beside NASA's executable, which has `--scid` and `--cpuid` for them."""
+"""Spacecraft and processor ids compared with NASA's executable, which has `--scid` and `--cpuid` for them."""
 
 from __future__ import annotations
 

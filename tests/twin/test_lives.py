@@ -1,4 +1,4 @@
-"""Ends of applications, resets and ground tones on NASA's cFE, on record: ours answers each step alike."""
+"""Ends of applications, resets and ground tones on NASA's cFE, on record: cfepy answers each step alike."""
 
 from __future__ import annotations
 

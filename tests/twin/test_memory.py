@@ -1,4 +1,4 @@
-"""Memory that MM, MD and CS work on: what is sent, and, where NASA's are built, that both answer alike."""
+"""Memory for MM, MD and CS: the packets sent, and equal answers of both if NASA's are built."""
 
 from __future__ import annotations
 

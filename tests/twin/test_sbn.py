@@ -31,7 +31,7 @@ TO_SERVER = (*((1, msg_id, NOWHERE) for msg_id in (*CORE_COMMANDS, 0x1862)), (1,
 
 
 def counter(packets: list[bytes]) -> int:
-    """SAMPLE_APP's counter of commands, as it was told last."""
+    """Return SAMPLE_APP's last reported counter of commands."""
     return packets[-1][17] if packets else -1
 
 
@@ -74,7 +74,7 @@ def test_a_mission_and_nasas_sbn(tmp_path: Path) -> None:
 
 
 def assert_bytes_are_ours(flight: Paced) -> None:
-    """Everything that NASA's SBN sent is what cfepy's would have sent in its place, byte for byte."""
+    """Assert that everything that NASA's SBN sent equals what cfepy's would have sent, byte for byte."""
     kinds = set()
     for data in flight.heard:
         message = pr.unpack(data, 32_768)
@@ -88,10 +88,10 @@ def assert_bytes_are_ours(flight: Paced) -> None:
 
 
 def said_by_client(folder: Path, code: list[Path]) -> list[tuple[int, bytes | int]]:
-    """What processor 2 sends in 20 virtual seconds, in order: type, and payload, of packets their MsgId.
+    """Return the messages of processor 2 in 20 virtual seconds, in order: type and payload, or the MsgId of packets.
 
     Args:
-        folder: for its mission.
+        folder: folder for its mission.
         code: files of compiled code in place of cfepy's SBN.
     """
     shutil.copytree(PAIR, folder)
@@ -114,7 +114,10 @@ def said_by_client(folder: Path, code: list[Path]) -> list[tuple[int, bytes | in
 @needs_sbn
 @pytest.mark.slow
 def test_nasas_sbn_as_compiled_code_says_what_cfepys_says(tmp_path: Path) -> None:
-    """The same shared objects as above, in virtual time; but that cfepy's tells its subscriptions once more."""
+    """The same shared objects as above, in virtual time.
+
+    The only difference is that cfepy's sends its subscriptions once more.
+    """
     assert SERVER is not None
     code = [SERVER / "cf" / name for name in ("sbn.so", "sbn_udp.so", "sbn_f_remap.so")]
     own = said_by_client(tmp_path / "own", [])

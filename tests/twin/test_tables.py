@@ -1,4 +1,4 @@
-"""Flights of tables on NASA's cFE 7.0.0 and 7.0.1, on record: ours answers each step alike."""
+"""Flights of tables on NASA's cFE 7.0.0 and 7.0.1, on record: cfepy answers each step alike."""
 
 from __future__ import annotations
 

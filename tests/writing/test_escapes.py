@@ -1,4 +1,4 @@
-"""Control characters as text: what a terminal would obey is shown, and colours of nodes stay."""
+"""Control characters as text: sequences that a terminal would execute are shown, and colours of nodes stay."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """HK's default copy table: the first four bytes of every core service's housekeeping, side by side in packet 0x089C.
 
-NASA's own default copies from offset 12, four spare bytes before the payload; here the data starts at 16, where
-telemetry payloads start. After a change: `python -m apps.hk.tables.hk_cpy_tbl` writes hk_cpy_tbl.tbl anew.
+NASA's own default copies from offset 12, four spare bytes before the payload. Here the data starts at 16, where
+telemetry payloads start. After a change, `python -m apps.hk.tables.hk_cpy_tbl` rewrites hk_cpy_tbl.tbl.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ ROWS = [
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return COPY_TABLE.image(ROWS)
 
 

@@ -1,6 +1,6 @@
 """SAMPLE_APP's default table.
 
-After a change: `python -m apps.sample_app.tables.sample_app_tbl` writes sample_app_tbl.tbl anew.
+After a change, `python -m apps.sample_app.tables.sample_app_tbl` rewrites sample_app_tbl.tbl.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from ..packets import TABLE
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return TABLE.image({"Int1": 1, "Int2": 2})
 
 

@@ -1,6 +1,6 @@
 """SBN's default configuration, NASA's: three processors of a spacecraft on one computer, by UDP.
 
-After a change: `python -m apps.sbn.tables.sbn_conf_tbl` writes sbn_conf_tbl.tbl anew.
+After a change, `python -m apps.sbn.tables.sbn_conf_tbl` rewrites sbn_conf_tbl.tbl.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ SPACECRAFT = 0x42
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return configuration([peer(number, f"127.0.0.1:{2233 + number}", SPACECRAFT) for number in (1, 2, 3)])
 
 

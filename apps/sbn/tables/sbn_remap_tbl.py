@@ -1,6 +1,6 @@
-"""SBN's default remapping, NASA's: one MsgId is another one at processor 3, all others are what they are.
+"""SBN's default remapping, NASA's: one MsgId changes at processor 3, all others stay.
 
-After a change: `python -m apps.sbn.tables.sbn_remap_tbl` writes sbn_remap_tbl.tbl anew.
+After a change, `python -m apps.sbn.tables.sbn_remap_tbl` rewrites sbn_remap_tbl.tbl.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from ..definition import remapping
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return remapping([(3, 0x0882, 0x0883)])
 
 

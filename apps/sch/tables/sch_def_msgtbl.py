@@ -1,6 +1,6 @@
 """SCH's default messages, NASA's: a housekeeping request to every core service and to SCH itself.
 
-After a change: `python -m apps.sch.tables.sch_def_msgtbl` writes sch_def_msgtbl.tbl anew.
+After a change, `python -m apps.sch.tables.sch_def_msgtbl` rewrites sch_def_msgtbl.tbl.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ REQUESTS = {ES_HK: 0x1808, EVS_HK: 0x1809, SB_HK: 0x180B, TIME_HK: 0x180D, TBL_H
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return message_image({index: init(msg_id, CMD_HEADER_SIZE) for index, msg_id in REQUESTS.items()})
 
 

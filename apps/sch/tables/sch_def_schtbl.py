@@ -1,6 +1,6 @@
 """SCH's default schedule, NASA's: every four seconds a housekeeping request to each core service and to SCH itself.
 
-After a change: `python -m apps.sch.tables.sch_def_schtbl` writes sch_def_schtbl.tbl anew.
+After a change, `python -m apps.sch.tables.sch_def_schtbl` rewrites sch_def_schtbl.tbl.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ SLOTS = {
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return schedule_image(SLOTS)
 
 

@@ -1,6 +1,6 @@
 """SCH_LAB's default schedule, NASA's: a housekeeping request to every core service and lab app about once a second.
 
-After a change: `python -m apps.sch_lab.tables.sch_lab_table` writes sch_lab_table.tbl anew.
+After a change, `python -m apps.sch_lab.tables.sch_lab_table` rewrites sch_lab_table.tbl.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ ROWS: list[tuple[int, int, int, bytes]] = [
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return schedule.image(TICKS_PER_SECOND, ROWS)
 
 

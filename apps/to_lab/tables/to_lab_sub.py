@@ -1,6 +1,6 @@
-"""TO_LAB's default table, NASA's: which packets go to the ground, and how many of each may wait for it.
+"""TO_LAB's default table, NASA's: the packets that go to the ground, and how many of each may wait for it.
 
-After a change: `python -m apps.to_lab.tables.to_lab_sub` writes to_lab_sub.tbl anew.
+After a change, `python -m apps.to_lab.tables.to_lab_sub` rewrites to_lab_sub.tbl.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ ROWS = [
 
 
 def image() -> TableImage:
-    """The table."""
+    """Return the table."""
     return SUBSCRIPTIONS.image([{"Stream": msg_id, "BufLimit": limit} for msg_id, limit in ROWS])
 
 

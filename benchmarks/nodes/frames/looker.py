@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Looks up a transform through a chain of ten frames, between two samples of each; prints a line every 100 times."""
+"""Looks up a transform through a chain of ten frames, between two samples of each. Prints a line every 100 times."""
 
 import math
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sends each JointState back that it gets."""
+"""Sends back each JointState that it receives."""
 
 import rospy
 from sensor_msgs.msg import JointState

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Sends a JointState of seven joints, and the next one when the answer is there; tells when so many were answered."""
+"""Sends a JointState of seven joints, and the next one after the answer. Prints a line after a number of answers."""
 
 import rospy
 from sensor_msgs.msg import JointState

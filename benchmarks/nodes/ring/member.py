@@ -1,4 +1,4 @@
-"""One node of a ring: publishes on a topic of its own at a rate, and listens to the next one's."""
+"""One node of a ring: publishes on its own topic at a rate, and listens to the next one's."""
 
 import rospy
 from std_msgs.msg import UInt32

@@ -1,4 +1,4 @@
-"""Sends back what comes: a node for both worlds. Its argument is the name of its topics; `mission` without one."""
+"""Echoes messages, as a node of both worlds. Its argument is the name of its topics; `mission` without one."""
 
 import sys
 

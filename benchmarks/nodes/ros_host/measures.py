@@ -1,6 +1,7 @@
-"""Sends messages to two nodes that echo, a series to the one, then one to the other, and prints how long they took.
+"""Sends series of messages to two echo nodes by turns, and prints their round-trip times.
 
-Arguments: names of the two, how many series of each, messages a series. A line for each: its name and the median in us.
+Arguments: names of the two, how many series of each, messages per series. It prints a line for each: its name and the
+median in us.
 """
 
 import statistics
@@ -24,7 +25,7 @@ for name in names:
 
 
 def ask(name):
-    """One message there and back; seconds, or None when nothing came."""
+    """Send one message and wait for its echo. Returns the seconds, or None without an echo."""
     came.clear()
     begun = time.perf_counter()
     asks[name].publish(JointState(name=[f"joint{number}" for number in range(7)], position=[0.1] * 7))

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Calls a service again and again; with the argument "persistent" through a connection that stays."""
+"""Calls a service repeatedly; with the argument "persistent" over one connection."""
 
 import sys
 

@@ -1,6 +1,6 @@
-"""`python -m dev.c.api [NAME ...]`: flies the applications on NASA's cFE and writes down what they say.
+"""`python -m dev.c.api [NAME ...]`: flies the applications on NASA's cFE and records their output.
 
-CFEPY_REAL_CFE says where the folder of NASA's core-cpu1 is, built from cFE 7.0.0 for Linux.
+CFEPY_REAL_CFE names the folder of NASA's core-cpu1, built from cFE 7.0.0 for Linux.
 """
 
 from __future__ import annotations

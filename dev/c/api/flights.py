@@ -1,4 +1,4 @@
-"""Builds and flies the applications of these tests, here and on NASA's cFE."""
+"""Build and fly the applications of these tests, on cfepy and on NASA's cFE."""
 
 from __future__ import annotations
 
@@ -37,12 +37,12 @@ def build(name: str, folder: Path, *flags: str) -> Path:
 
 
 def expected(name: str) -> list[str]:
-    """What an application wrote on NASA's cFE."""
+    """Return the recorded output of an application on NASA's cFE."""
     return (HERE / f"{name}.txt").read_text(encoding="utf-8").splitlines()
 
 
 def said(console: str) -> list[str]:
-    """What APITEST wrote into the system log, and what the services said meanwhile, without times and addresses."""
+    """Return the system log lines of APITEST and of the services, without times and addresses."""
     lines = [_ADDRESS.sub("ADDRESS", _TIME.sub("", line)).rstrip() for line in console.splitlines()]
     first = next((number for number, line in enumerate(lines) if line.startswith(MARK)), 0)
     last = next((number for number, line in enumerate(lines) if line.startswith(END)), len(lines))
@@ -72,7 +72,7 @@ def fly(name: str, folder: Path, tasks: str = "thread", *, flags: tuple[str, ...
 
 
 def fly_on_real_cfe(name: str, built: Path, folder: Path) -> list[str]:
-    """Fly an application on NASA's cFE, whose executable is in the folder `built`."""
+    """Fly an application on NASA's cFE, whose executable is in the folder `built`. Returns its log lines."""
     library = build(name, folder)
     files = {"/cf/apitest.so": library.read_bytes(), "/cf/cfe_es_startup.scr": STARTUP.encode()}
     run = folder / "run"

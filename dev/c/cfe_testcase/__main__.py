@@ -1,6 +1,6 @@
 """`python -m dev.c.cfe_testcase FOLDER`: flies NASA's functional tests of cFE, and compares with NASA's own run.
 
-They fly on threads, on greenlets and once more on threads, in one process; all have to give the same trace.
+One process flies them on threads, on greenlets and on threads again. All three runs must give the same trace.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ FLIGHTS = ("thread", "greenlet", "thread")
 
 
 def main() -> None:
-    """Fly, compare, report; status 1 when anything failed."""
+    """Fly, compare and report. Exit status 1 if anything failed."""
     parser = argparse.ArgumentParser(prog="python -m dev.c.cfe_testcase", description=__doc__)
     parser.add_argument("folder", type=Path, help="has cfe_testcase.so and the like: exe/cpu1/cf of a cFS build")
     parser.add_argument("--once", action="store_true", help="fly once, on threads")
@@ -31,7 +31,10 @@ def main() -> None:
 
 
 def report(results: list[Result]) -> int:
-    """Show the segments of the first flight beside NASA's, and whether the flights were the same; an exit status."""
+    """Print the segments of the first flight beside NASA's, and whether the flights were identical.
+
+    Returns an exit status.
+    """
     nasa, first = of_nasa(), results[0]
     print("| segment | passed | failed | by hand | left out | NASA: passed, by hand, left out |")
     print("|---|---|---|---|---|---|")
@@ -47,7 +50,7 @@ def report(results: list[Result]) -> int:
 
 
 def row(segment: Segment, nasa: tuple[int, int, int] | None) -> str:
-    """A line of the table, with NASA's counts where they are others."""
+    """Return a line of the table, with NASA's counts where they are others."""
     ours = segment.passed, segment.by_hand, segment.left_out
     others = "the same" if nasa == ours else "-" if nasa is None else ", ".join(map(str, nasa))
     name = f"{segment.number} {segment.name}"

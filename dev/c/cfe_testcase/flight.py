@@ -1,4 +1,4 @@
-"""A mission of NASA's functional tests: made from a folder of shared objects, flown, and its log read."""
+"""Make a mission of NASA's functional tests from a folder of shared objects, fly it and read its log."""
 
 from __future__ import annotations
 
@@ -45,12 +45,12 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What a flight gave.
+    """Results of one flight.
 
     Attributes:
-        segments: what ended.
-        is_complete: whether the tests came to their end.
-        digest: of the trace.
+        segments: the finished segments.
+        is_complete: whether the tests ran to their end.
+        digest: digest of the trace.
     """
 
     segments: tuple[Segment, ...]
@@ -62,11 +62,11 @@ def make_mission(source: Path, folder: Path) -> str:
     """Make the mission.
 
     Args:
-        source: has the shared objects and table files.
-        folder: of the mission.
+        source: folder with the shared objects and table files.
+        folder: folder of the mission.
 
     Returns:
-        What `Mission` takes.
+        The argument for `Mission`.
     """
     for pattern in ("*.so", "*.tbl"):
         for file in source.glob(pattern):
@@ -86,7 +86,7 @@ def fly(mission: str, tasks: str) -> Result:
 
 
 def read(log: str) -> list[Segment]:
-    """The segments in a log of cfe_assert, without the sums at its end."""
+    """Return the segments in a log of cfe_assert, without the sums at its end."""
     segments = []
     aborted = left_out = 0
     for line in log.splitlines():
@@ -101,6 +101,6 @@ def read(log: str) -> list[Segment]:
 
 
 def of_nasa() -> dict[int, tuple[int, int, int]]:
-    """Of each segment in NASA's own run, on its cFE 7.0.0 on Linux: passed, by hand, left out."""
+    """Return the counts of each segment in NASA's own run on cFE 7.0.0 on Linux: passed, by hand, left out."""
     rows = (line.split() for line in NASA.read_text(encoding="utf-8").splitlines() if not line.startswith("#"))
     return {int(number): (int(passed), int(by_hand), int(out)) for number, passed, by_hand, out in rows}

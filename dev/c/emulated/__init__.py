@@ -1,5 +1,5 @@
-"""An aarch64 computer for tests of compiled applications on any other: Python and C under qemu's user emulation.
+"""An emulated aarch64 computer, to test compiled applications on a foreign processor: Python and C under qemu-user.
 
-`python -m dev.c.emulated FOLDER` makes the root folder of one: Debian's Python for arm64, its headers and libraries,
-and the packages that cfepy needs. CFEPY_AARCH64_ROOT names it for the tests.
+`python -m dev.c.emulated FOLDER` makes its root folder: Debian's Python for arm64, its headers and libraries,
+and the packages that cfepy needs. The tests find it through CFEPY_AARCH64_ROOT.
 """

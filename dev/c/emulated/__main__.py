@@ -1,4 +1,4 @@
-"""`python -m dev.c.emulated FOLDER`: makes the root of an emulated computer."""
+"""`python -m dev.c.emulated FOLDER`: makes the root folder of an emulated computer."""
 
 from __future__ import annotations
 

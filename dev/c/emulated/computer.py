@@ -1,4 +1,4 @@
-"""The emulated computer: a virtual environment whose interpreter is aarch64's, started by qemu-aarch64."""
+"""The emulated computer: a virtual environment with an aarch64 interpreter, started by qemu-aarch64."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ exec {qemu} -L {root} -0 "$0" {python} "$@"
 
 
 def lacking() -> str | None:
-    """What is not there for emulation, in words; None if all is there."""
+    """Return which parts of the emulation are missing, in words, or None if it is complete."""
     for program in (QEMU, *COMPILERS.values()):
         if shutil.which(program) is None:
             return f"{program} is not installed"
@@ -32,7 +32,7 @@ class Computer:
 
     Args:
         root: its root folder, as `dev.c.emulated.root` makes it.
-        folder: where its virtual environment and what it builds go.
+        folder: folder for its virtual environment and its build results.
     """
 
     def __init__(self, root: Path, folder: Path) -> None:
@@ -52,7 +52,7 @@ class Computer:
         self._compilers = {name: f"{command} -idirafter {root}/usr/include" for name, command in COMPILERS.items()}
 
     def run(self, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-        """Run its Python; what it writes is in `stdout`."""
+        """Run its Python. The output is in `stdout`."""
         environment = {
             **os.environ,
             **self._compilers,

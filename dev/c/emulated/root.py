@@ -1,4 +1,4 @@
-"""Makes the root folder of an emulated computer, without touching the packages of this one."""
+"""Make the root folder of an emulated computer, without touching the packages of the host."""
 
 from __future__ import annotations
 
@@ -30,10 +30,10 @@ def make_root(root: Path) -> None:
     """Fetch and unpack Debian's Python for arm64, and the packages that cfepy and its tests need.
 
     Args:
-        root: the folder; it is made.
+        root: the folder; it is created.
 
     Raises:
-        subprocess.CalledProcessError: apt-get, dpkg-deb or pip failed; they say why.
+        subprocess.CalledProcessError: apt-get, dpkg-deb or pip failed; its output gives the reason.
     """
     apt = root / "apt"
     for each in ("etc/apt/preferences.d", "var/lib/apt/lists/partial", "var/cache/apt/archives/partial"):

@@ -1,4 +1,4 @@
-"""OSAL's own tests, functional ones and those of its interface, compiled from NASA's sources and flown here.
+"""OSAL's functional tests and coverage of its interface, compiled from NASA's sources and flown on cfepy.
 
-`python -m dev.c.osal_tests SOURCES` builds and flies them; nothing of NASA's is part of this repository.
+`python -m dev.c.osal_tests SOURCES` builds and flies them. This repository contains none of NASA's files.
 """

@@ -1,4 +1,4 @@
-"""`python -m dev.c.osal_tests SOURCES [TEST ...]`: builds and flies OSAL's own tests, and shows a table."""
+"""`python -m dev.c.osal_tests SOURCES [TEST ...]`: builds and flies OSAL's own tests, and prints a table."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def fly_all(sources: Path, folder: Path, names: list[str], tasks: str, shows: bo
 
 
 def row(result: Result) -> str:
-    """A line of the table."""
+    """Return a line of the table."""
     good = sum(segment.passes for segment in result.segments)
     counts = " | ".join(str(result.count(kind)) for kind in ("PASS", "FAIL", "MIR"))
     ended = "" if result.is_complete else " (not to its end)"
@@ -51,7 +51,7 @@ def row(result: Result) -> str:
 
 
 def report(results: list[Result]) -> None:
-    """What failed, and the sums."""
+    """Print the failed tests and the totals."""
     for result in results:
         for segment in result.segments:
             for failure in segment.failures:

@@ -1,4 +1,4 @@
-"""Compiles OSAL's tests: each as a shared object, with ut_assert and our driver in place of its main program."""
+"""Compile each of OSAL's tests into a shared object, with ut_assert and a driver in place of its main program."""
 
 from __future__ import annotations
 
@@ -36,13 +36,13 @@ class Builder:
         self._write_osconfig()
 
     def tests(self) -> list[Path]:
-        """The folders of all tests."""
+        """Return the folders of all tests."""
         return sorted(
             folder for each in SETS for folder in (self.sources / each).iterdir() if folder.name.endswith("-test")
         )
 
     def build(self, test: Path, folder: Path) -> Path:
-        """Compile a test into a folder; its shared object."""
+        """Compile a test into a folder. Returns the shared object."""
         files = [each for each in sorted(test.glob("*.c")) if each.name != MODULE_SOURCE]
         files += [self.sources / "ut_assert" / "src" / name for name in ASSERT]
         made = folder / OBJECT
@@ -72,7 +72,7 @@ class Builder:
             raise SystemExit(f"{made} cannot be compiled:\n{done.stderr}")
 
     def _settings(self) -> dict[str, str]:
-        """What OSAL is built with by default, with the limits that it has here."""
+        """Return OSAL's default build settings, with cfepy's limits."""
         text = (self.sources / "default_config.cmake").read_text(encoding="utf-8")
         values = dict(re.findall(r'^\s*set\((\w+)\s+"?([^\s")]*)"?', text, re.M))
         config = PlatformConfig()
@@ -92,7 +92,7 @@ class Builder:
         return values
 
     def _write_osconfig(self) -> None:
-        """What CMake makes of osconfig.h.in."""
+        """Write osconfig.h from osconfig.h.in, as CMake does."""
         text = (self.sources / "osconfig.h.in").read_text(encoding="utf-8")
         values = self._values
         text = re.sub(

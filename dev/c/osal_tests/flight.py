@@ -1,4 +1,4 @@
-"""Flies a test of OSAL's and counts what it says."""
+"""Fly one of OSAL's tests and count its results."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Segment:
 
     @property
     def has_cases(self) -> bool:
-        """Whether anything was tested; what only prepares or cleans up is no segment for ut_assert either."""
+        """Whether the segment tested anything. ut_assert also ignores segments that only prepare or clean up."""
         return any(self.counts[kind] for kind in (*_FAILED, "PASS", "MIR", "N/A"))
 
     @property
@@ -38,13 +38,13 @@ class Segment:
 
 @dataclass
 class Result:
-    """What a test said.
+    """Results of a test.
 
     Attributes:
-        name: of the test.
+        name: name of the test.
         segments: its segments.
-        is_complete: whether it came to its end.
-        lines: the console.
+        is_complete: whether it ran to its end.
+        lines: the console output.
     """
 
     name: str
@@ -53,12 +53,12 @@ class Result:
     lines: list[str]
 
     def count(self, kind: str) -> int:
-        """How many lines of a kind there are, such as PASS."""
+        """Return how many lines of a kind there are, such as PASS."""
         return sum(segment.counts[kind] for segment in self.segments)
 
 
 def read(name: str, lines: list[str]) -> Result:
-    """The result that a console shows."""
+    """Return the result that a console shows."""
     segments: list[Segment] = []
     is_complete = False
     for line in lines:
@@ -80,8 +80,8 @@ def fly(folder: Path, name: str, tasks: str = "thread") -> Result:
     """Fly the test of a folder, osaltest.so, to its end.
 
     Args:
-        folder: the mission's; its startup script is written.
-        name: of the test.
+        folder: folder of the mission; its startup script is written there.
+        name: name of the test.
         tasks: the kind of tasks, "thread" or "greenlet".
     """
     (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")

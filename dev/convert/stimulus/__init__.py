@@ -1,1 +1,1 @@
-"""Public nodes that convert, with random stimulus, on cfepy and with Debian's roscpp beside it."""
+"""Run public nodes that convert with a random stimulus, on cfepy and with Debian's roscpp."""

@@ -1,8 +1,9 @@
 """Public nodes that convert beside Debian's roscpp: `python -m dev.convert.stimulus SOURCES [--json FILE]`.
 
-SOURCES is the folder of `dev.convert.survey`. Each node that converts for the host is built as it is with Debian's
-roscpp, and by cfepy. A driver sends both the same random messages and requests for five seconds, twice with roscpp, and
-all that the node publishes, answers and prints is compared. `--report` writes results.tsv and docs/how_to/convertor.md.
+SOURCES is the folder of `dev.convert.survey`. Each node that converts for the host is built unchanged with Debian's
+roscpp, and by cfepy. A driver sends both the same random messages and requests for five seconds, twice with roscpp.
+Everything that the node publishes, answers and prints is compared. `--report` writes results.tsv and
+docs/how_to/convertor.md.
 """
 
 from __future__ import annotations
@@ -33,13 +34,13 @@ SCENES = HERE / "scenes.json"
 
 
 def scene_of(name: str) -> Scene:
-    """What a node needs around it."""
+    """Return the environment that a node needs."""
     found = json.loads(SCENES.read_text(encoding="utf-8")).get(name, {})
     return Scene(**found)
 
 
 def tried(node: Node, sources: Path, folder: Path, seed: int) -> dict[str, Any]:
-    """Run a node on both sides; plain values."""
+    """Run a node on both sides. Returns plain values."""
     name = f"{node.repository}/{node.file}"
     scene = scene_of(name)
     environ = {"ROS_PACKAGE_PATH": f"{sources / node.repository}{os.pathsep}{sources / '_messages'}"}
@@ -78,7 +79,7 @@ def tried(node: Node, sources: Path, folder: Path, seed: int) -> dict[str, Any]:
             return {**made, "verdict": "not driven", "why": each.note[:500]}
     parts = compared(first, first, ours)
     if any(each.likeness is Likeness.DIFFERENT for each in parts):
-        parts = compared(first, debian.run(told, scene), ours)  # what is chance
+        parts = compared(first, debian.run(told, scene), ours)  # nondeterministic parts
     worst = "different" if any(each.likeness is Likeness.DIFFERENT for each in parts) else "equal"
     return {**made, "verdict": worst, "seen": seen._asdict(), "parts": [each._asdict() for each in parts]}
 

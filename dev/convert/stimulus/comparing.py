@@ -1,4 +1,4 @@
-"""Whether a node does on cfepy what it does with roscpp; what two runs of roscpp do not agree on is chance."""
+"""Compare a node on cfepy with the same node on roscpp. Differences between two runs of roscpp count as chance."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Part(NamedTuple):
 
 
 def compared(first: Outcome, second: Outcome, ours: Outcome) -> list[Part]:
-    """The parts of three runs.
+    """Return the parts of three runs.
 
     Args:
         first, second: with roscpp.
@@ -86,7 +86,7 @@ def _part(name: str, runs: list[list[Any]]) -> Part:
 
 
 def example(one: list[Any], other: list[Any]) -> str:
-    """What differs first."""
+    """Return the first difference."""
     for number, (first, second) in enumerate(zip(one, other, strict=False)):
         places = list(different_places(first, second))
         if places and places != [SEQ]:
@@ -98,7 +98,7 @@ def example(one: list[Any], other: list[Any]) -> str:
 
 
 def shown(value: Any, place: str) -> str:
-    """What is at a place, where no list is on the way."""
+    """Return the part of a value at a place with no list on the way."""
     for name in place.split(".")[1:]:
         if not isinstance(value, dict) or (name.endswith("[]") and name.removesuffix("[]") not in value):
             break
@@ -110,7 +110,7 @@ def shown(value: Any, place: str) -> str:
 
 
 def same(one: Sequence[Any], other: Sequence[Any]) -> bool:
-    """Whether both have the same, one after the other; what is repeated counts once, if it came about as often."""
+    """Return whether both sequences are equal. Repeated items count once if they came about equally often."""
     if len(one) == len(other) and all(map(alike, one, other)):
         return True
     first, second = short(one), short(other)
@@ -118,7 +118,7 @@ def same(one: Sequence[Any], other: Sequence[Any]) -> bool:
 
 
 def common(one: Sequence[Any], other: Sequence[Any]) -> list[tuple[Any, Any]] | None:
-    """What both have in common when one was there earlier or longer: pairs that are alike, or None."""
+    """Return the common part if one run began earlier or lasted longer: pairs of equal items, or None."""
     if not one or not other or not as_often(one, other):
         return None
     first, second = short(one), short(other)
@@ -131,7 +131,7 @@ def common(one: Sequence[Any], other: Sequence[Any]) -> list[tuple[Any, Any]] | 
 
 
 def short(run: Sequence[Any]) -> list[Any]:
-    """What was seen without what is like the one before it; the numbers of headers do not count."""
+    """Return the items without repetitions of their predecessor. Sequence numbers of headers do not count."""
     found: list[Any] = []
     for each in run:
         item = without(each, frozenset({SEQ}))
@@ -141,7 +141,7 @@ def short(run: Sequence[Any]) -> list[Any]:
 
 
 def as_often(one: Sequence[Any], other: Sequence[Any]) -> bool:
-    """Whether both came at about the same rate: a node may have been seen for a second longer."""
+    """Return whether both came at about the same rate: a node may have been seen for a second longer."""
     fewer, more = sorted((len(one), len(other)))
     return more <= MOST_LONGER * fewer + 2
 
@@ -150,12 +150,12 @@ def as_often(one: Sequence[Any], other: Sequence[Any]) -> bool:
 
 
 def alike(one: Any, other: Any) -> bool:
-    """Whether two plain values are the same, numbers nearly."""
+    """Return whether two plain values are the same, numbers nearly."""
     return next(different_places(one, other), None) is None
 
 
 def different_places(one: Any, other: Any, at: str = "") -> Iterator[str]:
-    """The places in which two plain values differ; items of lists have none of their own."""
+    """Yield the places where two plain values differ. Items of lists have no place of their own."""
     if isinstance(one, dict) and isinstance(other, dict) and one.keys() == other.keys():
         for name in one:
             yield from different_places(one[name], other[name], f"{at}.{name}")
@@ -170,7 +170,7 @@ def different_places(one: Any, other: Any, at: str = "") -> Iterator[str]:
 
 
 def without(value: Any, places: frozenset[str], at: str = "") -> Any:
-    """A plain value without what is at some places."""
+    """Return a plain value without the parts at some places."""
     if at in places:
         return "..."
     if isinstance(value, dict):

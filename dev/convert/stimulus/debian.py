@@ -1,7 +1,7 @@
-"""A node with Debian's roscpp: built as it is, and run beside a driver and a master of its own.
+"""A node with Debian's roscpp: built unchanged, and run beside a driver and its own master.
 
-It takes libroscpp-dev, the libraries that the node uses, python3-gencpp, python3-rospy and python3-rosmaster. Those of
-Debian's packages that are not installed may be in a folder that CFEPY_ROS_ROOT names, as `dpkg -x` unpacks them.
+It needs libroscpp-dev, the libraries that the node uses, python3-gencpp, python3-rospy and python3-rosmaster. Debian
+packages that are not installed may be in a folder that CFEPY_ROS_ROOT names, as `dpkg -x` unpacks them.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ TEMPLATES = ROOT / "usr/share/dynamic_reconfigure"
 
 
 class NotBuilt(Exception):
-    """A node that cannot be built with Debian's roscpp; the text says why."""
+    """A node that cannot be built with Debian's roscpp. The text gives the reason."""
 
 
 class RoscppNode:
@@ -151,7 +151,7 @@ class RoscppNode:
         self.generate(sorted({*self._with_nested(types)}))
 
     def generate(self, packages: list[str]) -> None:
-        """Make what Debian does not have of the messages of packages, for C++ and for Python."""
+        """Generate code for messages of packages that Debian does not have, for C++ and for Python."""
         job: dict[str, Any] = {"include": {}, "cpp": [], "python": []}
         for package in packages:
             job["include"][package] = [str(self._definitions(package))]
@@ -179,7 +179,7 @@ class RoscppNode:
         return folder
 
     def _with_nested(self, types: list[str]) -> Iterator[str]:
-        """The packages of types, and of all that their packages' types are made of."""
+        """Yield the packages of types, and of all that their packages' types are made of."""
         waiting, known = [each.partition("/")[0] for each in types], set()
         for package in waiting:
             if package in known:
@@ -208,8 +208,8 @@ class RoscppNode:
         """Run it beside the driver.
 
         Args:
-            script: of the driver.
-            scene: what the node needs.
+            script: script of the driver.
+            scene: the environment that the node needs.
         """
         (self._folder / "script.json").write_text(json.dumps(script), encoding="utf-8")
         told = self._folder / "driver.out"
@@ -242,13 +242,13 @@ class RoscppNode:
 
 
 def library_file(name: str) -> Path | None:
-    """Where a library is; an unpacked package for compilers has but a link to what is installed."""
+    """Return the path of a library. An unpacked package for compilers only has a link to the installed library."""
     places = (file for root in ROOTS for file in sorted((root / "lib" / TRIPLET).glob(f"lib{name}.so*")))
     return next((file for file in places if file.is_file()), None)
 
 
 def environment(more: Path | None = None) -> dict[str, str]:
-    """The environment of programs of Debian's ROS."""
+    """Return the environment of programs of Debian's ROS."""
     paths = [*([more] if more else []), *(root / "lib/python3/dist-packages" for root in ROOTS[1:])]
     libraries = [root / "lib" / TRIPLET / inner for root in ROOTS[1:] for inner in ("", "blas", "lapack")]
     return {

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Does what a script says to the node beside it, and prints all that the node does: a line "@ " and JSON for each.
+"""Executes a script against the node beside it, and prints all that the node does: a line "@ " and JSON for each.
 
 It runs on ROS and on cfepy. Usage: driver.py SCRIPT.json. The lines, by their first word:
 
-    ready     nothing: all that the node may ask for is there
+    ready     nothing: everything that the node may ask for is available
     base      the second of the first step
     message   topic, type, bytes, seconds since the first step
     answer    service, type and bytes of the response; no type and the name of an error
@@ -31,12 +31,12 @@ _saying = threading.Lock()
 
 
 def say(*words):
-    with _saying:  # callbacks come in threads of their own
+    with _saying:  # callbacks run in other threads
         print("@ " + json.dumps(words), flush=True)
 
 
 def made(kind, text, base_ns):
-    """A message of its bytes; its stamps are the time of its step."""
+    """Make a message from its bytes. Its stamps become the time of its step."""
     message = kind()
     message.deserialize(bytes.fromhex(text))
     stamp(message, base_ns)
@@ -111,7 +111,7 @@ class Driver:
         say("graph", *self.graph())
 
     def wait_for_node(self):
-        """Until it has subscribed to what is driven, and serves what is called."""
+        """Wait until it has subscribed to the driven topics and serves the called services."""
         end = self.now_ns() + round(PATIENCE_S * 1e9)
         while self.now_ns() < end:
             served = {name for name, _ in rosgraph.Master(rospy.get_name()).getSystemState()[2]}

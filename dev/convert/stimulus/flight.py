@@ -43,7 +43,7 @@ BOOT_S = 1.0
 
 
 class Fault(Exception):
-    """The node has died on cfepy; the text says of what."""
+    """The node has died on cfepy. The text gives the cause."""
 
 
 class NodeFlight:
@@ -51,9 +51,9 @@ class NodeFlight:
 
     Args:
         program: its sources.
-        library: of message types.
-        environ: says where packages are.
-        folder: for the launch file.
+        library: library of message types.
+        environ: environment variables that locate the packages.
+        folder: folder for the launch file.
     """
 
     def __init__(self, program: Program, library: Library, environ: Mapping[str, str], folder: Path) -> None:
@@ -69,7 +69,7 @@ class NodeFlight:
         self._environ = {"ROS_PACKAGE_PATH": paths}
 
     def look(self, scene: Scene) -> Seen:
-        """What the node has in the graph, when everything that it calls is there."""
+        """Return the node's entries in the graph, once everything that it calls is available."""
         calls: dict[str, str] = {}
         while True:
             known = dict(calls)
@@ -92,9 +92,9 @@ class NodeFlight:
         """Fly it beside the driver.
 
         Args:
-            script: of the driver.
-            scene: what the node needs.
-            like: the run of roscpp whose times are those of this one, too.
+            script: script of the driver.
+            scene: the environment that the node needs.
+            like: the run of roscpp whose times this run uses as well.
         """
         begun = property(lambda machine: like.begun_ns - round(BOOT_S * 1e9))
         with (
@@ -150,7 +150,7 @@ class NodeFlight:
 
 
 class _Watched:
-    """A mission that is watched; the node is started by a command."""
+    """A mission under observation. A command starts the node."""
 
     def __init__(self, mission: Mission, watch: Any, entry: str) -> None:
         self._mission = mission
@@ -187,13 +187,13 @@ def refuse_fault(lines: list[str]) -> None:
 
 
 def printed_by_node(lines: list[str]) -> list[str]:
-    """What the node has printed: lines of its log, and those that it wrote past it."""
+    """Return the node's output: lines of its log, and lines that it wrote directly to the console."""
     kept = [line for line in lines if not _OTHERS.match(line)]
     return [line.removeprefix("[/node] ") for line in kept]
 
 
 def ended(lines: list[str]) -> bool | None:
-    """Whether the node has ended by itself, with an error or without; None when it went on."""
+    """Return whether the node ended with an error (True) or without (False), or None if it kept running."""
     for line in lines:
         if f"Application {NODE} called CFE_ES_ExitApp" in line:
             return any(f"CFE_ES 14: Exit Application {NODE}" in other for other in lines)

@@ -1,7 +1,7 @@
-"""Makes messages of definitions with ROS's own gencpp and genpy: Debian's Python runs it. Usage: generate.py JOB.json.
+"""Generate messages from definitions with ROS's gencpp and genpy. Debian's Python runs it. Usage: generate.py JOB.json.
 
-The job has `include`, by package the folders with its definitions, `cpp` and `python`: packages to be made, and the
-folders `to_cpp` and `to_python`.
+The job has `include` (by package, the folders with its definitions), `cpp` and `python` (the packages to generate), and
+the folders `to_cpp` and `to_python`.
 """
 
 import json

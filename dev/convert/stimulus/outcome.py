@@ -1,4 +1,4 @@
-"""What is left of a run: all that the driver and the node printed, as plain values that can be compared."""
+"""Results of a run: everything that the driver and the node printed, as plain comparable values."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ _LEVELS = {"Warning": " WARN", "Error": "ERROR"}
 
 
 class Outcome(NamedTuple):
-    """What a run has shown.
+    """Results of a run.
 
     Attributes:
-        parts: by what it is, such as "topic /chatter": a list of what was seen, one after the other.
-        failed: whether the node has ended by itself, with an error or without; None when it went on.
-        begun_ns: when the node was started.
+        parts: lists of observations in order, by subject, such as "topic /chatter".
+        failed: whether the node ended with an error (True) or without (False); None if it kept running.
+        begun_ns: start time of the node.
         base: the second of the first step.
-        note: why there is nothing to be compared.
+        note: why there is nothing to compare.
     """
 
     parts: dict[str, list[Any]]
@@ -47,12 +47,12 @@ class Outcome(NamedTuple):
 def outcome_of(
     told: Iterable[str], printed: Iterable[str], library: Library, failed: bool | None, begun_ns: int = 0
 ) -> Outcome:
-    """What a run has shown.
+    """Return the results of a run.
 
     Args:
         told: lines of the driver.
         printed: lines of the node.
-        library: of the types.
+        library: library of the types.
         failed, begun_ns: see `Outcome`.
     """
     lines = list(told)
@@ -80,14 +80,14 @@ def outcome_of(
 
 
 def of_bytes(library: Library, kind: str, data: str) -> Message:
-    """A message of its bytes."""
+    """Return a message from its bytes."""
     made = library.message_class(kind)()
     made.deserialize(bytes.fromhex(data))
     return made
 
 
 def plain(value: Any, base: int) -> Any:
-    """Plain data; times count from the first step, and those that are none of a step's are alike."""
+    """Return plain data. Times count from the first step, and times that belong to no step compare equal."""
     if isinstance(value, Message):
         found = {name: plain(getattr(value, name), base) for name in value.__slots__}
         if value._type in UNORDERED:
@@ -118,9 +118,9 @@ def number(seen: list[Any]) -> None:
 
 
 def log_of(printed: Iterable[str]) -> list[str]:
-    """What a node has printed, without times; log4cxx writes a question mark for each byte that is not of ASCII.
+    """Return the output of a node without times. log4cxx writes a question mark for each non-ASCII byte.
 
-    The warnings and errors of tf2, which come past the log and with a line of a file, are lines of the log on cfepy.
+    Warnings and errors of tf2 bypass the log and name a line of a file. On cfepy they are log lines.
     """
     text = _OF_TF2.sub(lambda found: f"[{_LEVELS[found[1]]}] [t]: {found[2]}", "\n".join(printed))
     kept = ("".join(map(_plain_letter, line))[:CUT] for line in log_lines(text))

@@ -1,4 +1,4 @@
-"""The result of each node, results.tsv, and the counts in convertor.md; explained.tsv explains those that differ."""
+"""The result of each node (results.tsv), and the counts in convertor.md. explained.tsv explains the differences."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ ALL = "*"
 
 
 class Row(NamedTuple):
-    """What became of a node.
+    """Result of a node.
 
     Attributes:
         node: OWNER/NAME/file.
         verdict: a key of `VERDICTS`.
-        messages: that it has published with roscpp.
-        lines: that it has printed there.
-        answers: that it has given.
-        why: that it is not equal; parts that may vary.
+        messages: number of messages that it published with roscpp.
+        lines: number of lines that it printed there.
+        answers: number of answers that it gave.
+        why: why it is not equal, or the parts that may vary.
     """
 
     node: str
@@ -57,11 +57,11 @@ def explained() -> dict[tuple[str, str], str]:
 
 
 def rows(results: Iterable[Mapping[str, Any]], known: Mapping[tuple[str, str], str]) -> Iterator[Row]:
-    """What became of nodes.
+    """Yield the results of nodes.
 
     Args:
-        results: of `dev.convert.stimulus`.
-        known: of `explained`.
+        results: results of `dev.convert.stimulus`.
+        known: explanations from `explained`.
     """
     for each in sorted(results, key=lambda result: result["node"].lower()):
         node, parts = each["node"], each.get("parts", [])
@@ -106,7 +106,7 @@ def write(results: Iterable[Mapping[str, Any]]) -> list[Row]:
 
 
 def table(made: list[Row]) -> str:
-    """The counts as a part of docs/how_to/convertor.md."""
+    """Return the counts as a part of docs/how_to/convertor.md."""
     counts = Counter(row.verdict for row in made)
     there = [row for row in made if row.verdict in ("equal", "explained", "different")]
     lines = [
@@ -124,7 +124,7 @@ def table(made: list[Row]) -> str:
 
 
 def read(file: Path, verdicts: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """The results in a file of `--json`.
+    """Return the results in a file of `--json`.
 
     Args:
         file: that one.

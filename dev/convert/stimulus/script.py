@@ -1,4 +1,4 @@
-"""The stimulus of a node: random messages and requests from a seed, as the driver carries them out on both sides."""
+"""The stimulus of a node: random messages and requests from a seed, which the driver executes on both sides."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ WHOLE = {f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)} |
 
 
 class Seen(NamedTuple):
-    """What a node has in the graph, by name with types.
+    """A node's entries in the graph: names with types.
 
     Attributes:
         publishes, subscribes: topics.
@@ -42,17 +42,17 @@ class Seen(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """What a node needs around it.
+    """The environment that a node needs.
 
     Attributes:
-        params: by name, such as "~rate".
-        args: of its command line.
-        frames: pairs of parent and child for /tf; their names are those of messages, too.
-        texts: that its messages may have.
-        undriven: topics that get nothing.
-        gap_s: between two steps, where the node needs longer.
-        items: of arrays without a length of their own.
-        wild: the share of messages with any values.
+        params: parameters by name, such as "~rate".
+        args: arguments of its command line.
+        frames: pairs of parent and child for /tf; messages use the same frame names.
+        texts: texts that its messages may have.
+        undriven: topics that get no messages.
+        gap_s: seconds between two steps, if the node needs longer.
+        items: number of items in arrays without a fixed length.
+        wild: the share of messages with arbitrary values.
     """
 
     params: Mapping[str, Any] = {}
@@ -87,7 +87,7 @@ class Stimulus(Source):
         self._wild = False
 
     def data(self, full_name: str) -> bytes:
-        """The bytes of a message."""
+        """Return the bytes of a message."""
         self._wild = self._random.random() < self._scene.wild
         made = self._transforms() if full_name == TF else self.message(full_name)
         buffer = BytesIO()
@@ -95,7 +95,7 @@ class Stimulus(Source):
         return buffer.getvalue()
 
     def message(self, full_name: str) -> Any:
-        """See `Source.message`; rotations have the length 1, but in a wild message."""
+        """See `Source.message`. Rotations have length 1, except in a wild message."""
         made = super().message(full_name)
         if full_name == "geometry_msgs/Quaternion" and not self._wild:
             length = math.hypot(made.x, made.y, made.z, made.w)
@@ -104,7 +104,7 @@ class Stimulus(Source):
         return made
 
     def _transforms(self) -> Any:
-        """The whole tree of frames."""
+        """Return the whole tree of frames."""
         self._wild = False
         made = self._library.message_class(TF)()
         for parent, child in self._scene.frames:
@@ -146,7 +146,7 @@ class Step(NamedTuple):
 
 
 def steps(seed: int | str, seen: Seen, library: Library, scene: Scene) -> Iterator[Step]:
-    """What is done to a node, one step after the other for five seconds."""
+    """Yield the steps of the stimulus in order, for five seconds."""
     source = Stimulus(seed, library, scene)
     topics = {
         name: kind for name, kind in sorted(seen.subscribes.items()) if name not in scene.undriven and kind != "*"
@@ -159,13 +159,13 @@ def steps(seed: int | str, seen: Seen, library: Library, scene: Scene) -> Iterat
 
 
 def script(seed: int | str, seen: Seen, library: Library, scene: Scene) -> dict[str, Any]:
-    """All that the driver is told; plain values.
+    """Return the whole script of the driver, as plain values.
 
     Args:
-        seed: of the random numbers.
-        seen: what the node has in the graph.
-        library: of the types.
-        scene: what the node needs.
+        seed: seed of the random numbers.
+        seen: the node's entries in the graph.
+        library: library of the types.
+        scene: the environment that the node needs.
     """
     done = list(steps(seed, seen, library, scene))
     answers = Stimulus(f"{seed} answers", library, scene)

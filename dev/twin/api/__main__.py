@@ -1,4 +1,4 @@
-"""python -m dev.twin.api: plays random scripts on the real cFE and on cfepy, and prints what differs."""
+"""python -m dev.twin.api: plays random scripts on the real cFE and on cfepy, and prints the differences."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from dev.twin.api.script import write_script
 
 
 def main() -> int:
-    """Compare; the exit status is 1 when anything differs."""
+    """Compare. Returns exit status 1 if anything differs."""
     parser = argparse.ArgumentParser(prog="python -m dev.twin.api", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the first script")
     parser.add_argument("--count", type=int, default=3500, help="calls of a script")

@@ -1,4 +1,4 @@
-"""Event Services, Software Bus, Table Services and Time Services, as a script calls them; app/api_bus.c in C."""
+"""Calls of Event Services, Software Bus, Table Services and Time Services in a script; app/api_bus.c has them in C."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def _judge(data: bytes) -> int:
 
 
 class BusCalls:
-    """The calls; `play` is the player, `w` the arguments."""
+    """The calls. `play` is the player, `w` the arguments."""
 
     def __init__(self, play: Any) -> None:
         cfe = play.cfe

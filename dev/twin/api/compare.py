@@ -1,4 +1,4 @@
-"""What differs between the answers of the real cFE and of cfepy to one script, and how many calls were compared."""
+"""Compare the answers of the real cFE and of cfepy to one script, and count the compared calls."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OSAL_KINDS = 0x10
 
 
 def _blocks(answers: list[str]) -> dict[int, list[str]]:
-    """Answers by the number of their line; the events and log lines that belong to it stand behind."""
+    """Return the answers by their line number, each with its events and log lines."""
     blocks: dict[int, list[str]] = {}
     for line in answers:
         if line[:1].isdigit():
@@ -47,13 +47,13 @@ def _plain_number(found: re.Match[str]) -> str:
 
 
 class Ids:
-    """Ids of OSAL as ordinals: kind, and the order in which they were first seen."""
+    """OSAL ids as ordinals: kind, and the order in which they first appeared."""
 
     def __init__(self) -> None:
         self.seen: dict[int, dict[int, int]] = {}
 
     def plain(self, line: str) -> str:
-        """A line without numbers that depend on what the core made."""
+        """Return a line without numbers that depend on objects created by the core."""
         return line if line[:2] in ("E ", "L ") else ID.sub(self._plain, line)
 
     def _plain(self, match: re.Match[str]) -> str:
@@ -65,7 +65,7 @@ class Ids:
 
 
 def differences(script: list[str], real: list[str], ours: list[str]) -> list[str]:
-    """Each difference as a text of some lines."""
+    """Return each difference as a text of some lines."""
     found = []
     theirs, mine = _blocks(real), _blocks(ours)
     real_ids, own_ids = Ids(), Ids()

@@ -1,4 +1,4 @@
-"""Executive Services, as a script calls them; app/api_es.c is the same in C."""
+"""Calls of Executive Services in a script; app/api_es.c has them in C."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def _task(info: Any) -> Answer:
 
 
 class EsCalls:
-    """The calls; `play` is the player, `w` the arguments."""
+    """The calls. `play` is the player, `w` the arguments."""
 
     def __init__(self, play: Any) -> None:
         self.play, self.es = play, play.cfe.es

@@ -1,7 +1,7 @@
-"""Calls of a script that meet what the ground asks for: DEBUG events, notifications of tables; and zero-copy buffers.
+"""Script calls that involve ground commands: DEBUG events, notifications of tables; and zero-copy buffers.
 
-Commands to services are sent by the script itself. The services are more urgent than it, so they have answered before
-its next call; on NASA's cFE that takes a single processor.
+The script itself sends commands to services. The services have higher priority, so they answer before its next call.
+On NASA's cFE, this requires a single processor.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def debug_calls(w: Writer) -> None:
 
 
 def buffer_calls(w: Writer) -> None:
-    """Zero-copy buffers: sent, sent once more, released, left alone; on the way through a pipe."""
+    """Zero-copy buffers: sent, sent twice, released, or left alone, while others pass through a pipe."""
     slot, pipe = w.one(range(80, 84)), w.id("pipe")
     msg_id = w.one((0x1890, 0x1891, 0x890, 0x891))
     w.add("SB_SubscribeEx", msg_id, pipe, 0, 0, w.one((1, 4)))
@@ -63,7 +63,7 @@ def buffer_calls(w: Writer) -> None:
 
 
 def _packet(w: Writer, msg_id: int) -> bytes:
-    """A packet; now and then with a length field or a MsgId that will not do."""
+    """Return a packet. Some have an invalid length field or MsgId."""
     size = w.one((8, 12, 16, 40, 100, 1000))
     data = bytearray(w.random.randbytes(size))
     data[0:2] = w.one((msg_id, msg_id, msg_id, 0x1FFF, 0x892)).to_bytes(2, "big")
@@ -75,7 +75,7 @@ def _packet(w: Writer, msg_id: int) -> bytes:
 
 
 def notification_calls(w: Writer) -> None:
-    """A table whose owner wants to be told, and what the ground asks of it."""
+    """A table whose owner requests notifications, and ground commands for it."""
     slot, pipe = w.one(range(28, 32)), "$27"
     w.add("SB_CreatePipe", "@27", 10, quote("NOTICES"))
     w.add("SB_SubscribeEx", NOTICE, pipe, 0, 0, 10)

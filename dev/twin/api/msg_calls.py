@@ -1,4 +1,4 @@
-"""Message headers, File Services and resource ids, as a script calls them; app/api_msg.c is the same in C."""
+"""Calls of message headers, File Services and resource ids in a script; app/api_msg.c has them in C."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from dev.twin.api.words import Answer, Line
 
 
 class MsgCalls:
-    """The calls; `play` is the player, `w` the arguments."""
+    """The calls. `play` is the player, `w` the arguments."""
 
     def __init__(self, play: Any) -> None:
         self.cfe, self.fs, self.stamp = play.cfe, play.cfe.fs, None

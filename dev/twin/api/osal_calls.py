@@ -1,4 +1,4 @@
-"""The OSAL and the PSP, as a script calls them; app/api_osal.c and app/api_psp.c are the same in C."""
+"""Calls of the OSAL and the PSP in a script; app/api_osal.c and app/api_psp.c have them in C."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ PATHS = {
 
 
 def status_of(call: Callable[..., object], *arguments: object) -> int:
-    """The status of a call among others."""
+    """Return the status of a call among others."""
     try:
         call(*arguments)
     except CfeError as error:
@@ -61,13 +61,13 @@ def status_of(call: Callable[..., object], *arguments: object) -> int:
 
 
 class OsalCalls:
-    """The calls; `play` is the player, `w` the arguments."""
+    """The calls. `play` is the player, `w` the arguments."""
 
     def __init__(self, play: Any) -> None:
         self.play, self.os, self.fired = play, play.cfe.os, 0
 
     def __getattr__(self, name: str) -> Callable[[Line], Answer]:
-        """What all kinds of objects have."""
+        """Return a call that all kinds of objects share."""
         if name in PATHS:
             return lambda w: _none(getattr(self.os, PATHS[name])(w.text(1)))
         for kind, stem in KINDS.items():

@@ -1,9 +1,9 @@
-"""Plays a script on NASA's own cFE, built with the application in `app/`, in namespaces of its own.
+"""Play a script on NASA's own cFE, built with the application in `app/`, in its own namespaces.
 
 The folder that CFEPY_REAL_API names has the executable core-cpu1 and its cf. To build it: copy app/ into the mission's
 apps as api_app, put it into the APPLIST of sample_defs/targets.cmake, take `STARTUP` of `dev.twin.api.twin` as the
-startup script, and set CFE_PLATFORM_EVS_MAX_APP_EVENT_BURST to 2000000, so that no event is squelched: that depends on
-the host's speed. Both sides write `answers.txt` with the same rules.
+startup script, and set CFE_PLATFORM_EVS_MAX_APP_EVENT_BURST to 2000000. That prevents squelching of events, which
+depends on the host's speed. Both sides write `answers.txt` with the same rules.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ LIMIT_S = 300
 
 
 def installed() -> Path | None:
-    """The folder of the executable, as CFEPY_REAL_API says; None where there is none."""
+    """Return the folder of the executable from CFEPY_REAL_API, or None if there is none."""
     return real.installed(VARIABLE)
 
 
 def release(built: Path) -> str:
-    """Which release of cFE it is: "7.0.0"."""
+    """Return which release of cFE it is: "7.0.0"."""
     return "7.0.1" if b"v7.0.1+dev" in (built / real.EXECUTABLE).read_bytes() else "7.0.0"
 
 
 def play(built: Path, script: list[str]) -> list[str]:
-    """The answers of the real cFE to a script.
+    """Return the answers of the real cFE to a script.
 
     Raises:
         subprocess.TimeoutExpired: it did not end.

@@ -1,4 +1,4 @@
-"""Answers of a real cFE, kept for machines that have none: tests/data/api_answers/<release>_<seed>_<count>.txt.xz."""
+"""Recorded answers of a real cFE, for machines without one: tests/data/api_answers/<release>_<seed>_<count>.txt.xz."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ def write_record(record: Record, answers: list[str]) -> None:
 
 
 def records() -> list[Record]:
-    """Each script that was recorded."""
+    """Return each script that was recorded."""
     names = sorted(each.name.partition(".txt")[0] for each in FOLDER.glob("*_*_*.txt.xz"))
     parts = (name.split("_") for name in names)
     return [(release, int(seed), int(count)) for release, seed, count in parts]
 
 
 def read_record(record: Record) -> list[str]:
-    """The answers to a script."""
+    """Return the answers to a script."""
     return lzma.decompress(_path(record).read_bytes()).decode("utf-8", "surrogateescape").splitlines()
 
 

@@ -1,8 +1,9 @@
-"""Random scripts of API calls, over all groups: right arguments and wrong ones, from a seed.
+"""Random scripts of API calls in all groups, with valid and invalid arguments, from a seed.
 
-The choice of arguments leans on a few small sets of names and slots, so that calls meet objects of other calls. What
-would block the real one for ever, or end it, is left out: a mutex is taken by one task alone, takes of semaphores come
-behind a give, no pipe or queue is waited for without a time-out.
+Arguments come mostly from small sets of names and slots, so that calls meet objects of other calls. Calls that would
+block the real cFE forever, or end it, are left out: only one task takes a mutex, a semaphore is taken only after a
+give,
+and waits for pipes or queues have a time-out.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class Writer:
     """Makes one script.
 
     Args:
-        seed: what the choices follow from.
+        seed: seed of the random choices.
     """
 
     def __init__(self, seed: int) -> None:
@@ -61,30 +62,30 @@ class Writer:
         return self.random.choice(choices)
 
     def num(self) -> int:
-        """A number, rather an edge."""
+        """Return a number, preferably an edge case."""
         return self.one(NUMBERS) if self.random.random() < 0.7 else self.random.getrandbits(32)
 
     def id(self, kind: str) -> str:
-        """An id: mostly one of this kind, sometimes one of another or none."""
+        """Return an id: mostly one of this kind, sometimes another kind's or an invalid one."""
         if self.random.random() < 0.1:
             other = self.one([each for each in SLOT_OF if each not in ("block", "buffer", "table")])
             return f"${self.one(SLOT_OF[other])}"
         return str(self.one(WRONG)) if self.random.random() < 0.07 else f"${self.one(SLOT_OF[kind])}"
 
     def slot(self, kind: str) -> str:
-        """Where to keep an id."""
+        """Return a slot for an id."""
         return f"@{self.one(SLOT_OF[kind])}"
 
     def name(self) -> str:
-        """A name."""
+        """Return a random name."""
         return quote(self.one(NAMES))
 
     def bytes(self, size: int) -> str:
-        """Some bytes."""
+        """Return random bytes."""
         return "x" + self.random.randbytes(size).hex()
 
     def task(self) -> str:
-        """Who calls: mostly the application."""
+        """Return the calling task: mostly the application."""
         return self.random.choices("ABC", (8, 1, 1))[0]
 
 
@@ -185,7 +186,7 @@ def evs_calls(w: Writer) -> None:
     filters = [number for _ in range(w.one((0, 0, 1, 3, 7))) for number in (w.one((1, 2, 3, 65535)), w.num() & 0xFFFF)]
     if w.random.random() < 0.3:
         w.add("EVS_Register", 0, *filters, task=w.one("AB"))
-    if w.random.random() < 0.2:  # while API_AUX is not registered, only API tells of it: types of the caller count
+    if w.random.random() < 0.2:  # while API_AUX is not registered, only API calls this, since the caller's types count
         w.add("EVS_Register", w.one((1, 99)), task="B")
         for _ in range(w.one((1, 2))):
             w.add("EVS_SendEventWithAppID", 1, 2, 0x110006, quote("t"))
@@ -202,7 +203,7 @@ def evs_calls(w: Writer) -> None:
 
 
 def packet(w: Writer) -> str:
-    """A packet whose length field is true."""
+    """Return a packet with a correct length field."""
     msg_id, size = w.one(MSG_IDS), w.one((7, 8, 11, 12, 16, 17, 100, 1000))
     made = bytearray(w.random.randbytes(size))
     made[0:2] = msg_id.to_bytes(2, "big")
@@ -320,7 +321,7 @@ def osal_calls(w: Writer) -> None:
 
 
 def queue_calls(w: Writer) -> None:
-    """Queues; their names are none of pipes."""
+    """Add calls of queues. Their names differ from those of pipes."""
     queue = w.one(("Q_A", "Q_B", "Q_C", "Q" * 19, "Q" * 20))
     w.add("OS_QueueCreate", w.slot("queue"), quote(queue), w.one((0, 1, 2, 50, 51)), w.one((0, 1, 4, 100)), 0)
     w.add("OS_QueueGetIdByName", w.slot("queue"), quote(queue))
@@ -425,7 +426,7 @@ def path_calls(w: Writer) -> None:
     w.add("OS_stat", first)
     w.add(w.one(("OS_cp", "OS_mv", "OS_rename")), quote(w.one(FILES[:8])), quote(w.one(FILES[:8])))
     w.add("OS_remove", second)
-    w.add("OS_chmod", first, 2)  # the real one runs as root, who may read and write what nobody may
+    w.add("OS_chmod", first, 2)  # the real one runs as root, who may read and write despite the permissions
     w.add("OS_mkdir", quote(w.one(MADE)), 2)
     w.add("OS_rmdir", quote(w.one(MADE)))
     w.add("OS_DirectoryOpen", w.slot("dir"), quote(w.one(FOLDERS)))
@@ -491,7 +492,7 @@ GROUPS = (es_calls, es_calls, evs_calls, sb_calls, sb_calls, tbl_calls, time_cal
 
 
 def write_script(seed: int, count: int) -> list[str]:
-    """A script of so many calls."""
+    """Return a script of `count` calls."""
     w = Writer(seed)
     while len(w.lines) < count:
         w.one(GROUPS)(w)

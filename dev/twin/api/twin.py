@@ -1,7 +1,7 @@
-"""Plays a script of API calls in an application of cfepy, and writes its answers as the C application does.
+"""Play a script of API calls in an application of cfepy, and write its answers as the C application does.
 
-API_AUX and API are the applications, API_CHILD is the child task that calls too. They hand each other the turn with
-semaphores of the kernel, which need no ids of OSAL.
+API_AUX and API are the applications, API_CHILD is the child task, which also calls. They hand over the turn with kernel
+semaphores, which use no OSAL ids.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Player:
     """The application and its tasks.
 
     Args:
-        mission: in which it flies.
+        mission: the mission in which it flies.
         script: the lines.
     """
 
@@ -62,16 +62,16 @@ class Player:
         self.cfe.es.loader = self
 
     def load(self, file: str, symbol: str, app_name: str) -> Any:
-        """The main functions of the two applications; all else is the mission's."""
+        """Return the main functions of the two applications. The mission loads all others."""
         mains = {"API_AuxMain": self.aux_main, "API_Main": self.main}
         return mains[symbol] if symbol in mains else self.loader.load(file, symbol, app_name)
 
     def unload(self, app_name: str) -> None:
-        """What the mission has loaded may go."""
+        """Unload an application of the mission."""
         self.loader.unload(app_name)
 
     def child_main(self) -> None:
-        """What child tasks do."""
+        """Run a child task."""
         while not self.is_over:
             self.cfe.os.task_delay(50)
             self.cfe.es.increment_task_counter()
@@ -144,7 +144,7 @@ WITHOUT_STATUS = ("PSP_PortRead", "PSP_Eeprom", "ResourceId")
 
 
 def play(script: list[str], release: str = "7.0.0") -> list[str]:
-    """The answers of cfepy to a script, on a release of cFE."""
+    """Return the answers of cfepy to a script, on a release of cFE."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "startup.scr").write_text(dedent(STARTUP), encoding="utf-8")
         Path(folder, "mission.yaml").write_text(dedent(LIMITS.format(release=release)), encoding="utf-8")

@@ -1,6 +1,6 @@
-"""The words of a script and of its answers: numbers, 'texts, xBYTES, #ids, and the slots in which ids are kept.
+"""The words of a script and of its answers: numbers, 'texts, xBYTES, #ids, and the slots that keep ids.
 
-The rules are those of app/api_app.c.
+app/api_app.c has the same rules.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ class Id(int):
 
 
 def quote(text: str | bytes) -> str:
-    """A text as a word."""
+    """Return a text as a word."""
     data = text.encode("utf-8", "surrogateescape") if isinstance(text, str) else text
     return "'" + "".join(chr(byte) if chr(byte) in PLAIN else f"%{byte:02x}" for byte in data)
 
 
 def unquote(word: str) -> str:
-    """The text of a word."""
+    """Return the text of a word."""
     data, rest = bytearray(), word[1:].encode("ascii")
     while rest:
         data += bytes.fromhex(rest[1:3].decode()) if rest[:1] == b"%" else rest[:1]
@@ -33,7 +33,7 @@ def unquote(word: str) -> str:
 
 
 def word_of(value: object) -> str:
-    """A value of an answer as a word."""
+    """Return a value of an answer as a word."""
     if isinstance(value, Id):
         return f"#{value & 0xFFFFFFFFFFFFFFFF:x}"
     if isinstance(value, str):
@@ -45,11 +45,11 @@ def word_of(value: object) -> str:
 
 
 class Line:
-    """The arguments of a call; words count from 1.
+    """The arguments of a call. Words count from 1.
 
     Args:
-        words: as they stand in the script.
-        slots: ids that calls gave.
+        words: the words of the script line.
+        slots: ids that calls returned.
     """
 
     def __init__(self, words: list[str], slots: list[int]) -> None:
@@ -60,16 +60,16 @@ class Line:
         return len(self.words)
 
     def num(self, word: int) -> int:
-        """A number, or the content of slot $n."""
+        """Return a number, or the content of slot $n."""
         text = self.words[word - 1] if word <= len(self.words) else "0"
         return self.slots[int(text[1:])] if text.startswith("$") else int(text, 0)
 
     def text(self, word: int) -> str:
-        """A text."""
+        """Return a text."""
         return unquote(self.words[word - 1])
 
     def data(self, word: int) -> bytes:
-        """Bytes."""
+        """Return bytes."""
         return bytes.fromhex(self.words[word - 1][1:])
 
     def keep(self, word: int, value: int) -> Id:

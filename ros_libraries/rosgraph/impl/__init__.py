@@ -1,4 +1,4 @@
-"""rosgraph.impl: what ROS's graph tools stand on."""
+"""rosgraph.impl: the base of ROS's graph tools."""
 
 from __future__ import annotations
 

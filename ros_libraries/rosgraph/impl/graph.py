@@ -1,6 +1,6 @@
 """rosgraph.impl.graph: a picture of the ROS graph, nodes and topics with the edges between them, kept up to date.
 
-In the picture a topic is a node whose name begins with a space, so that it cannot be confused with a node of that name.
+In the picture, a topic is a node whose name begins with a space, to distinguish it from a node of that name.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ _NAME = "/rosviz"
 
 
 def topic_node(topic: str) -> str:
-    """The name of a topic in the picture."""
+    """Return the name of a topic in the picture."""
     return " " + topic
 
 
 def node_topic(node: str) -> str:
-    """The topic of such a name."""
+    """Return the topic of such a name."""
     return node[1:]
 
 
@@ -30,9 +30,9 @@ class BadNode:
     """A node that does not answer.
 
     Args:
-        name: of the node.
-        type: DEAD, or WONKY when it has been asked again.
-        reason: what went wrong.
+        name: name of the node.
+        type: DEAD, or WONKY if it has been asked again.
+        reason: the error.
     """
 
     DEAD = 0
@@ -72,7 +72,8 @@ class Edge:
 
 
 def edge_args(start: str, dest: str, direction: str, label: str) -> list[tuple[str, str, str]]:
-    """The arguments of the edges between two names, in the direction "i", "o" or "b" (both) as seen from the first."""
+    """Return the arguments of the edges between two names, in the direction "i", "o" or "b" (both) as seen from the
+    first."""
     edges = {"o": [(start, dest, label)], "i": [(dest, start, label)]}
     return edges.get(direction, []) if direction != "b" else edges["o"] + edges["i"]
 
@@ -93,11 +94,11 @@ class EdgeList:
         return edge in self.edges_by_start.get(edge.key, [])
 
     def has(self, edge: Edge) -> bool:
-        """Whether an edge is there."""
+        """Return whether an edge is there."""
         return edge in self
 
     def add(self, edge: Edge) -> bool:
-        """Add an edge; whether it is new."""
+        """Add an edge. Returns whether it is new."""
         starting = self.edges_by_start.setdefault(edge.key, [])
         if edge in starting:
             return False
@@ -106,7 +107,7 @@ class EdgeList:
         return True
 
     def add_edges(self, start: str | None, dest: str | None, direction: str, label: str = "") -> bool:
-        """Add the edges between two names; whether any is new. None stands for a name that is unknown."""
+        """Add the edges between two names. Returns whether any is new. None stands for an unknown name."""
         if not start or not dest:
             return False
         return sum(self.add(Edge(*args)) for args in edge_args(start, dest, direction, label)) > 0
@@ -124,7 +125,7 @@ class EdgeList:
 
 
 class Graph:
-    """The picture; `update` looks at the master and the nodes again.
+    """The picture; `update` asks the master and the nodes again.
 
     Args:
         node_ns: only nodes whose names begin so.
@@ -150,15 +151,15 @@ class Graph:
         self.node_stale = 5.0
 
     def set_master_stale(self, stale_secs: float) -> None:
-        """How long, in seconds, the master's answer counts as fresh."""
+        """Set how long, in seconds, the master's answer counts as fresh."""
         self.master_stale = stale_secs
 
     def set_node_stale(self, stale_secs: float) -> None:
-        """How long, in seconds, a node's answer counts as fresh."""
+        """Set how long, in seconds, a node's answer counts as fresh."""
         self.node_stale = stale_secs
 
     def update(self) -> bool:
-        """Ask the master and the nodes whose answers are stale; whether anything has changed."""
+        """Ask the master and the nodes whose answers are old. Returns whether anything has changed."""
         updated = False
         if time.time() > self.last_master_refresh + self.master_stale:
             updated = self._refresh_master()
@@ -166,7 +167,7 @@ class Graph:
         return self._refresh_nodes(sorted(self.nn_nodes - self.bad_nodes.keys())) or updated
 
     def bad_update(self) -> bool:
-        """Ask the nodes that did not answer; whether anything has changed."""
+        """Ask the nodes that did not answer. Returns whether anything has changed."""
         return self._refresh_nodes(sorted(self.bad_nodes))
 
     def _refresh_nodes(self, names: Iterable[str]) -> bool:

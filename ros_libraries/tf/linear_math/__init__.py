@@ -1,7 +1,7 @@
 """tf's LinearMath in Python: the classes and functions of the C++ headers tf/LinearMath/*.h under their own names.
 
-A header is a module here: Matrix3x3.h is `matrix3x3`, and so on; StampedTransform (tf/transform_datatypes.h) is in
-`transform`. What C++ returns through references, Python returns as a tuple; a constructor without arguments, which
+Each header is a module here: Matrix3x3.h is `matrix3x3`, and so on. StampedTransform (tf/transform_datatypes.h) is in
+`transform`. Results that C++ returns through references are tuples in Python. A constructor without arguments, which
 leaves its object undefined in C++, makes zeros or the identity. Imports the standard library only.
 """
 

@@ -12,7 +12,7 @@ _PAIRS = ((0, 1, 2), (0, 2, 1), (1, 2, 0))  # an element off the diagonal, and t
 
 
 def diagonalize(rows: Rows, turned: Rows, threshold: float, steps: int) -> None:
-    """Make a symmetric matrix diagonal in place; `turned` is turned along."""
+    """Diagonalize a symmetric matrix in place, and apply the rotations to `turned`."""
     while steps > 0:
         p, q, r = max(_PAIRS, key=lambda pair: abs(rows[pair[0]][pair[1]]))
         size = abs(rows[p][q])
@@ -42,7 +42,7 @@ def _turn(rows: Rows, turned: Rows, p: int, q: int, r: int) -> None:
 
 
 def _tangent(theta: float) -> float:
-    """The tangent of the angle to turn by; for a matrix that is almost diagonal, by a series."""
+    """Return the tangent of the angle to turn by. For a matrix that is almost diagonal, use a series."""
     square = theta * theta
     if square * square < 10 / TFSIMD_EPSILON:
         root = sqrt(1 + square)

@@ -14,7 +14,10 @@ Angles = tuple[float, float, float]
 
 
 class Matrix3x3:
-    """A matrix: nine numbers row by row, or of a quaternion; the identity without arguments. Rows by index."""
+    """A matrix from nine numbers row by row, or from a quaternion; the identity without arguments.
+
+    An index gives a row.
+    """
 
     __slots__ = ("m_el",)
     __hash__ = None  # type: ignore[assignment]  # it can change
@@ -47,11 +50,11 @@ class Matrix3x3:
     # -- parts -------------------------------------------------------------------------------------------------------
 
     def getRow(self, i: int) -> Vector3:
-        """A row; changing it changes the matrix."""
+        """Return a row. Changing it changes the matrix."""
         return self.m_el[i]
 
     def getColumn(self, i: int) -> Vector3:
-        """A copy of a column."""
+        """Return a copy of a column."""
         return Vector3(*(row[i] for row in self))
 
     def setValue(self, *cells: float) -> None:
@@ -65,7 +68,7 @@ class Matrix3x3:
 
     @staticmethod
     def getIdentity() -> Matrix3x3:
-        """The identity."""
+        """Return the identity."""
         return Matrix3x3()
 
     def setFromOpenGLSubMatrix(self, m: Sequence[float]) -> None:
@@ -73,7 +76,7 @@ class Matrix3x3:
         self.setValue(*(m[column * 4 + row] for row in range(3) for column in range(3)))
 
     def getOpenGLSubMatrix(self) -> list[float]:
-        """Three columns of four numbers, the last one 0."""
+        """Return three columns of four numbers, the last one 0."""
         return [cell for column in range(3) for cell in (*self.getColumn(column), 0.0)]
 
     # -- rotations ---------------------------------------------------------------------------------------------------
@@ -90,7 +93,7 @@ class Matrix3x3:
         self.setValue(*first, *second, xz - wy, yz + wx, 1.0 - (xx + yy))
 
     def getRotation(self) -> Quaternion:
-        """The quaternion of this rotation."""
+        """Return the quaternion of this rotation."""
         m = self.m_el
         trace = m[0][0] + m[1][1] + m[2][2]
         found = Quaternion()
@@ -122,7 +125,7 @@ class Matrix3x3:
         self.setEulerYPR(yaw, pitch, roll)
 
     def getEulerYPR(self, solution_number: int = 1) -> Angles:
-        """Yaw, pitch and roll of this rotation in rad; there are two solutions."""
+        """Return yaw, pitch and roll of this rotation in rad. There are two solutions."""
         m = self.m_el
         sine = m[2][0]
         if abs(sine) >= 1.0:  # gimbal lock: only the difference of the other two angles counts
@@ -137,7 +140,7 @@ class Matrix3x3:
     getEulerZYX = getEulerYPR
 
     def getRPY(self, solution_number: int = 1) -> Angles:
-        """Roll, pitch and yaw of this rotation in rad; there are two solutions."""
+        """Return roll, pitch and yaw of this rotation in rad. There are two solutions."""
         yaw, pitch, roll = self.getEulerYPR(solution_number)
         return roll, pitch, yaw
 
@@ -160,69 +163,69 @@ class Matrix3x3:
         return self
 
     def tdotx(self, v: Vector3) -> float:
-        """Scalar product of the first column and a vector."""
+        """Return the scalar product of the first column and a vector."""
         return self.getColumn(0).dot(v)
 
     def tdoty(self, v: Vector3) -> float:
-        """Scalar product of the second column and a vector."""
+        """Return the scalar product of the second column and a vector."""
         return self.getColumn(1).dot(v)
 
     def tdotz(self, v: Vector3) -> float:
-        """Scalar product of the third column and a vector."""
+        """Return the scalar product of the third column and a vector."""
         return self.getColumn(2).dot(v)
 
     def transposeTimes(self, m: Matrix3x3) -> Matrix3x3:
-        """This matrix, transposed, times another."""
+        """Return this matrix, transposed, times another."""
         return self.transpose() * m
 
     def timesTranspose(self, m: Matrix3x3) -> Matrix3x3:
-        """This matrix times another, transposed."""
+        """Return this matrix times another, transposed."""
         return self * m.transpose()
 
     def scaled(self, s: Vector3) -> Matrix3x3:
-        """This matrix with its columns scaled by the elements of a vector."""
+        """Return this matrix with its columns scaled by the elements of a vector."""
         return Matrix3x3(*(cell for row in self for cell in row * s))
 
     # -- derived matrices --------------------------------------------------------------------------------------------
 
     def transpose(self) -> Matrix3x3:
-        """Rows and columns exchanged."""
+        """Return the transposed matrix."""
         return Matrix3x3(*(row[at] for at in range(3) for row in self))
 
     def absolute(self) -> Matrix3x3:
-        """The absolute values."""
+        """Return the absolute values."""
         return Matrix3x3(*(abs(cell) for row in self for cell in row))
 
     def cofac(self, r1: int, c1: int, r2: int, c2: int) -> float:
-        """The determinant of two rows and two columns."""
+        """Return the determinant of two rows and two columns."""
         m = self.m_el
         return m[r1][c1] * m[r2][c2] - m[r1][c2] * m[r2][c1]
 
     def determinant(self) -> float:
-        """The determinant."""
+        """Return the determinant."""
         return self[0].triple(self[1], self[2])
 
     def adjoint(self) -> Matrix3x3:
-        """The adjoint: the inverse times the determinant."""
+        """Return the adjoint: the inverse times the determinant."""
         others = ((1, 2), (2, 0), (0, 1))
         return Matrix3x3(*(self.cofac(b, c, d, e) for c, e in others for b, d in others))
 
     def inverse(self) -> Matrix3x3:
-        """The inverse.
+        """Return the inverse.
 
         Raises:
-            ZeroDivisionError: there is none.
+            ZeroDivisionError: the matrix is singular.
         """
         s = 1.0 / self.determinant()
         return Matrix3x3(*(cell * s for row in self.adjoint() for cell in row))
 
     def diagonalize(self, rot: Matrix3x3, threshold: float, maxSteps: int) -> None:
-        """Become diagonal, by Jacobi's method; the matrix has to be symmetric.
+        """Diagonalize this matrix by Jacobi's method. The matrix must be symmetric.
 
         Args:
             rot: becomes the rotation R for which the old matrix is R * new * transposed R.
-            threshold: how large elements off the diagonal may remain, in parts of the diagonal's sum.
-            maxSteps: how often to turn.
+            threshold: maximum size of the remaining elements off the diagonal, as a fraction of the diagonal's sum.
+            maxSteps: maximum number of rotations.
         """
         rot.setIdentity()
         diagonalize(self.m_el, rot.m_el, threshold, maxSteps)

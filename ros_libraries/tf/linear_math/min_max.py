@@ -4,20 +4,20 @@ from __future__ import annotations
 
 
 def tfMin(a: float, b: float) -> float:
-    """The smaller of two values; b when they are equal."""
+    """Return the smaller of two values, or b if they are equal."""
     return a if a < b else b
 
 
 def tfMax(a: float, b: float) -> float:
-    """The larger of two values; b when they are equal."""
+    """Return the larger of two values, or b if they are equal."""
     return a if a > b else b
 
 
 def tfSetMin(a: float, b: float) -> float:
-    """What `a` becomes: `b` if that is smaller."""
+    """Return the new value of `a`: `b` if that is smaller."""
     return b if b < a else a
 
 
 def tfSetMax(a: float, b: float) -> float:
-    """What `a` becomes: `b` if that is larger."""
+    """Return the new value of `a`: `b` if that is larger."""
     return b if a < b else a

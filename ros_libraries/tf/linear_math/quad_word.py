@@ -1,4 +1,4 @@
-"""QuadWord.h: four numbers, what Quaternion and Vector3 are stored in. Imports tf.linear_math.min_max."""
+"""QuadWord.h: four numbers, the storage of Quaternion and Vector3. Imports tf.linear_math.min_max."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ class QuadWord:
         self.m_floats = [float(x), float(y), float(z), float(w)]
 
     def x(self) -> float:
-        """The first number."""
+        """Return the first number."""
         return self.m_floats[0]
 
     def y(self) -> float:
-        """The second number."""
+        """Return the second number."""
         return self.m_floats[1]
 
     def z(self) -> float:
-        """The third number."""
+        """Return the third number."""
         return self.m_floats[2]
 
     def w(self) -> float:
-        """The fourth number."""
+        """Return the fourth number."""
         return self.m_floats[3]
 
     getX, getY, getZ, getW = x, y, z, w

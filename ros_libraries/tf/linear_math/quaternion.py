@@ -15,7 +15,7 @@ Halves = tuple[float, float, float, float, float, float]
 class Quaternion(QuadWord):
     """A rotation, `Quaternion(x, y, z, w)` or `Quaternion(axis, angle)`; the identity without arguments.
 
-    Three numbers are yaw, pitch, roll as of `setEuler`.
+    Three numbers are yaw, pitch, roll as in `setEuler`.
     """
 
     __slots__ = ()
@@ -64,7 +64,7 @@ class Quaternion(QuadWord):
         )
 
     def setEulerZYX(self, yaw: float, pitch: float, roll: float) -> None:
-        """The old name of `setRPY`, the other way round."""
+        """Set the rotation; this is the old form of `setRPY`, with the arguments in reverse order."""
         self.setRPY(roll, pitch, yaw)
 
     # -- arithmetic --------------------------------------------------------------------------------------------------
@@ -106,22 +106,22 @@ class Quaternion(QuadWord):
         return self
 
     def inverse(self) -> Quaternion:
-        """The rotation back."""
+        """Return the inverse rotation."""
         x, y, z, w = self
         return Quaternion(-x, -y, -z, w)
 
     # -- measuring ---------------------------------------------------------------------------------------------------
 
     def dot(self, q: Quaternion) -> float:
-        """Scalar product."""
+        """Return the scalar product."""
         return self[0] * q[0] + self[1] * q[1] + self[2] * q[2] + self[3] * q[3]
 
     def length2(self) -> float:
-        """Square of the length."""
+        """Return the square of the length."""
         return self.dot(self)
 
     def length(self) -> float:
-        """Length."""
+        """Return the length."""
         return sqrt(self.length2())
 
     def normalize(self) -> Quaternion:
@@ -130,27 +130,27 @@ class Quaternion(QuadWord):
         return self
 
     def normalized(self) -> Quaternion:
-        """This quaternion with length 1."""
+        """Return this quaternion with length 1."""
         return self / self.length()
 
     def angle(self, q: Quaternion) -> float:
-        """Half the angle to another rotation, in rad."""
+        """Return half the angle to another rotation, in rad."""
         return tfAcos(self.dot(q) / sqrt(self.length2() * q.length2()))
 
     def angleShortestPath(self, q: Quaternion) -> float:
-        """The angle to another rotation along the shortest path, in rad."""
+        """Return the angle to another rotation along the shortest path, in rad."""
         return tfAcos(abs(self.dot(q)) / sqrt(self.length2() * q.length2())) * 2.0
 
     def getAngle(self) -> float:
-        """The angle of the rotation, 0 to 2 pi rad."""
+        """Return the angle of the rotation, 0 to 2 pi rad."""
         return 2.0 * tfAcos(self[3])
 
     def getAngleShortestPath(self) -> float:
-        """The angle of the rotation along the shortest path, 0 to pi rad."""
+        """Return the angle of the rotation along the shortest path, 0 to pi rad."""
         return 2.0 * tfAcos(abs(self[3]))
 
     def getAxis(self) -> Vector3:
-        """The axis of the rotation; X when it does not turn."""
+        """Return the axis of the rotation, or X without rotation."""
         sine2 = 1.0 - self[3] * self[3]
         if sine2 < 10.0 * TFSIMD_EPSILON:
             return Vector3(1.0, 0.0, 0.0)
@@ -160,17 +160,17 @@ class Quaternion(QuadWord):
     # -- two rotations -----------------------------------------------------------------------------------------------
 
     def farthest(self, qd: Quaternion) -> Quaternion:
-        """That of `qd` and -`qd` which is farther away."""
+        """Return the one of `qd` and -`qd` that is farther away."""
         difference, total = self - qd, self + qd
         return qd if difference.length2() > total.length2() else -qd
 
     def nearest(self, qd: Quaternion) -> Quaternion:
-        """That of `qd` and -`qd` which is nearer."""
+        """Return the one of `qd` and -`qd` that is nearer."""
         difference, total = self - qd, self + qd
         return qd if difference.length2() < total.length2() else -qd
 
     def slerp(self, q: Quaternion, t: float) -> Quaternion:
-        """The rotation between this and another, at constant speed: this for `t` 0, the other for 1."""
+        """Return the rotation between this and another, at constant speed: this for `t` 0, the other for 1."""
         theta = self.angleShortestPath(q) / 2.0
         if theta == 0.0:
             return _made(self)
@@ -180,12 +180,12 @@ class Quaternion(QuadWord):
 
     @staticmethod
     def getIdentity() -> Quaternion:
-        """The rotation that does not turn."""
+        """Return the identity."""
         return Quaternion()
 
 
 def _halves(yaw: float, pitch: float, roll: float) -> Halves:
-    """Cosine and sine of half of each angle."""
+    """Return cosine and sine of half of each angle."""
     y, p, r = yaw * 0.5, pitch * 0.5, roll * 0.5
     return cos(y), sin(y), cos(p), sin(p), cos(r), sin(r)
 
@@ -197,7 +197,7 @@ def _made(numbers: object) -> Quaternion:
 
 
 def _product(a: QuadWord, b: QuadWord) -> Quaternion:
-    """The product; a vector counts as a quaternion whose w is 0."""
+    """Return the product. A vector counts as a quaternion whose w is 0."""
     ax, ay, az, aw = a.m_floats
     bx, by, bz, bw = b.m_floats
     return Quaternion(
@@ -209,43 +209,43 @@ def _product(a: QuadWord, b: QuadWord) -> Quaternion:
 
 
 def dot(q1: Quaternion, q2: Quaternion) -> float:
-    """Scalar product."""
+    """Return the scalar product."""
     return q1.dot(q2)
 
 
 def length(q: Quaternion) -> float:
-    """Length."""
+    """Return the length."""
     return q.length()
 
 
 def angle(q1: Quaternion, q2: Quaternion) -> float:
-    """Half the angle of two rotations, in rad."""
+    """Return half the angle of two rotations, in rad."""
     return q1.angle(q2)
 
 
 def angleShortestPath(q1: Quaternion, q2: Quaternion) -> float:
-    """The angle of two rotations along the shortest path, in rad."""
+    """Return the angle of two rotations along the shortest path, in rad."""
     return q1.angleShortestPath(q2)
 
 
 def inverse(q: Quaternion) -> Quaternion:
-    """The rotation back."""
+    """Return the inverse rotation."""
     return q.inverse()
 
 
 def slerp(q1: Quaternion, q2: Quaternion, t: float) -> Quaternion:
-    """The rotation between two: q1 for `t` 0, q2 for 1."""
+    """Return the rotation between two: q1 for `t` 0, q2 for 1."""
     return q1.slerp(q2, t)
 
 
 def quatRotate(rotation: Quaternion, v: Vector3) -> Vector3:
-    """A vector, turned."""
+    """Return a vector, turned."""
     turned = rotation * v * rotation.inverse()
     return Vector3(turned[0], turned[1], turned[2])
 
 
 def shortestArcQuat(v0: Vector3, v1: Vector3) -> Quaternion:
-    """The rotation that turns one vector of length 1 to another."""
+    """Return the rotation that turns one vector of length 1 to another."""
     c, d = v0.cross(v1), v0.dot(v1)
     if d < -1.0 + TFSIMD_EPSILON:
         across, _ = tfPlaneSpace1(v0)
@@ -255,5 +255,5 @@ def shortestArcQuat(v0: Vector3, v1: Vector3) -> Quaternion:
 
 
 def shortestArcQuatNormalize2(v0: Vector3, v1: Vector3) -> Quaternion:
-    """The rotation that turns one vector to another; both get length 1."""
+    """Return the rotation that turns one vector to another. Both are scaled to length 1."""
     return shortestArcQuat(v0.normalize(), v1.normalize())

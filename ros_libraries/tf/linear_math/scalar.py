@@ -30,12 +30,12 @@ tfFmod = math.fmod
 
 
 def tfAcos(x: float) -> float:
-    """Arc cosine; a value beyond -1 or 1 counts as that."""
+    """Return the arc cosine. The argument is clamped to -1 and 1."""
     return math.acos(min(max(x, -1.0), 1.0))
 
 
 def tfAsin(x: float) -> float:
-    """Arc sine; a value beyond -1 or 1 counts as that."""
+    """Return the arc sine. The argument is clamped to -1 and 1."""
     return math.asin(min(max(x, -1.0), 1.0))
 
 
@@ -45,7 +45,7 @@ def tfRecipSqrt(x: float) -> float:
 
 
 def tfAtan2Fast(y: float, x: float) -> float:
-    """A rough arc tangent of y / x, good to 0.08 rad."""
+    """Return a rough arc tangent of y / x, good to 0.08 rad."""
     quarter = TFSIMD_PI / 4.0
     size = math.fabs(y)
     if x >= 0.0:
@@ -56,17 +56,17 @@ def tfAtan2Fast(y: float, x: float) -> float:
 
 
 def tfFuzzyZero(x: float) -> bool:
-    """Whether a value is within an epsilon of 0."""
+    """Return whether a value is within an epsilon of 0."""
     return math.fabs(x) < TFSIMD_EPSILON
 
 
 def tfEqual(a: float, eps: float) -> bool:
-    """Whether a value is within `eps` of 0."""
+    """Return whether a value is within `eps` of 0."""
     return a <= eps and not a < -eps
 
 
 def tfGreaterEqual(a: float, eps: float) -> bool:
-    """Whether a value is above `eps`."""
+    """Return whether a value is above `eps`."""
     return not a <= eps
 
 
@@ -76,12 +76,12 @@ def tfIsNegative(x: float) -> int:
 
 
 def tfRadians(x: float) -> float:
-    """Degrees in radians."""
+    """Convert degrees to radians."""
     return x * TFSIMD_RADS_PER_DEG
 
 
 def tfDegrees(x: float) -> float:
-    """Radians in degrees."""
+    """Convert radians to degrees."""
     return x * TFSIMD_DEGS_PER_RAD
 
 
@@ -99,39 +99,39 @@ def tfSelect(condition: int, valueIfConditionNonZero: float, valueIfConditionZer
 
 
 def tfMachineIsLittleEndian() -> bool:
-    """Whether the host stores the low byte first."""
+    """Return whether the host stores the low byte first."""
     return sys.byteorder == "little"
 
 
 def tfSwapEndian(val: int) -> int:
-    """An unsigned 32-bit number with its bytes reversed."""
+    """Return an unsigned 32-bit number with its bytes reversed."""
     return int.from_bytes((val & 0xFFFFFFFF).to_bytes(4, "little"), "big")
 
 
 def tfSwapEndianFloat(d: float) -> int:
-    """The reversed bytes of a single as an unsigned number."""
+    """Return the reversed bytes of a single as an unsigned number."""
     return int.from_bytes(struct.pack("<f", d), "big")
 
 
 def tfUnswapEndianFloat(a: int) -> float:
-    """The single whose reversed bytes are an unsigned number."""
+    """Return the single precision number whose reversed bytes are an unsigned number."""
     found: float = struct.unpack("<f", a.to_bytes(4, "big"))[0]
     return found
 
 
 def tfSwapEndianDouble(d: float) -> bytes:
-    """The reversed bytes of a double."""
+    """Return the reversed bytes of a double."""
     return struct.pack("<d", d)[::-1]
 
 
 def tfUnswapEndianDouble(src: bytes) -> float:
-    """The double of reversed bytes."""
+    """Return the double of reversed bytes."""
     found: float = struct.unpack("<d", src[::-1])[0]
     return found
 
 
 def tfNormalizeAngle(angleInRadians: float) -> float:
-    """An angle in rad, between -pi and pi."""
+    """Return an angle in rad, between -pi and pi."""
     angle = math.fmod(angleInRadians, TFSIMD_2_PI)
     if angle < -TFSIMD_PI:
         return angle + TFSIMD_2_PI

@@ -15,7 +15,7 @@ class Transform:
 
     Args:
         rotation: a matrix, which is copied, or a quaternion.
-        origin: where the origin goes, which is copied.
+        origin: translation of the origin, which is copied.
     """
 
     __slots__ = ("m_basis", "m_origin")
@@ -40,15 +40,15 @@ class Transform:
     # -- parts -------------------------------------------------------------------------------------------------------
 
     def getBasis(self) -> Matrix3x3:
-        """The rotation; changing it changes the transform."""
+        """Return the rotation. Changing it changes the transform."""
         return self.m_basis
 
     def getOrigin(self) -> Vector3:
-        """The translation; changing it changes the transform."""
+        """Return the translation. Changing it changes the transform."""
         return self.m_origin
 
     def getRotation(self) -> Quaternion:
-        """The rotation as a quaternion."""
+        """Return the rotation as a quaternion."""
         return self.m_basis.getRotation()
 
     def setBasis(self, basis: Matrix3x3) -> None:
@@ -70,7 +70,7 @@ class Transform:
 
     @staticmethod
     def getIdentity() -> Transform:
-        """The identity."""
+        """Return the identity."""
         return Transform()
 
     def setFromOpenGLMatrix(self, m: Sequence[float]) -> None:
@@ -79,13 +79,13 @@ class Transform:
         self.m_origin.setValue(m[12], m[13], m[14])
 
     def getOpenGLMatrix(self) -> list[float]:
-        """The 4x4 matrix, column by column."""
+        """Return the 4x4 matrix, column by column."""
         return [*self.m_basis.getOpenGLSubMatrix(), *self.m_origin, 1.0]
 
     # -- products ----------------------------------------------------------------------------------------------------
 
     def __call__(self, x: Vector3) -> Vector3:
-        """A point, transformed."""
+        """Return a point, transformed."""
         return self.m_basis * x + self.m_origin
 
     @overload
@@ -110,16 +110,16 @@ class Transform:
         self.setOrigin(product.m_origin)
 
     def inverse(self) -> Transform:
-        """The transform back."""
+        """Return the inverse transform."""
         back = self.m_basis.transpose()
         return Transform(back, back * -self.m_origin)
 
     def inverseTimes(self, t: Transform) -> Transform:
-        """The transform back, times another."""
+        """Return the inverse transform, times another."""
         return Transform(self.m_basis.transposeTimes(t.m_basis), (t.m_origin - self.m_origin) * self.m_basis)
 
     def invXform(self, inVec: Vector3) -> Vector3:
-        """A point, transformed back."""
+        """Return a point, transformed by the inverse."""
         return self.m_basis.transpose() * (inVec - self.m_origin)
 
 

@@ -66,36 +66,36 @@ class Vector3(QuadWord):
     # -- products and lengths ----------------------------------------------------------------------------------------
 
     def dot(self, v: Vector3) -> float:
-        """Scalar product."""
+        """Return the scalar product."""
         return self[0] * v[0] + self[1] * v[1] + self[2] * v[2]
 
     def cross(self, v: Vector3) -> Vector3:
-        """Vector product."""
+        """Return the vector product."""
         (a, b, c), (d, e, f) = self, v
         return Vector3(b * f - c * e, c * d - a * f, a * e - b * d)
 
     def triple(self, v1: Vector3, v2: Vector3) -> float:
-        """Volume that this vector spans with two others."""
+        """Return the volume that this vector spans with two others."""
         return self.dot(v1.cross(v2))
 
     def length2(self) -> float:
-        """Square of the length."""
+        """Return the square of the length."""
         return self.dot(self)
 
     def length(self) -> float:
-        """Length."""
+        """Return the length."""
         return sqrt(self.length2())
 
     def distance2(self, v: Vector3) -> float:
-        """Square of the distance to another point."""
+        """Return the square of the distance to another point."""
         return (v - self).length2()
 
     def distance(self, v: Vector3) -> float:
-        """Distance to another point."""
+        """Return the distance to another point."""
         return (v - self).length()
 
     def angle(self, v: Vector3) -> float:
-        """Angle to another vector, in rad."""
+        """Return the angle to another vector, in rad."""
         return tfAcos(self.dot(v) / sqrt(self.length2() * v.length2()))
 
     def normalize(self) -> Vector3:
@@ -104,11 +104,11 @@ class Vector3(QuadWord):
         return self
 
     def normalized(self) -> Vector3:
-        """A vector of length 1 in this direction."""
+        """Return a vector of length 1 in this direction."""
         return self / self.length()
 
     def rotate(self, wAxis: Vector3, angle: float) -> Vector3:
-        """This vector turned about an axis.
+        """Return this vector turned about an axis.
 
         Args:
             wAxis: the axis, of length 1.
@@ -120,29 +120,29 @@ class Vector3(QuadWord):
     # -- elements ----------------------------------------------------------------------------------------------------
 
     def absolute(self) -> Vector3:
-        """The vector of the absolute values."""
+        """Return the vector of the absolute values."""
         return Vector3(*map(abs, self))
 
     def minAxis(self) -> int:
-        """Index of the smallest element."""
+        """Return the index of the smallest element."""
         x, y, z = self
         if x < y:
             return 0 if x < z else 2
         return 1 if y < z else 2
 
     def maxAxis(self) -> int:
-        """Index of the largest element."""
+        """Return the index of the largest element."""
         x, y, z = self
         if x < y:
             return 2 if y < z else 1
         return 2 if x < z else 0
 
     def furthestAxis(self) -> int:
-        """Index of the axis that this vector is furthest from."""
+        """Return the index of the axis that this vector is furthest from."""
         return self.absolute().minAxis()
 
     def closestAxis(self) -> int:
-        """Index of the axis that this vector is closest to."""
+        """Return the index of the axis that this vector is closest to."""
         return self.absolute().maxAxis()
 
     def setInterpolate3(self, v0: Vector3, v1: Vector3, rt: float) -> None:
@@ -151,11 +151,11 @@ class Vector3(QuadWord):
         self.m_floats[:3] = (s * a + rt * b for a, b in zip(v0, v1, strict=True))
 
     def lerp(self, v: Vector3, t: float) -> Vector3:
-        """The point between this and another: this for `t` 0, the other for 1."""
+        """Return the point between this and another: this for `t` 0, the other for 1."""
         return Vector3(*(a + (b - a) * t for a, b in zip(self, v, strict=True)))
 
     def getSkewSymmetricMatrix(self) -> tuple[Vector3, Vector3, Vector3]:
-        """The rows of the matrix that makes the vector product with this vector."""
+        """Return the rows of the matrix that makes the vector product with this vector."""
         x, y, z = self
         return Vector3(0.0, -z, y), Vector3(z, 0.0, -x), Vector3(-y, x, 0.0)
 
@@ -164,51 +164,51 @@ class Vector3(QuadWord):
         self.setValue(0.0, 0.0, 0.0)
 
     def isZero(self) -> bool:
-        """Whether all elements are 0."""
+        """Return whether all elements are 0."""
         return not any(self)
 
     def fuzzyZero(self) -> bool:
-        """Whether the length is almost 0."""
+        """Return whether the length is almost 0."""
         return self.length2() < TFSIMD_EPSILON
 
 
 def tfDot(v1: Vector3, v2: Vector3) -> float:
-    """Scalar product."""
+    """Return the scalar product."""
     return v1.dot(v2)
 
 
 def tfCross(v1: Vector3, v2: Vector3) -> Vector3:
-    """Vector product."""
+    """Return the vector product."""
     return v1.cross(v2)
 
 
 def tfTriple(v1: Vector3, v2: Vector3, v3: Vector3) -> float:
-    """Volume that three vectors span."""
+    """Return the volume that three vectors span."""
     return v1.triple(v2, v3)
 
 
 def tfDistance2(v1: Vector3, v2: Vector3) -> float:
-    """Square of the distance of two points."""
+    """Return the square of the distance of two points."""
     return v1.distance2(v2)
 
 
 def tfDistance(v1: Vector3, v2: Vector3) -> float:
-    """Distance of two points."""
+    """Return the distance of two points."""
     return v1.distance(v2)
 
 
 def tfAngle(v1: Vector3, v2: Vector3) -> float:
-    """Angle of two vectors, in rad."""
+    """Return the angle of two vectors, in rad."""
     return v1.angle(v2)
 
 
 def lerp(v1: Vector3, v2: Vector3, t: float) -> Vector3:
-    """The point between two: v1 for `t` 0, v2 for 1."""
+    """Return the point between two: v1 for `t` 0, v2 for 1."""
     return v1.lerp(v2, t)
 
 
 def tfPlaneSpace1(n: Vector3) -> tuple[Vector3, Vector3]:
-    """Two vectors that span the plane orthogonal to `n`, which has length 1."""
+    """Return two vectors that span the plane orthogonal to `n`, which has length 1."""
     x, y, z = n
     if abs(z) > TFSIMDSQRT12:
         a = y * y + z * z

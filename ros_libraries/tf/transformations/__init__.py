@@ -1,6 +1,6 @@
 """tf.transformations: homogeneous matrices, Euler angles and quaternions (x, y, z, w), as NumPy arrays.
 
-Angles are in rad. Where a matrix is taken apart, eigenvectors decide, with the signs that LAPACK gives them.
+Angles are in rad. Decompositions of matrices use eigenvectors, with the signs that LAPACK gives them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Turning things with a mouse: a ball under the pointer (Shoemake's Arcball). Imports NumPy."""
+"""Rotates objects with a mouse: a ball under the pointer (Shoemake's Arcball). Imports NumPy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Arcball:
     """A ball in a window.
 
     Args:
-        initial: how it is turned: a quaternion (x, y, z, w) or a 4x4 matrix; None for not at all.
+        initial: initial rotation: a quaternion (x, y, z, w) or a 4x4 matrix; None for no rotation.
 
     Raises:
         ValueError: `initial` is neither.
@@ -43,7 +43,7 @@ class Arcball:
         self._center = (center[0], center[1])
 
     def setaxes(self, *axes: Any) -> None:
-        """Set the axes that turning may be held to."""
+        """Set the axes that can constrain the rotation."""
         self._axes = [unit_vector(axis) for axis in axes]
 
     def setconstrain(self, constrain: Any) -> None:
@@ -51,11 +51,11 @@ class Arcball:
         self._constrain = constrain == True  # noqa: E712  # as in tf: anything else than True and 1 is not
 
     def getconstrain(self) -> bool:
-        """Whether turning is held to the axes."""
+        """Return whether the rotation is constrained to the axes."""
         return self._constrain
 
     def down(self, point: Sequence[float]) -> None:
-        """The button went down, at a point in pixels."""
+        """Handle a press of the button at a point in pixels."""
         self._vdown = arcball_map_to_sphere(point, self._center, self._radius)
         self._qdown = self._qpre = self._qnow
         self._axis = None
@@ -64,7 +64,7 @@ class Arcball:
             self._vdown = arcball_constrain_to_axis(self._vdown, self._axis)
 
     def drag(self, point: Sequence[float]) -> None:
-        """The pointer went to a point in pixels."""
+        """Handle a move of the pointer to a point in pixels."""
         now = arcball_map_to_sphere(point, self._center, self._radius)
         if self._axis is not None:
             now = arcball_constrain_to_axis(now, self._axis)
@@ -95,7 +95,7 @@ def _turned(initial: Any) -> Any:
 
 
 def arcball_map_to_sphere(point: Sequence[float], center: Sequence[float], radius: float) -> Any:
-    """The point of the unit sphere under a point of the window; beside the ball its nearest edge."""
+    """Return the point of the unit sphere under a point of the window; outside of the ball, the nearest edge point."""
     x, y = (point[0] - center[0]) / radius, (center[1] - point[1]) / radius
     beyond = x * x + y * y
     if beyond > 1.0:
@@ -105,7 +105,7 @@ def arcball_map_to_sphere(point: Sequence[float], center: Sequence[float], radiu
 
 
 def arcball_constrain_to_axis(point: Any, axis: Any) -> Any:
-    """The point of the unit sphere nearest to another, in the plane orthogonal to an axis."""
+    """Return the point of the unit sphere nearest to another, in the plane orthogonal to an axis."""
     v, a = np.array(point, dtype=np.float64), np.array(axis, dtype=np.float64)
     v -= a * np.dot(a, v)
     length = vector_norm(v)
@@ -117,6 +117,6 @@ def arcball_constrain_to_axis(point: Any, axis: Any) -> Any:
 
 
 def arcball_nearest_axis(point: Any, axes: Iterable[Any]) -> Any:
-    """The axis whose arc on the ball is nearest to a point; None without axes."""
+    """Return the axis whose arc on the ball is nearest to a point, or None without axes."""
     at = np.asarray(point, dtype=np.float64)
     return max(axes, key=lambda axis: float(np.dot(arcball_constrain_to_axis(at, axis), at)), default=None)

@@ -1,4 +1,4 @@
-"""Matrices put together of several steps, taken apart into them, or fitted to points. Imports NumPy."""
+"""Matrices composed of several steps, decomposed into them, or fitted to points. Imports NumPy."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ Parts = tuple[Any, list[Any], list[float], Any, Any]
 
 
 def decompose_matrix(matrix: Any) -> Parts:
-    """The steps that a homogeneous matrix consists of, as `compose_matrix` takes them.
+    """Return the steps of a homogeneous matrix, as `compose_matrix` takes them.
 
     Returns:
         scale factors for x, y, z; shear factors for x-y, x-z, y-z; angles in rad about the fixed axes x, y, z;
         translation; perspective, the last row.
 
     Raises:
-        ValueError: it cannot be taken apart.
+        ValueError: the matrix cannot be decomposed.
     """
     m = np.array(matrix, dtype=np.float64).T
     if abs(m[3, 3]) < EPS:
@@ -41,7 +41,7 @@ def decompose_matrix(matrix: Any) -> Parts:
 
 
 def _orthogonal(rows: Any) -> tuple[Any, Any, list[Any]]:
-    """Rows of a rotation, and the scale and shear that were in them (Gram and Schmidt)."""
+    """Return rows of a rotation, and the scale and shear that were in them (Gram and Schmidt)."""
     scale, shear = np.zeros(3), [0.0, 0.0, 0.0]
     scale[0] = vector_norm(rows[0])
     rows[0] /= scale[0]
@@ -71,7 +71,7 @@ def _angles(rows: Any) -> list[float]:
 def compose_matrix(
     scale: Any = None, shear: Any = None, angles: Any = None, translate: Any = None, perspective: Any = None
 ) -> Any:
-    """The homogeneous matrix of several steps, each left out when it is None.
+    """Return the homogeneous matrix of several steps, each left out when it is None.
 
     Args:
         scale: factors for x, y, z.
@@ -99,7 +99,7 @@ def compose_matrix(
 
 
 def orthogonalization_matrix(lengths: Any, angles: Any) -> Any:
-    """The matrix from a crystal's cell to orthogonal coordinates.
+    """Return the matrix from a crystal's cell to orthogonal coordinates.
 
     Args:
         lengths: of the cell's three edges.
@@ -117,7 +117,7 @@ def orthogonalization_matrix(lengths: Any, angles: Any) -> Any:
 
 
 def superimposition_matrix(v0: Any, v1: Any, scaling: bool = False, usesvd: bool = True) -> Any:
-    """The matrix that brings points closest to other points: it turns, moves, and scales if asked to.
+    """Return the matrix that brings points closest to other points: it turns, moves, and scales if asked to.
 
     Args:
         v0: the points, an array of 3 or 4 rows.
@@ -164,16 +164,16 @@ def _horn(old: Any, new: Any) -> Any:
 
 
 def inverse_matrix(matrix: Any) -> Any:
-    """The inverse of a square matrix."""
+    """Return the inverse of a square matrix."""
     return np.linalg.inv(matrix)
 
 
 def concatenate_matrices(*matrices: Any) -> Any:
-    """The product of homogeneous matrices."""
+    """Return the product of homogeneous matrices."""
     return reduce(np.dot, matrices, np.identity(4))
 
 
 def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
-    """Whether two homogeneous matrices do the same."""
+    """Return whether two homogeneous matrices do the same."""
     first, second = np.array(matrix0, dtype=np.float64), np.array(matrix1, dtype=np.float64)
     return bool(np.allclose(first / first[3, 3], second / second[3, 3]))

@@ -1,8 +1,8 @@
 """Euler angles, in any of 24 conventions. Imports NumPy.
 
-A convention is a string: "s" for fixed axes or "r" for axes that turn along, then three axes, as "sxyz"; or the tuple
-(first axis, odd, repeated, turning) that tf also knows: of the fixed axes 0 to 2 the first one, whether the second is
-not the next in a circle, whether the third is the first again, and whether it is to be read as turning axes, backwards.
+A convention is a string: "s" for fixed axes or "r" for rotating axes, then three axes, as "sxyz". It can also be tf's
+tuple (first axis, odd, repeated, turning). The first axis is 0 to 2, of the fixed axes. "odd": the second axis is not
+the next in a circle. "repeated": the third axis is the first again. "turning": read it as rotating axes, backwards.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ Convention = tuple[int, int, int, int]
 
 
 def _others(first: int, odd: int) -> tuple[int, int]:
-    """The second axis, and the one that remains."""
+    """Return the second axis, and the one that remains."""
     return (first + 1 + odd) % 3, (first + 2 - odd) % 3
 
 
@@ -36,10 +36,10 @@ CONVENTIONS: dict[str, Convention] = {_name(each): each for each in product((0, 
 
 
 def _convention(axes: Axes) -> Convention:
-    """A convention as a tuple.
+    """Return a convention as a tuple.
 
     Raises:
-        KeyError: there is none such.
+        KeyError: the convention is unknown.
     """
     if isinstance(axes, str):
         return CONVENTIONS[axes.lower()]
@@ -47,12 +47,12 @@ def _convention(axes: Axes) -> Convention:
 
 
 def euler_matrix(ai: float, aj: float, ak: float, axes: Axes = "sxyz") -> Any:
-    """The homogeneous matrix that turns by three angles in rad, about the axes of a convention."""
+    """Return the homogeneous matrix that turns by three angles in rad, about the axes of a convention."""
     return quaternion_matrix(quaternion_from_euler(ai, aj, ak, axes))
 
 
 def euler_from_matrix(matrix: Any, axes: Axes = "sxyz") -> tuple[float, float, float]:
-    """The angles in rad of a matrix that turns, about the axes of a convention; there are others that fit."""
+    """Return the angles in rad of a rotation matrix, about the axes of a convention. Other angles may also fit."""
     first, odd, repeated, turning = _convention(axes)
     i, (j, k) = first, _others(first, odd)
     m = np.asarray(matrix, dtype=np.float64)[:3, :3].tolist()
@@ -74,12 +74,12 @@ def euler_from_matrix(matrix: Any, axes: Axes = "sxyz") -> tuple[float, float, f
 
 
 def euler_from_quaternion(quaternion: Any, axes: Axes = "sxyz") -> tuple[float, float, float]:
-    """The angles in rad of a rotation (x, y, z, w), about the axes of a convention."""
+    """Return the angles in rad of a rotation (x, y, z, w), about the axes of a convention."""
     return euler_from_matrix(quaternion_matrix(quaternion), axes)
 
 
 def quaternion_from_euler(ai: float, aj: float, ak: float, axes: Axes = "sxyz") -> Any:
-    """The quaternion (x, y, z, w) of turning by three angles in rad, about the axes of a convention."""
+    """Return the quaternion (x, y, z, w) of turning by three angles in rad, about the axes of a convention."""
     name = _name(_convention(axes))
     turns = [_about(axis, angle) for axis, angle in zip(name[1:], (ai, aj, ak), strict=True)]
     first, second, third = turns[::-1] if name[0] == "r" else turns

@@ -1,4 +1,4 @@
-"""Elementary homogeneous matrices: made from what they do, and taken apart again. Imports NumPy."""
+"""Elementary homogeneous matrices: made from their parameters, and decomposed again. Imports NumPy."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from tf.transformations.vectors import eigenvectors, fixed_point, unit_vector, v
 
 
 def identity_matrix() -> Any:
-    """The matrix that does nothing."""
+    """Return the identity matrix."""
     return np.identity(4)
 
 
 def translation_matrix(direction: Any) -> Any:
-    """The matrix that moves by a vector."""
+    """Return the matrix that moves by a vector."""
     found = np.identity(4)
     found[:3, 3] = direction[:3]
     return found
 
 
 def translation_from_matrix(matrix: Any) -> Any:
-    """The vector that a matrix moves by."""
+    """Return the vector that a matrix moves by."""
     return np.array(matrix)[:3, 3]
 
 
 def reflection_matrix(point: Any, normal: Any) -> Any:
-    """The matrix that mirrors at a plane.
+    """Return the matrix that mirrors at a plane.
 
     Args:
         point: on the plane.
@@ -42,7 +42,7 @@ def reflection_matrix(point: Any, normal: Any) -> Any:
 
 
 def reflection_from_matrix(matrix: Any) -> tuple[Any, Any]:
-    """Point and normal of the plane that a matrix mirrors at.
+    """Return the point and normal of the plane that a matrix mirrors at.
 
     Raises:
         ValueError: it does not mirror.
@@ -55,11 +55,11 @@ def reflection_from_matrix(matrix: Any) -> tuple[Any, Any]:
 
 
 def rotation_matrix(angle: float, direction: Any, point: Any = None) -> Any:
-    """The matrix that turns about an axis.
+    """Return the matrix of a rotation about an axis.
 
     Args:
         angle: in rad.
-        direction: of the axis, of any length.
+        direction: direction of the axis, of any length.
         point: on the axis; None for the origin.
     """
     x, y, z = unit_vector(direction[:3]).tolist()
@@ -78,7 +78,7 @@ def rotation_matrix(angle: float, direction: Any, point: Any = None) -> Any:
 
 
 def rotation_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Angle in rad, direction of the axis, and a point on it, of a matrix that turns.
+    """Return the angle in rad, direction of the axis, and a point on it, of a matrix that turns.
 
     Raises:
         ValueError: it does not turn.
@@ -100,12 +100,12 @@ def rotation_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
 
 
 def scale_matrix(factor: float, origin: Any = None, direction: Any = None) -> Any:
-    """The matrix that scales.
+    """Return the matrix that scales.
 
     Args:
-        factor: by how much.
+        factor: scale factor.
         origin: the point that stays; None for the origin.
-        direction: in which it scales; None for all directions.
+        direction: direction of scaling; None for all directions.
     """
     found = np.identity(4)
     if direction is None:
@@ -121,7 +121,7 @@ def scale_matrix(factor: float, origin: Any = None, direction: Any = None) -> An
 
 
 def scale_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
-    """Factor, origin, and direction (None for all) of a matrix that scales.
+    """Return the factor, origin, and direction (None for all) of a matrix that scales.
 
     Raises:
         ValueError: it does not scale.
@@ -136,11 +136,11 @@ def scale_from_matrix(matrix: Any) -> tuple[float, Any, Any]:
 
 
 def shear_matrix(angle: float, direction: Any, point: Any, normal: Any) -> Any:
-    """The matrix that shears along a plane.
+    """Return the matrix that shears along a plane.
 
     Args:
-        angle: of the shear, in rad.
-        direction: in which points move, in the plane.
+        angle: angle of the shear, in rad.
+        direction: direction of the movement, in the plane.
         point: on the plane.
         normal: orthogonal to it.
 
@@ -158,7 +158,7 @@ def shear_matrix(angle: float, direction: Any, point: Any, normal: Any) -> Any:
 
 
 def shear_from_matrix(matrix: Any) -> tuple[float, Any, Any, Any]:
-    """Angle in rad, direction, point and normal of a matrix that shears.
+    """Return the angle in rad, direction, point and normal of a matrix that shears.
 
     Raises:
         ValueError: it does not shear.

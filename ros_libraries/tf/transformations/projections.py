@@ -12,14 +12,14 @@ from tf.transformations.vectors import EPS, eigenvectors, unit_vector, vector_no
 def projection_matrix(
     point: Any, normal: Any, direction: Any = None, perspective: Any = None, pseudo: bool = False
 ) -> Any:
-    """The matrix that projects onto a plane.
+    """Return the matrix that projects onto a plane.
 
     Args:
         point: on the plane.
         normal: orthogonal to it.
-        direction: of a parallel projection; None for the normal's.
+        direction: direction of a parallel projection; None for the normal's.
         perspective: the centre of a perspective projection; None for a parallel one.
-        pseudo: of a perspective projection, keep relative depths.
+        pseudo: in a perspective projection, keep relative depths.
     """
     at = np.array(point[:3], dtype=np.float64)
     n = unit_vector(normal[:3])
@@ -47,7 +47,7 @@ def _perspective(point: Any, normal: Any, centre: Any, pseudo: bool) -> Any:
 
 
 def projection_from_matrix(matrix: Any, pseudo: bool = False) -> tuple[Any, Any, Any, Any, bool]:
-    """The arguments of `projection_matrix` that make a matrix.
+    """Return the arguments of `projection_matrix` that make a matrix.
 
     Args:
         matrix: the matrix.
@@ -84,7 +84,7 @@ def _parallel_parts(m: Any, point: Any) -> tuple[Any, Any, Any, Any, bool]:
 def clip_matrix(
     left: float, right: float, bottom: float, top: float, near: float, far: float, perspective: bool = False
 ) -> Any:
-    """The matrix that makes a view's coordinates lie from -1 to 1.
+    """Return the matrix that makes a view's coordinates lie from -1 to 1.
 
     Args:
         left, right, bottom, top, near, far: edges of the view along x, y and z.

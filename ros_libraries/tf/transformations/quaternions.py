@@ -14,14 +14,14 @@ Numbers = tuple[float, float, float, float]
 
 
 def quaternion_about_axis(angle: float, axis: Any) -> Any:
-    """The rotation about an axis of any length, by an angle in rad."""
+    """Return the rotation about an axis of any length, by an angle in rad."""
     length = vector_norm(axis[:3])
     s = math.sin(angle / 2.0) / length if length > EPS else 1.0
     return np.array((*(s * each for each in axis[:3]), math.cos(angle / 2.0)), dtype=np.float64)
 
 
 def quaternion_matrix(quaternion: Any) -> Any:
-    """The homogeneous matrix of a rotation of any length but 0, for which it is the identity."""
+    """Return the homogeneous matrix of a rotation of any length but 0, for which it is the identity."""
     x, y, z, w = map(float, quaternion[:4])
     length2 = x * x + y * y + z * z + w * w
     if length2 < EPS:
@@ -39,7 +39,7 @@ def quaternion_matrix(quaternion: Any) -> Any:
 
 
 def quaternion_from_matrix(matrix: Any) -> Any:
-    """The rotation of a homogeneous matrix."""
+    """Return the rotation of a homogeneous matrix."""
     m = np.asarray(matrix, dtype=np.float64)[:4, :4].tolist()
     one = m[3][3]
     total = m[0][0] + m[1][1] + m[2][2] + one
@@ -71,18 +71,18 @@ def quaternion_multiply(quaternion1: Any, quaternion0: Any) -> Any:
 
 
 def quaternion_conjugate(quaternion: Any) -> Any:
-    """The quaternion with its vector part negated; for one of length 1 the rotation back."""
+    """Return the quaternion with its vector part negated. For length 1, it is the inverse rotation."""
     x, y, z, w = quaternion[:4]
     return np.array((-x, -y, -z, w), dtype=np.float64)
 
 
 def quaternion_inverse(quaternion: Any) -> Any:
-    """The rotation back."""
+    """Return the inverse rotation."""
     return quaternion_conjugate(quaternion) / np.dot(quaternion, quaternion)
 
 
 def quaternion_slerp(quat0: Any, quat1: Any, fraction: float, spin: int = 0, shortestpath: bool = True) -> Any:
-    """The rotation between two, at constant speed.
+    """Return the rotation between two, at constant speed.
 
     Args:
         quat0: where `fraction` is 0.
@@ -106,7 +106,7 @@ def quaternion_slerp(quat0: Any, quat1: Any, fraction: float, spin: int = 0, sho
 
 
 def random_quaternion(rand: Any = None) -> Any:
-    """A rotation at random, all equally likely.
+    """Return a random rotation with uniform distribution.
 
     Args:
         rand: three random numbers from 0 to 1; None to draw them.
@@ -120,5 +120,5 @@ def random_quaternion(rand: Any = None) -> Any:
 
 
 def random_rotation_matrix(rand: Any = None) -> Any:
-    """The matrix of `random_quaternion`."""
+    """Return the matrix of `random_quaternion`."""
     return quaternion_matrix(random_quaternion(rand))

@@ -12,7 +12,7 @@ _EIGEN_TOLERANCE = 1e-8
 
 
 def vector_norm(data: Any, axis: int | None = None, out: Any = None) -> Any:
-    """Euclidean length.
+    """Return the Euclidean length.
 
     Args:
         data: a vector, or an array of vectors.
@@ -54,19 +54,19 @@ def unit_vector(data: Any, axis: int | None = None, out: Any = None) -> Any:
 
 
 def random_vector(size: Any) -> Any:
-    """Random numbers from 0 up to 1, as many as `size` says."""
+    """Return `size` random numbers from 0 up to 1."""
     return np.random.random(size)
 
 
 def eigenvectors(matrix: Any, value: float, tolerance: float = _EIGEN_TOLERANCE) -> list[Any]:
-    """The real parts of the eigenvectors of an eigenvalue, in LAPACK's order."""
+    """Return the real parts of the eigenvectors of an eigenvalue, in LAPACK's order."""
     values, vectors = np.linalg.eig(matrix)
     (found,) = np.nonzero(abs(np.real(values) - value) < tolerance)
     return [np.real(vectors[:, at]) for at in found]
 
 
 def fixed_point(matrix: Any, problem: str = "no unit eigenvector corresponding to eigenvalue 1") -> Any:
-    """A point (x, y, z, 1) that a homogeneous matrix leaves where it is.
+    """Return a point (x, y, z, 1) that a homogeneous matrix does not move.
 
     Raises:
         ValueError: there is none; `problem` is the text.

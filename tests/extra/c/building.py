@@ -31,16 +31,16 @@ def compile_c(folder: Path, name: str, source: str, *flags: str) -> Path:
     """Compile C text to `folder/NAME.so`.
 
     Args:
-        folder: where to.
-        name: of the file, without suffix.
-        source: the text, indented as it stands in the test; `declarations.h` is included before it.
-        flags: of the compiler, more than those that all tests have.
+        folder: folder of the result.
+        name: name of the file, without suffix.
+        source: the text, with the test's indentation; `declarations.h` is included before it.
+        flags: compiler flags in addition to those of all tests.
     """
     return _compile(compiler(), folder, f"{name}.c", source, flags)
 
 
 def compile_cpp(folder: Path, name: str, source: str, *flags: str) -> Path:
-    """As `compile_c`, for C++; functions that cFE calls are declared as extern "C" in the text."""
+    """Compile as `compile_c` does, for C++; functions that cFE calls are declared as extern "C" in the text."""
     return _compile(CPP, folder, f"{name}.cpp", source, flags)
 
 
@@ -55,16 +55,16 @@ def _compile(command: list[str], folder: Path, file: str, source: str, flags: tu
 
 
 def write_mission(folder: Path, *names: str, action: int = 0, libraries: str = "") -> str:
-    """The startup script of a mission whose applications are NAME.so, with the main functions NAME_Main.
+    """Write the startup script of a mission whose applications are NAME.so, with the main functions NAME_Main.
 
     Args:
-        folder: of the mission.
-        names: of the applications.
-        action: what an exception does: 0 restarts the application, 1 resets the processor.
+        folder: folder of the mission.
+        names: names of the applications.
+        action: action after an exception: 0 restarts the application, 1 resets the processor.
         libraries: lines of libraries, which come first.
 
     Returns:
-        What `Mission` takes.
+        The argument for `Mission`.
     """
     (folder / "startup.scr").write_text(
         libraries + "".join(APP.format(name, action) for name in names) + "!", encoding="utf-8"
@@ -83,23 +83,23 @@ def fly(folder: str, seconds: float = 2, tasks: str = "thread", **options: objec
 
 
 def digest_of(folder: str, tasks: str, seconds: float = 2) -> str:
-    """The digest of a mission's trace."""
+    """Return the digest of a mission's trace."""
     with Mission(folder, console=Console(quiet=True), tasks=tasks) as mission:
         mission.run_for(seconds)
         return mission.finish()
 
 
 def fly_c(folder: Path, source: str, seconds: float = 2, *, flags: tuple[str, ...] = (), tasks: str = "thread") -> str:
-    """Fly an application TEST whose text has TEST_Main; what the console shows."""
+    """Fly an application TEST whose text has TEST_Main. Returns the console output."""
     compile_c(folder, "TEST", source, *flags)
     return console_of(fly(write_mission(folder, "TEST"), seconds, tasks))
 
 
 def console_of(mission: Mission) -> str:
-    """What a mission's console shows."""
+    """Return the console output of a mission."""
     return "\n".join(mission.console.lines)
 
 
 def said(console: str) -> list[str]:
-    """What an application TEST wrote to the system log with "> " before it."""
+    """Return the lines that an application TEST wrote to the system log with the prefix "> "."""
     return [line.partition("> ")[2] for line in console.splitlines() if "> " in line]

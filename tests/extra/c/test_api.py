@@ -1,4 +1,4 @@
-"""Functions of cFE for C: each application says here what it said on NASA's cFE."""
+"""Functions of cFE for C: each application has the same output here as on NASA's cFE."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ def test_handles_of_tables_are_ids_without_deprecated_elements(tmp_path: Path) -
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [each for each in NAMES if each != "pools"])
 def test_it_says_the_same_under_the_guard(tmp_path: Path, name: str) -> None:
-    """That of pools looks at what a pool writes before its blocks, which are elsewhere then."""
+    """The application about pools reads the bytes that a pool writes before its blocks, which are elsewhere then."""
     assert fly(name, tmp_path, more="compiled: {guard: true}\n") == expected(name)
 
 
 def own(lines: list[str]) -> list[str]:
-    """What the application itself says."""
+    """Return the application's own output."""
     return [line for line in lines if line.startswith(MARK)]

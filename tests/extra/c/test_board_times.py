@@ -1,4 +1,4 @@
-"""The application that measures a board: on a profile it finds the times that the profile was made of."""
+"""The application that measures a board: on a profile it finds the profile's own times."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TIMES = {"--round-trip": 14_000, "--short": 4_960, "--long": 65_440}  # ns
 
 
 def board(file: Path, times: dict[str, int]) -> str:
-    """A profile of these times, on which calls with which code may wait cost nothing more."""
+    """Write a profile with these times and without the cost of calls that may wait."""
     words = [word for option, time in times.items() for word in (option, f"{time}ns")]
     assert main(["board", "new", str(file), *COSTS, *words]) == 0
     text = file.read_text(encoding="utf-8")
@@ -28,7 +28,7 @@ def board(file: Path, times: dict[str, int]) -> str:
 
 
 def told(folder: Path, profile: Path, capsys: pytest.CaptureFixture[str]) -> dict[str, int]:
-    """What the application tells, by option."""
+    """Return the application's measurements, by option."""
     capsys.readouterr()
     assert main(["run", str(folder), "--for", "3", "--board", str(profile)]) == 0
     (words,) = re.findall(r"BOARD_TIMES 1: (.*)", capsys.readouterr().out)

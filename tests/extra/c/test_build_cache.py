@@ -1,4 +1,4 @@
-"""Where cfepy keeps what it builds: the user's cache, CFEPY_CACHE, or a folder of its own among temporary ones."""
+"""The folder of cfepy's builds: the user's cache, CFEPY_CACHE, or a folder of its own among temporary ones."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.extra.c.building import needs_compiler
 
 @pytest.fixture(autouse=True)
 def _environment(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A home that is a file, so that not even root can make a folder in it, and a folder for temporary files."""
+    """Set a home that is a file, so that even root cannot make a folder in it, and a folder for temporary files."""
     (tmp_path / "home").write_text("", encoding="utf-8")
     (tmp_path / "tmp").mkdir()
     monkeypatch.setenv("HOME", str(tmp_path / "home"))

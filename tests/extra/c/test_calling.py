@@ -1,4 +1,4 @@
-"""What a processor's calling convention has a say in: registers and stacks of calls, formats, callbacks, modes."""
+"""Effects of a processor's calling convention: registers and stacks of calls, formats, callbacks, modes."""
 
 from __future__ import annotations
 
@@ -184,7 +184,7 @@ def test_a_long_computation_has_all_its_registers_when_it_goes_on(tmp_path: Path
     turns = 4_000_000
 
     def after(step: int, add: int, value: int) -> int:
-        """What `turns` times value * step + add makes of a value."""
+        """Return the value after `turns` times value * step + add."""
         power = pow(step, turns, step - 1 << 64)
         return value * power + add * ((power - 1) // (step - 1))
 

@@ -1,4 +1,4 @@
-"""The reader of CMake's language: what commands, words and conditions mean, and where it stops."""
+"""The reader of CMake's language: the meaning of commands, words and conditions, and its limits."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cfepy.status import UsageError
 
 
 def values(folder: Path, text: str, name: str = "r") -> list[str]:
-    """What a variable has at the end of a text."""
+    """Return the final value of a variable after a text."""
     script = CMakeScript(folder, {"UNIX": ["1"]})
     script.run(text)
     return script.variables.get(name, [])

@@ -35,7 +35,7 @@ STAY = "while (CFE_ES_RunLoop(&run)) OS_TaskDelay(100);"
 
 
 def counts(folder: Path) -> dict[int, str]:
-    """The count of each line that has one, as gcov tells it."""
+    """Return the count of each line that has one, from gcov."""
     [notes] = folder.glob("*.gcno")
     done = subprocess.run(["gcov", "--stdout", notes.name], cwd=folder, check=True, capture_output=True, text=True)
     rows = [line.split(":", 2) for line in done.stdout.splitlines() if line.count(":") >= 2]

@@ -1,4 +1,4 @@
-"""Faults in C code: exceptions of the application, with function, file and line; the others fly on."""
+"""Faults in C code: exceptions of the application, with function, file and line. Other applications continue."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nothing of the host gets into a run of compiled applications: neither addresses nor registers, stacks or errno."""
+"""Nothing of the host affects a run of compiled applications: neither addresses nor registers, stacks or errno."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def digest(mission: Path, tasks: str, hash_seed: int, *before: str) -> str:
 
 
 def has_fixed_addresses() -> bool:
-    """Whether processes may be started without ASLR; containers may forbid it."""
+    """Return whether processes may be started without ASLR; containers may forbid it."""
     return bool(shutil.which(AT_FIXED_ADDRESSES[0])) and not subprocess.run([*AT_FIXED_ADDRESSES, "true"]).returncode
 
 

@@ -1,4 +1,4 @@
-"""Faults that are injected strike compiled applications as they do those in Python."""
+"""Injected faults affect compiled applications in the same way as those in Python."""
 
 from __future__ import annotations
 

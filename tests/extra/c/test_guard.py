@@ -1,4 +1,4 @@
-"""The guard mode: what is written past a buffer, used after it was freed, or read before it was written."""
+"""The guard mode: writes past a buffer, uses after free, and reads before the first write."""
 
 from __future__ import annotations
 

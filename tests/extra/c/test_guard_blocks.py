@@ -1,4 +1,4 @@
-"""The guard around what functions of cFE and the PSP give to C code: blocks of pools, images of tables, areas."""
+"""The guard around memory that cFE and the PSP give to C code: blocks of pools, images of tables, areas."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ void TEST_Main(void)
 
 
 class Mistake(NamedTuple):
-    """What an application does, with `wrong`, and mended `right`, in place of @; what is told; what is before main."""
+    """A mistake: the code `wrong` and the mended `right` in place of @, the expected report, and code before main."""
 
     body: str
     wrong: str
@@ -42,7 +42,7 @@ class Mistake(NamedTuple):
     before: str = ""
 
     def source(self, what: str) -> str:
-        """The application with `wrong` or `right`."""
+        """Return the application with `wrong` or `right`."""
         return SOURCE.format(body=self.body.replace("@", what), before=self.before.replace("@", what))
 
 
@@ -145,7 +145,7 @@ QUICK = ("behind a table", "shortly behind a pool block")
 
 
 def compile_app(folder: Path, source: str) -> str:
-    """The mission of an application."""
+    """Return the mission of an application."""
     compile_c(folder, "TEST", source, "-O0", "-w")
     return write_mission(folder, "TEST")
 
@@ -160,12 +160,12 @@ def without_addresses(text: object) -> str:
 
 
 def found(mission: Mission) -> str:
-    """The fault of TEST."""
+    """Return the fault of TEST."""
     return without_addresses(mission.cfe.es.history["TEST"].last_error)
 
 
 def overwritten(mission: Mission) -> list[tuple[str, str]]:
-    """What was found of memory when it was over."""
+    """Return the reports of overwritten memory at the end."""
     return [(each.app, without_addresses(each.text)) for each in mission.record.overwrites]
 
 
@@ -179,7 +179,7 @@ def test_a_mistake_is_a_fault_with_its_line(tmp_path: Path, name: str) -> None:
     mission = fly(folder, 1)
     assert mistake.told in found(mission)
     assert said(console_of(mission)) == []
-    assert overwritten(mission) == []  # it was told
+    assert overwritten(mission) == []  # it was already reported
 
 
 @pytest.mark.slow
@@ -305,7 +305,10 @@ def test_blocks_have_the_alignment_of_their_pool(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(("size", "at"), [(1000, 1000), (1001, 1001), (4096, 4096), (4096, -1)])
 def test_an_area_of_any_size_ends_where_nobody_may_write(tmp_path: Path, size: int, at: int) -> None:
-    """It does where its size is one of whole words; otherwise what is written behind it is told at the end."""
+    """The area ends there if its size is a number of whole words.
+
+    Otherwise a write behind it is reported at the end.
+    """
     folder = compile_app(tmp_path, SOURCE.format(body=f"p = user_area(); p[{at}] = 1;", before=""))
     for is_on in (False, True):
         switch(tmp_path, is_on)
@@ -367,7 +370,7 @@ def test_of_more_blocks_than_linux_has_mappings_it_is_told_at_the_end(tmp_path: 
 
 
 def image_of(tbl: TableServices) -> memoryview:
-    """The active image of TEST.T."""
+    """Return the active image of TEST.T."""
     table = tbl.registry.by_name("TEST.T")
     active = tbl.registry.active(table)
     assert active is not None

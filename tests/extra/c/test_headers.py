@@ -41,14 +41,14 @@ each_profile = pytest.mark.parametrize("flags", PROFILES.values(), ids=PROFILES)
 
 
 def rows(file: str) -> Iterator[tuple[str, str]]:
-    """The rows of a table of facts."""
+    """Yield the rows of a table of facts."""
     for line in (FACTS / file).read_text(encoding="utf-8").splitlines():
         name, _, value = line.partition("\t")
         yield name, value
 
 
 def compile_text(folder: Path, text: str, *flags: str, command: list[str] | None = None) -> str:
-    """What the compiler says of a file that includes every header."""
+    """Return the compiler's output for a file that includes every header."""
     file = folder / "facts.c"
     includes = "".join(f'#include "{name}.h"\n' for name in sorted(names()))
     file.write_text(f"{includes}{text}\nint end;\n", encoding="utf-8")
@@ -146,7 +146,7 @@ def test_every_declaration_has_a_name_that_leads_to_it() -> None:
     assert there == led_to | included
 
 
-# -- what the engine declares ------------------------------------------------------------------------------------------
+# -- declarations of the engine ----------------------------------------------------------------------------------------
 
 KINDS_OF_LETTERS = {
     **dict.fromkeys("iI", "4"),
@@ -158,7 +158,7 @@ KINDS_OF_LETTERS = {
 
 
 def declared() -> dict[str, str]:
-    """The functions that Python answers, with the letters of their parameters."""
+    """Return the functions that Python answers, with the letters of their parameters."""
     found: dict[str, str] = {}
 
     class Recorder(MagicMock):
@@ -170,7 +170,7 @@ def declared() -> dict[str, str]:
 
 
 def kinds(folder: Path, functions: dict[str, str]) -> dict[str, str]:
-    """The parameters of functions: `*` for pointers, else their size."""
+    """Return the parameters of functions: `*` for pointers, else their size."""
     text = '#include "cfe.h"\n#include "cfe_config.h"\n#include "iodriver_base.h"\n'
     text += "#define CFE_TBL_Handle_t uint32\n"  # the engine takes it so: of 16 bits or 32, as the application has it
     text += "#define K(type) (__builtin_classify_type(*(type *)0) == 5 ? '*' : (char)('0' + sizeof(type)))\n"
@@ -180,7 +180,7 @@ def kinds(folder: Path, functions: dict[str, str]) -> dict[str, str]:
         types = [re.sub(r"\s*\[\d*\]", "*", each) for each in types if each not in ("void", "...")]
         text += "".join(f"    K({each}),\n" for each in types) + "    '\\n',\n"
     (folder / "kinds.c").write_text(text + "};\n", encoding="utf-8")
-    made = folder / "kinds.o"  # not run: it may be for another computer than the one that compiles
+    made = folder / "kinds.o"  # not run: the compiler may target another computer
     subprocess.run([*compiler(), f"-I{headers_folder()}", "-c", str(folder / "kinds.c"), "-o", str(made)], check=True)
     elf = elf_file(BytesIO(made.read_bytes()))
     [symbol] = elf.get_section_by_name(".symtab").get_symbol_by_name("kinds")

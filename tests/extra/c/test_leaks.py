@@ -1,4 +1,4 @@
-"""Restarts and missions in one process leave nothing behind: no memory map, no file, no block."""
+"""Restarts and missions in one process leak nothing: no memory map, no file, no block."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ SOURCE = """
 
 
 def held() -> set[tuple[str, str]]:
-    """The memory maps of C code and the open files of this process; Python's own memory comes and goes."""
+    """Return the memory maps of C code and the open files of this process. Python's own memory varies."""
     low, high = engine().ARENA_LOW, engine().ARENA_HIGH
     starts = (line.partition("-")[0] for line in Path("/proc/self/maps").read_text(encoding="utf-8").splitlines())
     maps = {("map", start) for start in starts if low <= int(start, 16) < high}
@@ -47,7 +47,7 @@ def held() -> set[tuple[str, str]]:
 
 
 class Held:
-    """What the process holds beside the things that it held before, which earlier tests may give back at any time."""
+    """Resources of the process, except for earlier ones, which earlier tests may release at any time."""
 
     def __init__(self) -> None:
         gc.collect()

@@ -1,4 +1,4 @@
-"""What `cfepy check` tells of compiled applications."""
+"""Findings of `cfepy check` about compiled applications."""
 
 from __future__ import annotations
 

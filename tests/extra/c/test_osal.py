@@ -1,4 +1,4 @@
-"""OS_*: tasks, what they wait for, timers and clocks, as C code sees them; status codes are NASA's."""
+"""OS_*: tasks, waiting, timers and clocks, as C code sees them; status codes are NASA's."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ HEADER = '#include "osal.h"\n#define DID(call) SAY("%d", (int)(call))\n'
 
 
 def results(folder: Path, body: str, *, before: str = "", tasks: str = "thread") -> list[str]:
-    """What the body of a main function says; DID says what a call returned."""
+    """Return the output of a main function's body. DID prints the result of a call."""
     return said(fly_c(folder, f"{HEADER}{before}\nvoid TEST_Main(void)\n{{\n{body}\n}}\n", 5, tasks=tasks))
 
 

@@ -195,7 +195,7 @@ def test_datagrams(tmp_path: Path) -> None:
 
 
 def test_addresses_of_no_family(tmp_path: Path) -> None:
-    """As OSAL 7.0.0 on Linux answers them: without a length they come to the kernel, which refuses them."""
+    """As OSAL 7.0.0 on Linux answers them: without a length they reach the kernel, which refuses them."""
     body = """
         for (int domain = 1; domain <= 2; domain++)
             for (int type = 1; type <= 2; type++)

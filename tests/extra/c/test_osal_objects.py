@@ -1,4 +1,4 @@
-"""OS_*: modules and symbols, object ids, error names and what is around flight software, as C code sees them."""
+"""OS_*: modules and symbols, object ids, error names and the frame around flight software, as C code sees them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How the results of OSAL's own tests are read off a console."""
+"""Parsing the results of OSAL's own tests from a console."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Kernels with larger pages than here, as some for aarch64 are: what is mapped or guarded is of whole pages."""
+"""Kernels with larger pages than here, such as some for aarch64: maps and guards cover whole pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Mistakes that people make in C, planted in small applications: what finds each, and that the mended form is clean.
+"""Common mistakes in C, planted in small applications: the tool that finds each, and that the mended form is clean.
 
 docs/how_to/c_apps.md has the table.
 """
@@ -21,7 +21,7 @@ MISSION = "CFE_APP, BUG, BUG_Main, BUG, 50, 16384, 0x0, 0;\n!"
 
 
 class Bug(NamedTuple):
-    """How a bug is found: the command with its options, and what that tells."""
+    """How a bug is found: the command with its options, and its report."""
 
     command: list[str]
     told: tuple[str, ...]
@@ -103,7 +103,7 @@ def test_without_the_guard_it_goes_unnoticed(tmp_path: Path, name: str, capsys: 
 @pytest.mark.slow
 @pytest.mark.parametrize("flags", [(), ("-DMENDED",)])
 def test_what_was_never_written_makes_two_runs_differ(tmp_path: Path, flags: tuple[str, ...], capsys: Any) -> None:
-    """With and without the guard an application sends the same, unless it sends what it never wrote."""
+    """An application sends the same with and without the guard, unless it sends memory that it never wrote."""
     write(tmp_path, "uninitialised", *flags)
     journals = [str(tmp_path / name) for name in ("plain.cfepy", "guarded.cfepy")]
     for journal, options in zip(journals, ([], ["--guard"]), strict=True):

@@ -1,4 +1,4 @@
-"""Memory pools of compiled applications: whose the bytes are, and what becomes of a pool when they are gone."""
+"""Memory pools of compiled applications: the owner of the bytes, and the pool after the owner's end."""
 
 from __future__ import annotations
 

@@ -16,12 +16,12 @@ HEADER = '#include "psp.h"\n#define DID(call) SAY("%d", (int)(call))\n'
 
 
 def program(body: str, before: str = "") -> str:
-    """An application whose main function does something; DID says what a call returned."""
+    """Return an application with this main function. DID prints the result of a call."""
     return f"{HEADER}{before}\nvoid TEST_Main(void)\n{{\n{body}\n}}\n"
 
 
 def results(folder: Path, body: str, *, before: str = "") -> list[str]:
-    """What the body of a main function says."""
+    """Return the output of a main function's body."""
     return said(fly_c(folder, program(body, before), 2))
 
 

@@ -1,4 +1,4 @@
-"""Data races in compiled applications: accesses are scheduling points, and those that nothing orders are told."""
+"""Data races in compiled applications: accesses are scheduling points, and unordered ones are reported."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ START = """
 
 
 def explore(folder: Path, code: str, *options: str) -> list[dict[str, str]]:
-    """The failures that an exploration finds; each has a kind and a text."""
+    """Return the failures that an exploration finds. Each has a kind and a text."""
     compile_c(folder, "TEST", START.replace("@", code), "-fsanitize=thread", "-O0", "-w")
     out = folder / "found.json"
     main(["explore", write_mission(folder, "TEST"), "--for", "2", "--seeds", "12", "--json", str(out), *options])

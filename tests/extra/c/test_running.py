@@ -265,7 +265,7 @@ PACKED = """
 
 
 def test_packed_relocations_are_filled_in(tmp_path: Path) -> None:
-    """DT_RELR; a linker that does not know the flag warns, and makes those that are not packed."""
+    """DT_RELR. A linker that does not know the flag warns, and makes relocations that are not packed."""
     plain = said(fly_c(tmp_path, PACKED))
     packed = said(fly_c(tmp_path, PACKED, flags=("-Wl,-z,pack-relative-relocs",)))
     assert packed == plain

@@ -1,4 +1,4 @@
-"""How deep compiled tasks use their stacks."""
+"""Stack use of compiled tasks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tables of compiled applications: where their images are, how long, and who sees them."""
+"""Tables of compiled applications: place, lifetime and users of their images."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ OWNER = (
 
 
 def table_of(tbl: TableServices, name: str) -> bytes:
-    """The image of a table, as Python sees it."""
+    """Return the image of a table, as Python sees it."""
     table = tbl.registry.by_name(name)
     active = tbl.registry.active(table)
     assert active is not None

@@ -1,4 +1,4 @@
-"""What C code tells Time Services from outside: times and tones; and what only the core calls."""
+"""External inputs from C code to Time Services: times and tones; and calls reserved for the core."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Building compiled applications: what is compiled, against which headers, and the table files that come of it."""
+"""Building compiled applications: sources, headers, and the resulting table files."""
 
 from __future__ import annotations
 
@@ -45,18 +45,18 @@ def write(folder: Path, files: dict[str, str]) -> Path:
 
 @pytest.fixture
 def app(tmp_path: Path) -> Path:
-    """An application whose message id a mission may choose."""
+    """Return an application whose message id a mission may choose."""
     files = {"fsw/src/probe.c": MAIN, "config/default_probe_msgids.h": "#define PROBE_CMD_MID 0x1890\n"}
     return write(tmp_path / "apps/probe", files)
 
 
 def library(built: Built) -> object:
-    """The shared object, as pyelftools reads it."""
+    """Return the shared object, as pyelftools reads it."""
     return elf_file(built.library.open("rb"))  # type: ignore[arg-type]  # a file is a stream, too
 
 
 def symbols(built: Built) -> dict[str, bool]:
-    """The dynamic symbols, and whether each is defined."""
+    """Return the dynamic symbols, and whether each is defined."""
     table = library(built).get_section_by_name(".dynsym")  # type: ignore[attr-defined]
     return {each.name: each["st_shndx"] != "SHN_UNDEF" for each in table.iter_symbols() if each.name}
 

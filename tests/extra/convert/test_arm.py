@@ -1,4 +1,4 @@
-"""examples/arm: two nodes in C++ close a loop at 1 kHz beside HK, which a third one hears and commands."""
+"""examples/arm: two nodes in C++ close a loop at 1 kHz beside HK, which a third node observes and commands."""
 
 from __future__ import annotations
 

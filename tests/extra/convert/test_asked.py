@@ -1,4 +1,4 @@
-"""What ROS's own tools say of a node in C++, beside what they say of one in Python."""
+"""Answers of ROS's own tools about a node in C++, compared with a node in Python."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Capacities of a mission file, held against the definitions of messages."""
+"""Capacities of a mission file, checked against the definitions of messages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The check's first pass: what it finds in sources without the compiler."""
+"""The check's first pass: its findings in sources without the compiler."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MAIN = "int main(int argc, char **argv) { return 0; }\n"
 
 
 def look(folder: Path, text: str, profile: Profile = Profile.STRICT, **others: str) -> CheckReport:
-    """A report on one source; others are headers beside it."""
+    """Return the report on one source; others are headers beside it."""
     for name, content in others.items():
         (folder / f"{name}.h").write_text(content, encoding="utf-8")
     (folder / "node.cpp").write_text(text, encoding="utf-8")
@@ -26,7 +26,7 @@ def look(folder: Path, text: str, profile: Profile = Profile.STRICT, **others: s
 
 
 def found(report: CheckReport) -> dict[str, tuple[int, int]]:
-    """Where each rule was met first."""
+    """Return where each rule was met first."""
     return {each.rule: (each.place.line, each.place.column) for each in sorted(report.findings, reverse=True)}
 
 

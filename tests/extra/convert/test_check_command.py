@@ -1,4 +1,4 @@
-"""`cfepy convert check` as a person and a program see it; the compiler is asked, so these are slow."""
+"""`cfepy convert check` for a user and for a program. It runs the compiler, so these tests are slow."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def checked(folder: Path, text: str, *more: str) -> int:
 
 
 def rules_of(folder: Path, text: str, profile: str = "host") -> set[str]:
-    """The rules of the errors."""
+    """Return the rules of the errors."""
     status = checked(folder, text, "--profile", profile, "--json", str(folder / "found.json"))
     (node,) = json.loads((folder / "found.json").read_text(encoding="utf-8"))["nodes"]
     assert node["refused"] == (status == 1)

@@ -1,4 +1,4 @@
-"""Headers of configurations: what a cfg script describes, in C++."""
+"""Headers of configurations: the description of a cfg script, in C++."""
 
 from __future__ import annotations
 

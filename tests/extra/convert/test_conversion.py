@@ -1,4 +1,4 @@
-"""What `cfepy convert` makes of a launch file: names, MsgIds, parameters, entry points, and files that stay."""
+"""Results of `cfepy convert` for a launch file: names, MsgIds, parameters, entry points, and files that stay."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rospy_shim.roslaunch.launch_plan import app_name
 
 
 def convert(package: Path, out: Path, *more: str) -> int:
-    """What is checked before is seen by itself."""
+    """Convert without the check, which has its own tests."""
     return main(["convert", str(package / "launch/ping.launch"), "--no-check", *more, "-o", str(out)])
 
 
@@ -144,7 +144,7 @@ def test_texts_are_those_of_c() -> None:
 
 
 def test_parts_of_the_library_that_nobody_uses_stay_out(package: Path, tmp_path: Path) -> None:
-    """Their messages have no capacity by themselves, so that no strict node could be built beside them."""
+    """Messages of unused parts have no capacity, so no strict node could be built beside them."""
     out = tmp_path / "made"
     assert convert(package, out, "--profile", "strict") == 0
     cmake = (out / "roscfe/roscfe.cmake").read_text(encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Nodes in C++ that `cfepy launch` and `cfepy node` build and fly by themselves."""
+"""Nodes in C++ that `cfepy launch` and `cfepy node` build and fly automatically."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ def test_a_replay_needs_no_compiler(package: Path, tmp_path: Path, monkeypatch: 
     journal = tmp_path / "run.journal"
     assert main(["launch", "ping", "ping.launch", "--for", "1", "--record", str(journal)]) == 0
     shutil.rmtree(package)
-    monkeypatch.setattr(build, "start_bounded", None)  # what starts compilers
+    monkeypatch.setattr(build, "start_bounded", None)  # the function that starts compilers
     assert replay(read_journal(journal)).verdict.same
 
 

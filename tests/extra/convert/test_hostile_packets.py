@@ -1,4 +1,4 @@
-"""Packets of a stranger, sent to what a node in C++ hears: it ignores what is none of its kind, and works on."""
+"""Packets from a foreign sender to the topics of a node in C++: it ignores invalid ones and continues."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ def mission(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Mission]
 
 
 def send(mission: Mission, packet: bytes) -> None:
-    """Send a packet as it is."""
+    """Send a packet unchanged."""
     mission.cfe.sb.transmit_msg(packet, False)
 
 
 def one_subscription(msg_id: int, pipe: int, kind: int = 0, priority: int = 0) -> bytes:
-    """A report as the Software Bus makes one."""
+    """Return a report as the Software Bus makes one."""
     return packet_of(ONESUB, bytes(10) + struct.pack("<B3xIBBxxI", kind, msg_id, priority, 0, pipe))
 
 
@@ -52,7 +52,7 @@ def works(mission: Mission) -> None:
 
 
 def ignored(mission: Mission) -> list[str]:
-    """Events that say of a packet that it was ignored."""
+    """Return the events about ignored packets."""
     return [line for line in mission.console.lines if "/target: ignored " in line]
 
 
@@ -121,7 +121,7 @@ def test_random_packets_change_nothing(mission: Mission) -> None:
         size = draw.choice([1, 2, 6, 9, 10, 11, 15, 22, 30, 100, 1000, 2000])
         payload = bytearray(draw.randbytes(size))
         if draw.random() < 0.5:
-            payload[:10] = bytes(min(size, 10))  # addressed to nobody else
+            payload[:10] = bytes(min(size, 10))  # with an unused address
         send(mission, packet_of(msg_id, bytes(payload), draw.choice((0xC0, 0x40, 0x00, 0x80)), draw.randrange(256)))
         if draw.random() < 0.1:
             send(mission, draw.choice(forged))

@@ -30,7 +30,7 @@ PAPER = {
 
 
 def rows(table: str) -> list[list[str]]:
-    """The rows of a table of the page, without backquotes."""
+    """Return the rows of a table of the page, without backquotes."""
     text = PAGE.partition(f"<!-- {table} -->")[2].partition(f"<!-- end of {table} -->")[0]
     lines = [line for line in text.splitlines() if line.startswith("|")]
     return [[cell.strip().strip("`") for cell in line.strip("|").split("|")] for line in lines[2:]]

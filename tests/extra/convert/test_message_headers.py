@@ -1,4 +1,4 @@
-"""Headers of messages: what is written, and what is refused."""
+"""Headers of messages: their content, and refused definitions."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rospy_shim.types.msgs.definition_sources import Definition, Texts
 
 
 def library(**texts: str) -> Library:
-    """A library of the package demo."""
+    """Return a library of the package demo."""
     return Library([Texts({f"demo/{name}": Definition(text, f"{name}.msg") for name, text in texts.items()})])
 
 
 def header(folder: Path, name: str, of: Library, profile: Profile = Profile.HOST, **options: Capacities) -> str:
-    """The header of demo/NAME."""
+    """Return the header of demo/NAME."""
     write_headers([f"demo/{name}"], folder, profile, of, **options)
     return (folder / "demo" / f"{name}.h").read_text(encoding="utf-8")
 

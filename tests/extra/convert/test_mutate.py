@@ -1,4 +1,4 @@
-"""The check comes to an end on damaged sources, and calls nothing clean that does not compile."""
+"""The check terminates on damaged sources, and calls no source clean that does not compile."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Nodes in C++ that end by themselves: what a launch file says of it, and exit statuses."""
+"""Nodes in C++ that end: the report of a launch file, and exit statuses."""
 
 from __future__ import annotations
 

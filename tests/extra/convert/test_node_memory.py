@@ -1,4 +1,4 @@
-"""What a node in C++ gets of new and malloc, in each profile: aligned where it asks for that, null where it may be."""
+"""Memory of a node in C++ from new and malloc, in each profile: aligned on request, null where allowed."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ SAID = ["wide 1", "aligned_alloc 1", "posix_memalign 1", "a text", "none 1"]
 def flown(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], profile: str, negative: bool
 ) -> tuple[int, list[str], str]:
-    """Exit status of a launch of the node, what it logged, and all that was shown."""
+    """Return the exit status of a launch of the node, its log, and the whole output."""
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     folder = tmp_path / "taker"
     folder.mkdir()

@@ -1,4 +1,4 @@
-"""Parameters of nodes in C++ on cfepy: one parameter server, and the table of the node, which the ground loads."""
+"""Parameters of nodes in C++ on cfepy: one parameter server, and the node's table, which the ground loads."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def launched(package: Path, tmp_path: Path) -> Iterator[Mission]:
 
 
 def texts(mission: Mission) -> list[str]:
-    """What the node read last."""
+    """Return the values that the node read last."""
     line = next(line for line in reversed(mission.console.lines) if "]: text " in line)
     return line.partition("text ")[2].removesuffix("\x1b[0m").split(" ")
 

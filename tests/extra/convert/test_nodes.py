@@ -1,4 +1,4 @@
-"""Nodes in C++ as applications: what they take from the heap, and what their ends and new starts leave behind."""
+"""Nodes in C++ as applications: their use of the heap, and the remains of their ends and restarts."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ pytestmark = [needs_cpp, pytest.mark.slow]
 
 
 def texts(mission: Mission) -> list[str]:
-    """What the recorder saw of std_msgs/String."""
+    """Return the recorder's messages of std_msgs/String."""
     lines = [line for line in mission.console.lines if line.startswith("[recorder] RECORD ")]
     return [recorded(line, False).data[4:].decode() for line in lines]
 
 
 def said_by(mission: Mission, name: str) -> list[str]:
-    """What a node said, without its name."""
+    """Return the log of a node, without its name."""
     return [text.removeprefix(f"{name} ") for text in texts(mission) if text.startswith(f"{name} ")]
 
 
 def test_a_node_that_works_takes_nothing_from_the_heap() -> None:
-    """The node counts its operator new, which is the library's, too; cfepy counts malloc, which libstdc++.so calls."""
+    """The node counts its operator new, including the library's. cfepy counts malloc, which libstdc++.so calls."""
     with mission_of("counted") as mission:
         mission.run_for(3.5)
         assert mission.processor.compiled is not None
@@ -41,7 +41,7 @@ def test_a_node_that_works_takes_nothing_from_the_heap() -> None:
 
 @pytest.mark.parametrize(("pairs", "taken"), [("false", 0), ("true", 3)])
 def test_what_libraries_take_from_the_heap(pairs: str, taken: int) -> None:
-    """Nothing for transforms; three blocks for each pair of a TimeSynchronizer."""
+    """Transforms take nothing; a TimeSynchronizer takes three blocks for each pair."""
     with mission_of("counted", "libraries", pairs=pairs) as mission:
         mission.run_for(4)
         assert mission.processor.compiled is not None
@@ -71,7 +71,7 @@ def test_nodes_with_long_names_have_pipes_of_their_own() -> None:
 
 
 def test_a_node_that_is_restarted_begins_anew() -> None:
-    """Only what it has set on the parameter server is there still."""
+    """Only its values on the parameter server remain."""
     with mission_of("lives") as mission:
         mission.run_for(3)
         before = len(said_by(mission, "/one"))
@@ -103,7 +103,7 @@ def test_a_handler_of_signals_is_called_when_the_application_is_to_end() -> None
 
 def test_a_node_starts_at_once_however_many_subscriptions_there_are() -> None:
     begins = set()
-    for more in range(20):  # a report of the Software Bus has room for so many; a full one may be the last one
+    for more in range(20):  # the capacity of a report of the Software Bus; a full one may be the last one
         with mission_of("lives", more=" ".join(f"/more_{number}" for number in range(more))) as mission:
             mission.run_for(2)
             first = next(line for line in mission.console.lines if line.startswith("[recorder] RECORD "))

@@ -1,4 +1,4 @@
-"""What a conversion writes stays below its folder, whatever names, lists of files and links say."""
+"""The output of a conversion stays below its folder, with any names, lists of files and links."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_link_in_the_folder_is_not_followed(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", ["../victim", "link/victim", "/victim"])
 def test_a_list_of_files_removes_nothing_elsewhere(name: str, tmp_path: Path) -> None:
-    """The list may be a stranger's: the folder of a package can be that of its conversion."""
+    """The list may come from a foreign source: the folder of a package can be that of its conversion."""
     out = tmp_path / "out"
     out.mkdir()
     (tmp_path / "victim").write_bytes(b"mine")

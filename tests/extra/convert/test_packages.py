@@ -1,4 +1,4 @@
-"""What a catkin package has in C++: targets, sources, definitions, libraries, plugins."""
+"""The C++ parts of a catkin package: targets, sources, definitions, libraries, plugins."""
 
 from __future__ import annotations
 

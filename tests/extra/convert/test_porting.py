@@ -1,4 +1,4 @@
-"""docs/how_to/porting.md: a section a step, each with one command, and the commands do what is said there."""
+"""docs/how_to/porting.md: one section per step, each with one command, and the commands do what the page describes."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.test_docs import FENCE
 ROOT = Path(__file__).parents[3]
 GUIDE = (ROOT / "docs/how_to/porting.md").read_text(encoding="utf-8")
 SECTION = re.compile(r"^## (\d+)\. [^\n]+\n(.*?)(?=^## |\Z)", re.MULTILINE | re.DOTALL)
-BY_HAND = "make "  # in a mission tree of cFS, which is not here; dev.convert.mission_tree does it
+BY_HAND = "make "  # in a mission tree of cFS, which is not available here; dev.convert.mission_tree does it
 CROSS = "aarch64-linux-gnu-g++"
 SHOWN = {
     1: ("host: 2 nodes, 0 refused",),
@@ -31,7 +31,7 @@ SHOWN = {
 
 
 def commands() -> dict[int, list[str]]:
-    """The commands of each section."""
+    """Return the commands of each section."""
     found: dict[int, list[str]] = {}
     for number, text in SECTION.findall(GUIDE):
         blocks = [block for block in FENCE.findall(text) if block.startswith("```sh\n")]

@@ -1,4 +1,4 @@
-"""Calls of services whose server ends, or whose own application is to end: they return, and say that they failed."""
+"""Service calls whose server or whose own application ends: they return and report a failure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The comparison of nodes with Debian's roscpp: what counts as equal, what the driver is told, a flight beside it."""
+"""The comparison of nodes with Debian's roscpp: its notion of equality, the driver's script, a flight beside it."""
 
 from __future__ import annotations
 

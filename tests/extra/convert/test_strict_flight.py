@@ -56,7 +56,7 @@ cpp_nodes:
 
 @pytest.fixture
 def mission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder for a mission, beside the package ping, whose sender writes two texts."""
+    """Return a mission's folder, beside the package ping, whose sender writes two texts."""
     package = ping_package(tmp_path)
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))
     (package / "scripts/talker.py").write_text(TALKER, encoding="utf-8")

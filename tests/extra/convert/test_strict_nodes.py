@@ -1,4 +1,4 @@
-"""Nodes of the profile strict work without memory of the heap, and one that takes some after its start ends."""
+"""Nodes of the profile strict work without heap memory, and a node that allocates after its start ends."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_they_say_all_kinds_of_things_without_memory(monkeypatch: pytest.MonkeyP
 
 
 def fnv(data: bytes) -> int:
-    """What src/listener.cpp computes (FNV-1a, 32 bits)."""
+    """Return the hash of src/listener.cpp (FNV-1a, 32 bits)."""
     total = 2166136261
     for byte in data:
         total = (total ^ byte) * 16777619 & 0xFFFFFFFF

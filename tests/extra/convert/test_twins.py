@@ -1,4 +1,5 @@
-"""Nodes in C++ and their twins in Python: unmodified roscpp code, compiled for cFE, publishes what rospy code does."""
+"""Nodes in C++ and their twins in Python: unmodified roscpp code, compiled for cFE, publishes the same as rospy
+code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Topics of nodes in C++ without a subscriber: bags, watches and subscribers outside see them."""
+"""Topics of nodes in C++ without a subscriber: bags, watches and external subscribers see them."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ MD5 = "992ce8a1687cec8c8bd883ec73ca41d1"  # of std_msgs/String
 
 
 class WayOut:
-    """Keeps what outside nodes get."""
+    """Keeps the messages for external nodes."""
 
     def __init__(self) -> None:
         self.heard: list[tuple[str, str, str]] = []
@@ -71,7 +71,7 @@ def spec(tmp_path: Path, profile: str) -> MissionSpec:
 
 
 def flown(spec: MissionSpec, *watches: Any) -> Mission:
-    """The mission, watched."""
+    """Return the mission, watched."""
     return Mission(spec, console=Console(quiet=True), attachments=list(watches))
 
 

@@ -1,1 +1,1 @@
-"""Stopping a run to look at it."""
+"""Stopping and inspecting a run."""

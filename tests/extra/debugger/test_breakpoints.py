@@ -1,4 +1,4 @@
-"""What a run stops at: events, MsgIds, names, predicates; and what cannot be meant."""
+"""Breakpoints of a run: events, MsgIds, names, predicates; and invalid ones."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def plan(tmp_path: Path) -> RunPlan:
 
 
 def hits(plan: RunPlan, *texts: str) -> list[str]:
-    """What a run would stop at."""
+    """Return the hits of breakpoints in a run."""
     found: list[str] = []
     spec = plan.spec()
     fly(plan, attachments=breakpoints(texts, spec, found.append), spec=spec)
@@ -80,7 +80,7 @@ def test_a_predicate(plan: RunPlan) -> None:
 
 
 def test_a_predicate_that_does_not_apply_to_a_message_does_not_hold(plan: RunPlan) -> None:
-    assert len(hits(plan, "msg.data > 2")) == 2  # words are no numbers
+    assert len(hits(plan, "msg.data > 2")) == 2  # words are not numbers
 
 
 def test_a_predicate_about_time_and_topic(plan: RunPlan) -> None:

@@ -1,4 +1,4 @@
-"""Stopping, stepping and looking around; and that the run does not notice."""
+"""Stopping, stepping and inspecting; and that this does not change the run."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def plan(tmp_path: Path) -> RunPlan:
 
 
 def debugged(plan: RunPlan, commands: str = "", **options: Any) -> tuple[str, Flown]:
-    """Run with a debugger whose user has written his commands before; what it says."""
+    """Run with a debugger whose user has prepared the commands. Returns its output."""
     spec, stream = plan.spec(), io.StringIO()
     debugger = Debugger(spec, commands=io.StringIO(commands), stream=stream, **options)
     flown = fly(plan, attachments=[debugger], spec=spec)

@@ -1,4 +1,4 @@
-"""Going back in a run: each moment is found again as it was."""
+"""Going back in a run reproduces each moment exactly."""
 
 from __future__ import annotations
 
@@ -56,10 +56,10 @@ def plan(tmp_path: Path) -> RunPlan:
 
 
 class User(io.StringIO):
-    """Types what a function says.
+    """Types the text that a function returns.
 
     Attributes:
-        debugger: that of the flight that is on.
+        debugger: debugger of the current flight.
     """
 
     def __init__(self, say: Callable[[Debugger], str]) -> None:
@@ -72,7 +72,10 @@ class User(io.StringIO):
 
 
 def journey_of(plan: RunPlan, commands: str | User, journey: Journey, **options: Any) -> tuple[str, Flown, int]:
-    """Fly with a debugger as often as its user goes back; what it says, the last flight, and how many there were."""
+    """Fly with a debugger, again each time its user goes back.
+
+    Returns its output, the last flight, and the number of flights.
+    """
     typed = io.StringIO(commands) if isinstance(commands, str) else commands
     stream, flights, end = io.StringIO(), 0, End()
     while True:
@@ -94,7 +97,7 @@ class End:
         self._course: Course
 
     def course(self, *given: Any) -> Course:
-        """What is flown."""
+        """Return the flown course."""
         self._course = Course(*given)
         return self._course
 
@@ -109,7 +112,7 @@ def times(said: str) -> list[str]:
 
 
 def state_of(debugger: Debugger) -> str:
-    """All that can be told of a run where it stands still."""
+    """Return all observable state of a stopped debugger."""
     mission, frame = debugger._mission, own_frame()
     variables = {} if frame is None else {name: repr(frame.f_globals.get(name)) for name in ("state", "number")}
     pipes = [(pipe.name, len(pipe.items)) for pipe in mission.cfe.sb.pipes]
@@ -117,7 +120,7 @@ def state_of(debugger: Debugger) -> str:
 
 
 class Walk:
-    """A user who goes back and forth at random, and sees whether all is as it was."""
+    """A user who goes back and forth at random, and checks that everything is reproduced."""
 
     def __init__(self, steps: int, seed: int) -> None:
         self.known: dict[RunMoment, str] = {}
@@ -127,7 +130,7 @@ class Walk:
         self._left = steps
 
     def say(self, debugger: Debugger) -> str:
-        """What is typed next."""
+        """Return the next input."""
         moment, state = debugger._moment, state_of(debugger)
         if moment in self.known:
             self.seen_again += 1

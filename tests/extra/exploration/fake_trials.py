@@ -14,7 +14,7 @@ from cfepy.status import UsageError
 
 
 class Seeds:
-    """Schedules random:0, random:1 and so on; keeps what it is told."""
+    """Schedules random:0, random:1 and so on; keeps the reported results."""
 
     def __init__(self) -> None:
         self.given = 0
@@ -83,7 +83,7 @@ class FakeTrial:
 
 
 class Environment:
-    """A trial that tells under which hash seed its process runs."""
+    """A trial that reports the hash seed of its process."""
 
     def run(self, schedule: Schedule) -> Verdict:
         return Verdict(schedule, trace=os.environ.get("PYTHONHASHSEED", "none"))

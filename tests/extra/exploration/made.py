@@ -1,4 +1,4 @@
-"""Moves that a run made, for tests."""
+"""Moves of a run, for tests."""
 
 from __future__ import annotations
 
@@ -7,5 +7,5 @@ from cfepy.schedules import Move
 
 
 def moved(task: str, chosen: str) -> MadeMove:
-    """One in which a task is preempted by another."""
+    """Return a move in which another task preempts a task."""
     return MadeMove(Move(task, chosen), task, chosen, preempts=True, question="", decision=0, choice=1)

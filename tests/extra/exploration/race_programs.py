@@ -1,6 +1,6 @@
-"""Small programs for the race detector: some race, and it is said for what; the others do not.
+"""Small programs for the race detector: some race, each with its expected report; the others do not.
 
-All of them come to the right result under the default schedule. `both` runs functions in threads of their own.
+All of them reach the right result under the default schedule. `both` runs functions in separate threads.
 """
 
 from __future__ import annotations

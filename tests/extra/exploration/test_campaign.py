@@ -1,4 +1,4 @@
-"""A campaign gives the same verdicts in the same order whoever runs it, and each schedule has exactly one."""
+"""A campaign gives the same verdicts in the same order with any crew, and each schedule has exactly one."""
 
 from __future__ import annotations
 
@@ -194,7 +194,7 @@ def test_a_worker_that_is_killed_costs_nothing() -> None:
     """One is killed in whatever it does, and another one when all schedules that were out then have their verdicts."""
     crew, search = Processes(2), Seeds()
     told: list[int] = []
-    drawn = [100]  # schedules that must have been told before the next one is killed
+    drawn = [100]  # schedules that must be reported before the next one is killed
 
     def kill_workers(number: int, verdict: Verdict) -> bool:
         told.append(number)

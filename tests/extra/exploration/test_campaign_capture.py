@@ -1,7 +1,7 @@
-"""Thousands of schedules of the capture mission: no error of cfepy, and no memory that is not given back.
+"""Thousands of schedules of the capture mission: no error of cfepy, and no leaked memory.
 
-The mission needs 0.6 s of virtual time to boot, so 0.2 s of it are in the core applications' start, 0.8 s end 0.2 s
-after all nodes are up; of the latter there are fewer, since each takes some twenty times as long. All 100,000 take
+The mission needs 0.6 s of virtual time to boot, so 0.2 s end during the core applications' start, and 0.8 s end 0.2 s
+after all nodes are up. There are fewer of the latter, because each takes some twenty times as long. All 100,000 take
 11 to 12 minutes: `cfepy explore capture --for 0.2 --seeds 100000 --results FILE`.
 """
 
@@ -22,7 +22,7 @@ from cfepy.pilot.plan import RunPlan
 from cfepy.schedules.schedule import Schedule
 
 SETTLED = 200  # schedules after which everything that is made once has been made
-SLACK_KB = 24 * 1024  # garbage of a batch of missions, which comes and goes
+SLACK_KB = 24 * 1024  # varying garbage of a batch of missions
 
 
 def resident_kb(pid: int | str) -> int:

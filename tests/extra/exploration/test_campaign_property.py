@@ -1,4 +1,5 @@
-"""Every seed counts exactly once, however its crew fails, however often the campaign is broken off, and where."""
+"""Every seed counts exactly once, however its crew fails, and however often and wherever the campaign is
+interrupted."""
 
 from __future__ import annotations
 
@@ -28,11 +29,11 @@ IDENTITY = {"mission": "fake"}
 
 
 class Flaky:
-    """A crew that takes what it likes, loses batches and tries them again, answers in any order, and may end.
+    """A crew that takes any seeds, loses batches and retries them, answers in any order, and may end.
 
     Args:
         random: decides.
-        ends: what ends it now and then.
+        ends: exception that ends it occasionally.
         flown: counts the seeds that it flew.
     """
 
@@ -64,7 +65,7 @@ class Flaky:
 
 
 def fly(path: Path, crew: Any, count: int) -> tuple[list[tuple[int, Verdict]], Tally | None]:
-    """What a session told, and how it ended: None when it was broken off."""
+    """Return the reported verdicts of a session, and its tally, or None if it was interrupted."""
     told: list[tuple[int, Verdict]] = []
     campaign = Campaign(FakeTrial(fails=FAILS), Seeds(), count, crew, ResultsFile(path, IDENTITY))
     try:
@@ -106,11 +107,11 @@ def test_every_seed_counts_once_however_often_it_is_broken_off(seed: int, count:
 
 
 class Killed(Exception):
-    """As dask tells that a batch took several workers with it."""
+    """Stands for dask's error that a batch killed several workers."""
 
 
 class SlowAnswer(Exception):
-    """As dask tells that nobody sent an answer."""
+    """Stands for dask's error that no answer arrived."""
 
 
 class Future:
@@ -161,7 +162,7 @@ class Client:
         self.trial = pickle.loads(desk._trial)
 
     def unregister_worker_plugin(self, name: str) -> None:
-        """It goes."""
+        """Remove the plugin."""
 
     def nthreads(self) -> dict[str, int]:
         return {"one": 1, "two": 1}
@@ -178,7 +179,7 @@ class Client:
         """They are forgotten."""
 
     def close(self) -> None:
-        """It goes."""
+        """Close the client."""
 
 
 @pytest.mark.parametrize("seed", range(20))

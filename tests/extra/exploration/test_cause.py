@@ -1,4 +1,4 @@
-"""The cause of a failure is told where deeds say it, and nothing is told where they do not."""
+"""The cause of a failure is reported if the deeds show it, and nothing is reported if they do not."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ NO_MOVES: tuple[MadeMove, ...] = ()
 
 
 def deed(text: str) -> Deed:
-    """A deed of `task verb thing line note`."""
+    """Return a deed of `task verb thing line note`."""
     task, verb, thing, line, *note = text.split("|")
     ident, key = (1 + ord(thing[-1]), thing) if thing.startswith("o.") else (0, "")
     return Deed(0, task, task, verb, thing, f"a.py:{line}", "".join(note), ident, key)
@@ -44,7 +44,7 @@ def told(
     moves: Sequence[MadeMove] = NO_MOVES,
     rows: Sequence[Row] = (),
 ) -> str:
-    """The cause that deeds tell."""
+    """Return the reported cause for deeds."""
     names = {"lock 5 of A": "left (a.py:3)"}
     return cause_of(Evidence(failure, moves, rows, list(map(deed, failing)), list(map(deed, usual)), names))
 
@@ -71,7 +71,8 @@ def test_what_is_late_has_waited_for_who_ran_longer(ran: dict[str, int], usual: 
 
 
 def accesses(text: str) -> list[str]:
-    """Accesses of a variable: `A:R1 A>B B:W2` says that A reads it at line 1 and gives way to B, which writes it."""
+    """Return accesses of a variable: `A:R1 A>B B:W2` means that A reads it at line 1 and yields to B, which writes
+    it."""
     found = []
     for word in text.split():
         task, _, what = word.partition(":")
@@ -167,7 +168,7 @@ def test_a_circle_of_waits_is_told_with_the_names_of_locks() -> None:
         told([], failure=circle) == "A has mutex CARD and wants left (a.py:3); B has left (a.py:3) and wants mutex CARD"
     )
     ended = Failure(DEADLOCK, "A", "A waits for lock 5 of A, held by B")
-    assert told([], failure=ended) == ""  # by one that has ended: there is no circle
+    assert told([], failure=ended) == ""  # the holder has ended: there is no circle
 
 
 def test_a_single_switch_is_told_when_there_is_no_other() -> None:

@@ -74,7 +74,7 @@ def cluster() -> Iterator[LoopbackCluster]:
 
 
 def until(last: int, cluster_event: Callable[[], None]) -> tuple[list[int], Callable[[int, Verdict], bool]]:
-    """What is told, and a callback that does something in the middle of a campaign and ends it at a schedule."""
+    """Return the list of reports, and a callback that triggers an event during a campaign and ends it at a schedule."""
     told: list[int] = []
 
     def on_verdict(number: int, verdict: Verdict) -> bool:
@@ -149,7 +149,10 @@ def test_a_lost_scheduler_keeps_what_was_found(cluster: LoopbackCluster, tmp_pat
 
 @pytest.mark.slow
 def test_a_mission_flies_where_none_of_its_files_are(cluster: LoopbackCluster, tmp_path: Path) -> None:
-    """The workers get it when it has gone from here; its verdicts do not tell where it was unpacked."""
+    """The workers get the mission after it was removed here.
+
+    Its verdicts do not contain the path where it was unpacked.
+    """
     folder = tmp_path / "mission"
     shutil.copytree(shipped("missions") / "capture", folder)
     plan = RunPlan((str(folder),), seconds=0.2)
@@ -169,7 +172,7 @@ def test_a_cluster_of_this_computer() -> None:
 
 
 def open_ports() -> list[tuple[str, int]]:
-    """Address (hexadecimal) and number of each TCP port that this process listens at."""
+    """Return address (hexadecimal) and number of each TCP port on which this process listens."""
     sockets = set()
     for descriptor in Path("/proc/self/fd").iterdir():
         with suppress(OSError):

@@ -1,4 +1,4 @@
-"""How long connections take is explored like who runs: drawn by each policy, replayed, shrunk to those that matter."""
+"""Connection delays are explored like the order of tasks: each policy draws them, and they are replayed and shrunk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A task that waits for ever, and does not under fifo, is stuck; one that idles is not."""
+"""A task that waits forever, and does not under fifo, is stuck; an idle task is not."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""An exploration as a whole: the command's options are those of `Expedition`, and its defaults too."""
+"""An exploration as a whole: the command's options and defaults are those of `Expedition`."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_a_failure_that_does_not_come_again_is_none_of_the_schedule(monkeypatch:
         is_again = schedule.kind != "at" and options.get("policy") is None
         return tried._replace(verdict=replace(tried.verdict, failures=())) if is_again else tried
 
-    monkeypatch.setattr(Trial, "fly", once)  # of this process; the crew flies in another one
+    monkeypatch.setattr(Trial, "fly", once)  # in this process; the crew flies in another one
     report = Expedition(PLAN, seeds=8, jobs=1, until_failure=True).run()
     (told,) = report.findings
     assert (told.repeats, told.shrunk, told.timeline) == (False, None, [])

@@ -1,4 +1,4 @@
-"""How far an exploration looked."""
+"""The extent of an exploration."""
 
 from __future__ import annotations
 

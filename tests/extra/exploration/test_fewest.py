@@ -1,4 +1,4 @@
-"""Of what shrinking leaves, nothing can be left out; and runs are known without being flown."""
+"""Shrinking leaves nothing that could be removed, and some runs are known without flying them."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ SEEDS = range(60)
 
 
 class RandomProgram:
-    """A few tasks that read and write a few numbers; it fails when these come to what they seldom come to.
+    """A few tasks that read and write a few numbers. It fails when the numbers reach rare values.
 
     Args:
-        seed: of the program.
+        seed: seed of the program.
     """
 
     def __init__(self, seed: int) -> None:
@@ -74,7 +74,7 @@ class RandomProgram:
 
 
 def shrunk(program: RandomProgram) -> Shrunk[RandomProgram] | None:
-    """What shrinking leaves of the three first schedules under which a program fails; None when there is none."""
+    """Return the shrunk form of the first three failing schedules of a program, or None if there is none."""
     schedules = [Schedule("random", seed) for seed in range(30)]
     failing = [each for each in schedules if program.fly(each).verdict.failures]
     if not failing:

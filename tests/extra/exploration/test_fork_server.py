@@ -1,4 +1,4 @@
-"""Runs that part from one instant on, each in a process of its own."""
+"""Runs that share their beginning and then differ, each in a separate process."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ END_NS = 200_000
 
 
 def two_counters(schedule: LateSchedule | Schedule) -> tuple[int, str, dict[int, int], str]:
-    """Two tasks add to a number again and again: its value, the digest, the deviations, the schedule."""
+    """Run two tasks that repeatedly add to a number. Returns its value, the digest, the deviations, the schedule."""
     recorded, trace, box = NotingPolicy(schedule.policy()), Trace(), [0]
     with make_kernel("greenlet", trace, recorded) as kernel:
 

@@ -1,4 +1,4 @@
-"""A forked flight has the verdict of a whole one, and what ends its process is found out all the same."""
+"""A forked flight has the verdict of a whole one, and an error that ends its process is still found."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class LateSeeds(Seeds):
 
 @pytest.fixture
 def crash(tmp_path: Path) -> Trial:
-    """A mission whose process is killed by the operating system."""
+    """Return a mission whose process is killed by the operating system."""
     (tmp_path / "startup.scr").write_text(STARTUP, encoding="utf-8")
     (tmp_path / "crash.py").write_text(CRASH, encoding="utf-8")
     return Trial(RunPlan((str(tmp_path),), seconds=1.0, tasks="greenlet"))

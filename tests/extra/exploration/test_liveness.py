@@ -1,4 +1,4 @@
-"""Tasks that starve, applications that run on and get nowhere, schedules under which nobody is passed over for ever."""
+"""Starving tasks, livelocked applications, and fair schedules, under which no task waits forever."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ LIVELOCK = """
 
 
 def failures(folder: Path, apps: str, limits: Limits) -> list[tuple[str, str, int | None]]:
-    """Kind, text and instant of what fails by default in two virtual seconds."""
+    """Return kind, text and instant of failures by default in two virtual seconds."""
     plan = RunPlan((str(write_mission(folder, STARTUP, apps=apps)),), seconds=2)
     found = Trial(plan, liveness=limits).run(Schedule()).failures
     return [(each.kind, each.text, each.at_ns) for each in found]

@@ -1,4 +1,4 @@
-"""The search for the longest: measures, what is found against all schedules there are, and what is told of it."""
+"""The search for the longest: measures, comparison with all schedules, and its report."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ MEASURE = "latency:0x0883->0x0884"
 
 @pytest.fixture
 def plan(tmp_path: Path) -> RunPlan:
-    """LIST has the more to do the later it is; most of all when TWO has been at it while ONE had something open."""
+    """LIST has more to do the later it runs, and most of all if TWO has run while ONE was in the middle of its work."""
     return RunPlan((str(write_mission(tmp_path, STARTUP, apps=APPS)),), seconds=1.06, tasks="greenlet")
 
 
@@ -113,7 +113,7 @@ def test_it_does_not_depend_on_how_many_processes_there_are(plan: RunPlan) -> No
 @pytest.mark.parametrize(
     ("text", "time_ns"),
     [
-        ("latency:0x0883", 0),  # nobody computes before LIST does
+        ("latency:0x0883", 0),  # no task computes before LIST does
         ("latency:0x0883->0x0884", 6000),
         ("response:LIST", 6000),
         ("wait:LIST", 0),
@@ -147,4 +147,4 @@ def test_a_generation_waits_for_all_verdicts_before_it_and_is_made_of_the_longes
         search.tell(number, verdict)
     first = search.next()
     assert first is not None
-    assert first.text() == "at:1=1,4=1"  # what came after the longest is left out, the last decision before it changed
+    assert first.text() == "at:1=1,4=1"  # later decisions are left out, and the last one before it changed

@@ -1,4 +1,4 @@
-"""What a campaign depends on is found, goes to another computer, and is told by name when it changes."""
+"""The dependencies of a campaign are found, sent to other computers, and named in the report when they change."""
 
 from __future__ import annotations
 

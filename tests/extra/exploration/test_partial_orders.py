@@ -23,7 +23,7 @@ US = 1000
 
 
 class Flown(NamedTuple):
-    """A run: what came of it, its decisions and its steps."""
+    """A run: its outcome, its decisions and its steps."""
 
     outcome: object
     recorded: NotingPolicy
@@ -88,7 +88,7 @@ class World:
         self.call(f"mutex {which}", self.mutexes[which].give, GIVES)
 
     def leave(self, name: str, which: str) -> None:
-        """Something is written under a lock, and something else right after it was given back: nobody gets in there."""
+        """Write under a lock, and write again right after releasing it: no other task can run in between."""
         self.log.begin([], f"mutex {which}")
         self.mutexes[which].take()
         self.log.end()
@@ -178,7 +178,7 @@ def random_program(seed: int, kinds: tuple[str, ...], tasks: int, most: int) -> 
 
 
 class Seen(NamedTuple):
-    """What a search came to: outcomes, orders, and runs."""
+    """Result of a search: outcomes, orders, and runs."""
 
     outcomes: set[object]
     orders: set[frozenset[int]]
@@ -186,7 +186,7 @@ class Seen(NamedTuple):
 
 
 def all_schedules(program: Program, most: int) -> Seen | None:
-    """Every schedule, one by one; None when there are more."""
+    """Try every schedule. Returns None if there are more than `most`."""
     tree, seen = DepthFirst(99, 99), Seen(set(), set(), 0)
     while (schedule := tree.next()) is not None:
         flown = fly(program, schedule)
@@ -217,7 +217,7 @@ TABLES = ("look", "load", "sleep", "read")
 
 
 def same_as_all_schedules(program: Program, most: int = 400) -> tuple[int, int] | None:
-    """How many runs each search took; None when there are too many schedules to try them all."""
+    """Return how many runs each search took, or None if there are too many schedules to try them all."""
     every = all_schedules(program, most)
     if every is None:
         return None
@@ -261,7 +261,7 @@ def test_who_takes_a_lock_first_is_all_that_matters_of_it() -> None:
 
 
 def test_nobody_gets_in_where_there_is_no_place() -> None:
-    """What follows a release without a place goes with it; it may still come after what another task does."""
+    """Steps after a release without a scheduling point belong to it. They may still come after another task's step."""
     found = same_as_all_schedules([[("leave", "x")], [("write", "y")]])
     assert found is not None
     assert found[0] == 2

@@ -1,4 +1,4 @@
-"""Points besides calls: what lies between two accesses, two lines, or a call and the use of what it gave."""
+"""Points other than calls: between two accesses, two lines, or a call and the use of its result."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a campaign is, as a person reads it."""
+"""The progress of a campaign, as shown to a user."""
 
 from __future__ import annotations
 

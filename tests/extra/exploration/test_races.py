@@ -1,4 +1,4 @@
-"""Races are found in one run, whoever went first in it; what is ordered is none."""
+"""Races are found in one run, in any order of its tasks; ordered accesses are not races."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Races = Callable[..., dict[str, str]]
 
 @pytest.fixture
 def races_of(tmp_path: Path) -> Races:
-    """Flies a program under a schedule: what it races for, and the details."""
+    """Fly a program under a schedule. Returns the raced variables, and the details."""
     (tmp_path / "startup.scr").write_text(SCRIPT, encoding="utf-8")
 
     def fly(source: str, schedule: str = "at", prelude: str = PRELUDE) -> dict[str, str]:

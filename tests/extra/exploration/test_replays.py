@@ -1,4 +1,4 @@
-"""The failures of a results file are looked for in the mission as it now is."""
+"""The failures of a results file are replayed in the current mission."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ IMPOSSIBLE = "moves:BANK.bank.1@550/pay.get_time/3=BANK,NOBODY@550=BANK"
 
 
 def bank(folder: Path) -> Path:
-    """A mission with a lost update."""
+    """Return a mission with a lost update."""
     return missions.write(folder, {"BANK": missions.LOST_UPDATE}, PAID)
 
 
 def results_of(path: Path, mission: Path) -> Path:
-    """A results file of it with three failures."""
+    """Return a results file of the mission with three failures."""
     plan = RunPlan((str(mission),), seconds=0.7, tasks="greenlet")
     ResultsFile(path, {"plan": plan.to_dict(), "search": {"events": "error", "no_stuck": True}}).close()
     keep_failure(

@@ -1,4 +1,4 @@
-"""Results that must not depend on the schedule: which, how they are compared, what is left out."""
+"""Results that must not depend on the schedule: their selection, comparison, and exclusions."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ def test_times_do_not_count_unless_they_shall(tmp_path: Path) -> None:
 
 
 def varied(folder: Path, compare: str, *changes: tuple[str, str]) -> tuple[Result, Result]:
-    """A result as it is, and with the node's source changed."""
+    """Return a result, and the result after changes of the node's source."""
     source = NODE
     for old, new in changes:
         assert source.count(old) == 1

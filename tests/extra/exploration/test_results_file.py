@@ -1,4 +1,4 @@
-"""The results file survives what may happen to it, and mixes no campaigns."""
+"""The results file survives interruptions and damage, and never mixes campaigns."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who had the processor when."""
+"""Which task had the processor at which time."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from cfepy.schedules.schedule import Schedule
 
 
 def next_of(search: SeededSearch | SystematicSearch) -> str | None:
-    """The next schedule as text."""
+    """Return the next schedule as text."""
     found = search.next()
     return None if found is None else found.text()
 

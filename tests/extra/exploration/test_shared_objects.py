@@ -1,4 +1,4 @@
-"""What locks and the like are called in a story, and what is told of them."""
+"""Names of locks and similar objects in a story, and their reported events."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ OSAL = """
 
 
 def looked_at(folder: Path, tasks: str) -> TaskLook:
-    """A look at a run of a mission, which is as without it."""
+    """Return an observed run of a mission, which is the same as without observation."""
     trial = Trial(RunPlan((str(folder),), seconds=0.7, tasks=tasks))
     look = TaskLook(trial.plan.spec())
     schedule = Schedule("at")
@@ -95,7 +95,7 @@ def test_objects_of_one_line_are_numbered(look: TaskLook) -> None:
 
 def test_taking_having_and_releasing_are_told_apart(look: TaskLook) -> None:
     right = [verb for verb, thing, _ in deeds(look, WANTS, HAS, RELEASES) if thing.startswith("right")]
-    assert right == [WANTS, HAS, RELEASES]  # it is taken twice, which nobody else sees
+    assert right == [WANTS, HAS, RELEASES]  # it is taken twice, which no other task sees
     rows = [row.text for row in look.rows if row.kind == DOES and "right" in row.text]
     assert rows == ["has right (locks.py:6)", "releases right (locks.py:6)"]
 

@@ -23,7 +23,7 @@ def bank(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def first_failing(trial: Trial, options: str = "") -> Schedule:
-    """The first seed under which a trial fails."""
+    """Return the first seed under which a trial fails."""
     schedules = (Schedule.parse(f"random:{seed}{options}") for seed in range(500))
     return next(schedule for schedule in schedules if trial.run(schedule).failed)
 

@@ -1,4 +1,4 @@
-"""A node that shuts down while its callbacks begin: no schedule shows a failure that is cfepy's own."""
+"""A node that shuts down while its callbacks begin: no schedule shows a failure of cfepy itself."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Tasks(Attachment):
 
 @pytest.mark.slow
 def test_a_subscription_that_ends_while_its_task_looks_away(tmp_path: Path) -> None:
-    """It is told to end after it has looked whether it is to, and before it waits for a message."""
+    """The request to end comes after the task has checked for it, and before the task waits for a message."""
     trial = Trial(RunPlan((str(missions.write(tmp_path, {"PROBE": UNREGISTERED})),), seconds=1.0, tasks="greenlet"))
     for seed in range(200):
         tasks = Tasks()

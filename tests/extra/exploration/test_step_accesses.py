@@ -1,4 +1,4 @@
-"""What missions touch, as a search of orders sees it: all orders of small missions in a few runs, and none left out."""
+"""Accesses of missions in a search of orders: all orders of small missions in a few runs, and none left out."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a sweep finds: rates that came, what was lost, and the knee."""
+"""Findings of a sweep: received rates, losses, and the knee."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the values of a sweep mean on a command line."""
+"""Meaning of a sweep's values on a command line."""
 
 from __future__ import annotations
 

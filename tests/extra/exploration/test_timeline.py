@@ -1,4 +1,4 @@
-"""What a timeline leaves out, and how it fits its columns."""
+"""Omissions of a timeline, and the fitting of its columns."""
 
 from __future__ import annotations
 

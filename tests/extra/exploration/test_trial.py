@@ -1,4 +1,4 @@
-"""A trial flies a mission under a schedule and says what failed."""
+"""A trial flies a mission under a schedule and reports failures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Failures are grouped by what they have in common."""
+"""Failures are grouped by their common features."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which crew a command line gets."""
+"""The crew for a command line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""One flight for all tests of this folder that only look at what came of it."""
+"""One flight for all tests of this folder that only look at its results."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.extra.reports import looked_at
 
 
 class Shown(NamedTuple):
-    """A flight, what was collected and recorded, its page, and its trace for Perfetto."""
+    """A flight, its collected and recorded data, its page, and its trace for Perfetto."""
 
     mission: str
     flown: Flown

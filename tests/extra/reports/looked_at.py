@@ -89,7 +89,7 @@ deadlines:
 
 
 def busy_mission(folder: Path, mission_file: str = DEADLINES) -> str:
-    """Write the mission; what `Mission` takes."""
+    """Write the mission. Returns the argument for `Mission`."""
     return write_mission(folder, STARTUP, slow=SLOW, flood=FLOOD, talk=TALK, hear=HEAR, mission_yaml=mission_file)
 
 

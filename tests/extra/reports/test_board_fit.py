@@ -1,4 +1,4 @@
-"""What a mission needs of a board, and the changes that make it fit."""
+"""A mission's requirements for a board, and the changes that make it fit."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_pools_of_cfe_are_told_by_the_applications_whose_tables_and_blocks_are_i
     )
     fit = fit_of(RunPlan((str(tmp_path),), seconds=1, board="rx64m"))
     rows = {(row.pool, row.owner, row.what): row.size for row in fit.pools}
-    # a block is as large as the next size of NASA's pools, and 24 bytes more; tables' blocks lie on multiples of 16
+    # a block has the next block size of NASA's pools, plus 24 bytes; tables' blocks lie on multiples of 16
     assert rows["CFE_TBL memory pool", "OWNERS", "table Small"] == 48 + 32
     assert rows["CFE_TBL memory pool", "OWNERS", "table Double, 2 buffers"] == 2 * (1024 + 32)
     assert rows["CDS", "OWNERS", "block Counts"] == 128 + 24

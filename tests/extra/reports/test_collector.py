@@ -1,4 +1,4 @@
-"""What is collected from a run is what happened in it, and does not grow with it."""
+"""The collected data of a run is true, and does not grow with its length."""
 
 from __future__ import annotations
 

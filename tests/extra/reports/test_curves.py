@@ -1,4 +1,4 @@
-"""Curves of values over time, and the picture of them."""
+"""Curves of values over time, and their picture."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The page of a run as text: every number is on it, and nothing that a node has said can be more than text."""
+"""The page of a run as text: it has every number, and output of nodes is only ever shown as text."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ VOID = {"meta", "link", "input"}
 
 
 class Reader(HTMLParser):
-    """What is on a page: its elements, its numbers, its JSON."""
+    """Content of a page: its elements, its numbers, its JSON."""
 
     def __init__(self, page: str) -> None:
         super().__init__()
@@ -165,7 +165,7 @@ def test_the_same_run_gives_the_same_page(shown: Shown) -> None:
 
 
 def items(page: str) -> list[str]:
-    """The lines of the problem box, as text."""
+    """Return the lines of the problem box, as text."""
     box = page.partition('class="banner')[2].partition("</div>")[0]
     return [re.sub("<[^>]*>", "", item) for item in re.findall("<li.*?</li>", box)]
 
@@ -210,7 +210,7 @@ def test_deaths_bad_ends_and_failed_steps_have_their_times(tmp_path: Path) -> No
 
 
 def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
-    """Those of an `at:` schedule, which is what a shrunk one is; marking them changes nothing."""
+    """These are the switches of an `at:` schedule, the form of a shrunk one. Marking them changes nothing."""
     mission = str(Path(__file__).parents[2] / "quality" / "missions" / "lost_update")
     noting = NotingPolicy(Schedule.parse("random:0").policy())
     before = pilot.fly(RunPlan((mission,), seconds=1.3), policy=noting)
@@ -232,7 +232,7 @@ def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_a_failure_is_told_as_a_story(tmp_path: Path) -> None:
-    """Of a run under a shrunk schedule; the problem leads to it, and the switch is marked."""
+    """The run has a shrunk schedule. The problem links to the story, and the switch is marked."""
     mission, page = str(Path(__file__).parents[2] / "quality" / "missions" / "lock_order"), tmp_path / "report.html"
     words = ["report", mission, "--for", "1.3", "--tasks", "greenlet", "-o", str(page)]
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__/2=MAPPER.odom"]) == 0

@@ -1,4 +1,4 @@
-"""The page of a run in a real browser: it loads without an error or a request, and it can be worked with."""
+"""The page of a run in a real browser: it loads without an error or a request, and its controls work."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.extra.reports import looked_at
 from tests.extra.reports.conftest import Shown
 
 NEEDS = "needs a browser: install the package chromium"
-IS_REQUIRED = os.environ.get("CFEPY_BROWSER") == "required"  # as .ci/run says where it has installed one
+IS_REQUIRED = os.environ.get("CFEPY_BROWSER") == "required"  # .ci/run sets this if it has installed one
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(find_browser() is None and not IS_REQUIRED, reason=NEEDS),

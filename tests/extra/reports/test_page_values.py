@@ -1,4 +1,4 @@
-"""The values that the page carries: how they are thinned and encoded, and what is said of those that it has not."""
+"""The values in the page: how they are thinned and encoded, and the remark about missing ones."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from cfepy.mission import Seen
 
 
 def decoded(line: dict[str, Any], count: int) -> list[float]:
-    """What the page's script makes of it."""
+    """Return the values as the page's script decodes them."""
     if "data" not in line:
         return [line["low"]] * count
     steps = numpy.frombuffer(b64decode(line["data"]), "<u2")
@@ -61,7 +61,7 @@ def test_each_stretch_of_many_messages_has_its_lowest_and_highest() -> None:
 
 
 def a_set(fields: int, messages: int = 300, most: int | None = None) -> SeriesSet:
-    """A topic with a small and one with a large message."""
+    """Return a topic with a small and one with a large message."""
     found = SeriesSet()
     for name, count in (("/large", fields), ("/small", 1)):
         series = Series(name, "x/Y", lambda seen, count=count: {"v": [seen.at_ns % 7 * 1.5] * count}, lambda seen: None)

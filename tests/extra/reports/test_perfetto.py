@@ -1,4 +1,4 @@
-"""The trace for Perfetto: it keeps the rules of the Trace Event Format, and it is what happened."""
+"""The trace for Perfetto: it follows the rules of the Trace Event Format, and shows the run."""
 
 from __future__ import annotations
 

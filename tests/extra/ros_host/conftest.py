@@ -1,4 +1,4 @@
-"""The two graphs that the tools of ROS are held against, a pair for each module of tests."""
+"""The two graphs with which the tools of ROS are compared, a pair for each module of tests."""
 
 from __future__ import annotations
 

@@ -28,11 +28,11 @@ HAS_ROS = (
 
 
 class RosGraph:
-    """A ROS graph that tools can be pointed at.
+    """A ROS graph for tools.
 
     Args:
-        uri: of its master.
-        folder: for what tools write.
+        uri: URI of its master.
+        folder: folder for files of tools.
     """
 
     def __init__(self, uri: str, folder: Path) -> None:
@@ -40,7 +40,7 @@ class RosGraph:
         self.folder = folder
 
     def run(self, command: str) -> str:
-        """The output of a command."""
+        """Return the output of a command."""
         done = subprocess.run(
             ["sh", "-c", command],
             env=self.environ,
@@ -53,7 +53,7 @@ class RosGraph:
         return done.stdout + done.stderr
 
     def wait_for(self, command: str, text: str) -> None:
-        """Until the output of a command has a text; a node's start is waited for like this."""
+        """Wait until the output of a command contains a text, for example for a node's start."""
         said = ""
         for _ in range(LIMIT_S // 2):
             said = self.run(command)
@@ -73,7 +73,7 @@ def started(words: list[str], environ: dict[str, str] | None = None) -> Iterator
 
 
 def wait_for_line(process: subprocess.Popen[str], text: str, limit_s: float = LIMIT_S) -> str:
-    """Read what a process prints until a line has a text; a process that never prints it is killed after a while."""
+    """Read a process's output until a line contains a text. A process that never prints it is killed after a while."""
     assert process.stdout is not None
     end = threading.Timer(limit_s, process.kill)
     end.start()
@@ -86,7 +86,7 @@ def wait_for_line(process: subprocess.Popen[str], text: str, limit_s: float = LI
 
 
 def free_graph(folder: Path) -> RosGraph:
-    """A graph at a free port, which has no master yet."""
+    """Return a graph at a free port, which has no master yet."""
     return RosGraph(f"http://127.0.0.1:{free_port()}", folder)
 
 
@@ -108,7 +108,7 @@ def rosmaster(folder: Path) -> Iterator[RosGraph]:
 
 
 def mission_of(folder: Path) -> Path:
-    """A mission of the talker."""
+    """Return a mission of the talker."""
     mission = folder / "mission"
     mission.mkdir()
     shutil.copy(TALKER, mission / "talker.py")

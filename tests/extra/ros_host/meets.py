@@ -1,7 +1,7 @@
-"""Tells who it is and whom it has heard last, 50 times a second: a node for both worlds.
+"""Sends its name and the peer that it received last, 50 times a second: a node for both worlds.
 
-Arguments: its node's name, that of the other node, and what this one of its starts is called. It prints whom it has
-met: who has told that he has heard this very start.
+Arguments: its node's name, the other node's name, and a name for this start of it. It prints each peer that has
+reported receiving messages of this very start.
 """
 
 import sys

@@ -1,4 +1,4 @@
-"""Programs outside, as the tests play them: each step is driven by the test, and nothing waits for the wall clock."""
+"""External programs, played by the tests: the test drives each step, and nothing waits for the wall clock."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ rospy.spin()
 
 
 def text(value: str) -> bytes:
-    """A std_msgs/String as ROS serialises it."""
+    """Return a std_msgs/String as ROS serialises it."""
     return frame(value.encode())
 
 
@@ -74,11 +74,11 @@ class Joined:
             self._pacer.step(PATIENCE_NS)
 
     def heard(self, line: str) -> bool:
-        """Whether the console has a line."""
+        """Return whether the console has a line."""
         return any(line in each for each in self.mission.console.lines)
 
     def ask(self, uri: str, method: str, *arguments: Any) -> Any:
-        """Ask the master, or a node, while the run goes on; the whole answer."""
+        """Ask the master, or a node, while the run continues. Returns the whole answer."""
         found: list[Any] = []
 
         def call() -> None:
@@ -95,13 +95,13 @@ class Joined:
         return found[0]
 
     def master(self, method: str, *arguments: Any) -> Any:
-        """The value of the master's answer, which is a success."""
+        """Return the value of the master's answer, which is a success."""
         code, why, value = self.ask(self.host.world.uri, method, CALLER, *arguments)
         assert code == 1, why
         return value
 
     def connected(self, uri: str, header: Mapping[str, str]) -> Wire:
-        """A TCPROS connection with a host and port, and its header sent."""
+        """Return a TCPROS connection with a host and port, and its header sent."""
         address, _, port = uri.rpartition("://")[2].rstrip("/").rpartition(":")
         wire = Wire(self, socket.create_connection((address, int(port))))
         wire.socket.sendall(pack_header({"callerid": CALLER, **header}))
@@ -127,12 +127,12 @@ class Wire:
         connected.setblocking(False)
 
     def frame(self) -> bytes:
-        """The next frame, for which the run goes on."""
+        """Return the next frame, running the mission until it arrives."""
         self._run.run_while(lambda: not self._look())
         return self._found.pop(0)
 
     def header(self) -> dict[str, str]:
-        """The other side's connection header."""
+        """Return the other side's connection header."""
         return parse_header(self.frame())
 
     def ended(self) -> None:
@@ -153,7 +153,7 @@ class Wire:
 
 
 class OutsideSpeaker:
-    """A publisher outside, with a slave API that the test serves; the master need not know it yet."""
+    """An external publisher, with a slave API that the test serves. The master need not know it yet."""
 
     def __init__(self, run: Joined, topic: str, kind: Mapping[str, str] = STRING, is_known: bool = True) -> None:
         self._run = run
@@ -177,7 +177,7 @@ class OutsideSpeaker:
         return bool(self._accepted)
 
     def connect(self) -> dict[str, str]:
-        """Wait for the mission to connect; the header that it sends."""
+        """Wait for the mission to connect. Returns the header that it sends."""
         self._run.run_while(lambda: not self._accepted)
         self._wire = self._accepted.pop()
         header = self._wire.header()
@@ -211,7 +211,10 @@ def joined(
     mission_file: str = "",
     world: Callable[[RosHost], RosWorld] = lambda host: ServedMaster(host, 0),
 ) -> Iterator[Joined]:
-    """A mission of nodes, by their application's name, with a master on a free port; more lines of its script."""
+    """Run a mission of nodes, by their application's name, with a master on a free port.
+
+    `more` are lines of its script.
+    """
     (folder / "mission.yaml").write_text(mission_file or "name: joined\n", encoding="utf-8")
     lines = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]
     (folder / "startup.scr").write_text("".join(lines) + more + "!\n", encoding="utf-8")

@@ -1,12 +1,12 @@
 """Sends joint states at 1 kHz and counts those of another one: a node for both worlds.
 
-Arguments: its own name, the other's, how many messages. When both are connected with each other, each sends messages
-with the numbers 1, 2, 3 ... in `effort`, then marks of the end, with 0, until it is shut down. The first mark from the
-other lets it tell what has come before.
+Arguments: its own name, the other's, how many messages. After both are connected with each other, each sends messages
+with the numbers 1, 2, 3 ... in `effort`, then end marks with 0, until it is shut down. At the other's first end mark,
+it prints the messages received before.
 
-`queue_size` is 1,000, since rospy's own queues are to lose nothing, and what is lost is then lost by a bridge: rospy
-reads up to 64 KiB at once, which are 239 of these messages, and drops what is beyond the queue's size. With 100, a node
-that has not read for 0.1 s loses messages, whoever has sent them.
+`queue_size` is 1,000, so that rospy's own queues lose nothing and any loss is the bridge's. rospy reads up to 64 KiB at
+once, which are 239 of these messages, and drops those beyond the queue's size. With 100, a node that has not read for
+0.1 s loses messages from any sender.
 """
 
 import sys

@@ -1,6 +1,6 @@
-"""Debian's ROS 1 beside a mission: what its tools measure, publish, record and play comes out as on real rospy.
+"""Debian's ROS 1 beside a mission: its tools measure, publish, record and play with the same results as on real rospy.
 
-They act on graphs of their own, since what a tool did can be seen for a while in what others tell of a graph.
+They use separate graphs, because the effects of a tool can stay visible for a while in other tools' output.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ with rosbag.Bag(sys.argv[1]) as bag:
     for topic, (kind, data, md5sum, _, message_class), _ in bag.read_messages(raw=True):
         print(topic, kind, data.hex(), md5sum, repr(message_class._full_text))
 """
-WINDOW, RATE_HZ = 20, 10  # messages of a window of rostopic; what the talker's rate is
-ROUNDED_S = 0.001  # to which rostopic rounds
+WINDOW, RATE_HZ = 20, 10  # messages of a window of rostopic; the talker's rate
+ROUNDED_S = 0.001  # precision of rostopic's rounding
 
 
 def test_a_rate_is_measured_alike(real: RosGraph, mission: RosGraph) -> None:
@@ -62,13 +62,13 @@ def test_a_bandwidth_is_measured_alike(real: RosGraph, mission: RosGraph) -> Non
 
 
 def of_both(real: RosGraph, mission: RosGraph, ask: Callable[[RosGraph], T]) -> list[T]:
-    """What comes of the same on both graphs, at once."""
+    """Return the results of the same query on both graphs, at once."""
     with ThreadPoolExecutor(2) as threads:
         return list(threads.map(ask, (real, mission)))
 
 
 def measured(graph: RosGraph, tool: str) -> list[str]:
-    """What rostopic says until its window is full."""
+    """Return rostopic's output until its window is full."""
     lines: list[str] = []
     with started(["rostopic", tool, "-w", str(WINDOW), "/chatter"], unbuffered(graph)) as process:
         assert process.stdout is not None
@@ -80,12 +80,12 @@ def measured(graph: RosGraph, tool: str) -> list[str]:
 
 
 def shapes(lines: list[str]) -> set[str]:
-    """The kinds of lines, with N for numbers; on a busy computer a tool may look before anything has come."""
+    """Return the kinds of lines, with N for numbers. On a busy computer, a tool may look before the first message."""
     return {re.sub(r"[\d.]+", "N", line) for line in lines} - {"no new messages"}
 
 
 def test_what_a_tool_publishes_reaches_the_node_alike(real: RosGraph, mission: RosGraph) -> None:
-    """The node latches the length of what it has heard."""
+    """The node latches the length of the received message."""
 
     def publish(graph: RosGraph) -> set[str]:
         said = latched(graph, "data:_twelve_bytes", "data: 18")
@@ -108,7 +108,7 @@ def test_what_a_tool_publishes_of_another_type_is_refused_alike(real: RosGraph, 
 
 
 def latched(graph: RosGraph, text: str, length: str) -> set[str]:
-    """Publish until the node has latched the length; what the tool has said."""
+    """Publish until the node has latched the length. Returns the tool's output."""
     with started(["rostopic", "pub", "/orders", "std_msgs/String", text], unbuffered(graph)) as process:
         graph.wait_for("rostopic echo -n 1 /latched", length)
         process.terminate()
@@ -116,8 +116,9 @@ def latched(graph: RosGraph, text: str, length: str) -> set[str]:
 
 
 def put_back(graph: RosGraph) -> None:
-    """Let the node latch again what it has latched at its start, and the master know the topic's type again, which is
-    that of the last publisher: the graph of real ROS is that of other tests, too.
+    """Restore the node's latched value and the topic's type in the master, which is the last publisher's.
+
+    Other tests also use the graph of real ROS.
     """
     latched(graph, "seven77", "data: 7")
 
@@ -127,7 +128,7 @@ def unbuffered(graph: RosGraph) -> dict[str, str]:
 
 
 def lines_of(output: str) -> set[str]:
-    """Lines without colours, times, and options of a connection that both sides choose for themselves."""
+    """Return lines without colours, times, and options of a connection that both sides choose for themselves."""
     output = re.sub(r"\x1b\[\d*m", "", output)
     output = re.sub(r"\[\d+\.\d+\]", "[T]", output)
     return {re.sub(r"(, )?'tcp_nodelay': '\d'", "", line) for line in output.splitlines()}
@@ -135,7 +136,7 @@ def lines_of(output: str) -> set[str]:
 
 @pytest.mark.parametrize(("topic", "count"), [("/chatter", 5), ("/latched", 1)])
 def test_bags_are_the_same(real: RosGraph, mission: RosGraph, topic: str, count: int) -> None:
-    """Of both graphs: what is told of recording, and topics, types, definitions, connections and messages."""
+    """The recording's output, topics, types, definitions, connections and messages are equal on both graphs."""
 
     def record(graph: RosGraph) -> tuple[set[str], list[str]]:
         recorded = lines_of(graph.run(f"rosbag record -l {count} -O recorded.bag {topic}"))
@@ -147,7 +148,7 @@ def test_bags_are_the_same(real: RosGraph, mission: RosGraph, topic: str, count:
 
 
 def test_a_bag_is_played_alike(real: RosGraph, mission: RosGraph) -> None:
-    """Over and over, until what is played was recorded and has reached the node: nobody need be ready in time."""
+    """Play repeatedly until the data was recorded and has reached the node, so no program need be ready in time."""
     real.run("rosbag record -l 5 -O chatter.bag /chatter")
     bag = real.folder / "chatter.bag"
 
@@ -167,7 +168,7 @@ def test_a_bag_is_played_alike(real: RosGraph, mission: RosGraph) -> None:
 
 
 def contents(graph: RosGraph, bag: str) -> list[str]:
-    """All of a bag but its times, and the number in the name of rosbag's node."""
+    """Return a bag's content, except for its times and the number in the name of rosbag's node."""
     (graph.folder / "dump.py").write_text(DUMP, encoding="utf-8")
     told = graph.run(f"rosbag info {bag}; {PYTHON} dump.py {bag}")
     lines = re.sub(r"/play_\d+", "/play_N", told).splitlines()

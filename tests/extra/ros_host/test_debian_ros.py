@@ -1,7 +1,8 @@
-"""Debian's ROS 1 beside a mission: its tools say of the mission's nodes what they say of the same nodes on real rospy.
+"""Debian's ROS 1 beside a mission: its tools report the same about the mission's nodes as about the nodes on real
+rospy.
 
 One node's source runs twice: with real rospy on Debian's rosmaster, and in a mission that serves a master or joins one.
-Each command is run on both graphs, and its output compared, numbers aside that belong to a process.
+Each command is run on both graphs. The outputs are compared except for numbers that belong to a process.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ PARAMETER = ("rosparam set /outside 5", "rosparam get /outside", "rosparam delet
 
 
 def masked(output: str) -> str:
-    """An output without what belongs to one process: addresses, numbers, times, the name of the tool's own node."""
+    """Return an output without data of one process: addresses, numbers, times, the name of the tool's own node."""
     output = re.sub(r"http://[\w.\-]+:\d+/?", "URI", output)
     output = re.sub(r"_\d+_\d{10,}", "_N", output)
     output = re.sub(r"time=[\d.]+ms|average: [\d.]+ms", "TIME", output)
@@ -78,5 +79,5 @@ def test_rqt_graph_has_the_same_picture(real: RosGraph, mission: RosGraph) -> No
 
 
 def seen(picture: str) -> list[str]:
-    """What is in a picture, without rosgraph's word on connections of tools that have just gone."""
+    """Return the content of a picture, without rosgraph's lines about connections of tools that have just ended."""
     return [line for line in picture.splitlines() if not line.startswith("cannot add edge")]

@@ -1,4 +1,4 @@
-"""All that enters from ROS goes through the door of the mission: it can be repeated without a network."""
+"""All input from ROS passes the door of the mission, so it can be repeated without a network."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_a_short_queue_keeps_the_newest_of_a_burst(tmp_path: Path) -> None:
 
 
 def _heard_of_a_burst(run: Joined) -> list[str]:
-    """What the node has heard of a burst up to its last message."""
+    """Return the messages that the node has received of a burst up to its last message."""
     ear = run.subscribed("/chatter")
     ear.header()
     assert ear.frame() == text("first")

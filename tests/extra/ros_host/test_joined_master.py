@@ -75,7 +75,7 @@ def joining(folder: Path, master: RosMaster) -> Iterator[Joined]:
 
 
 def is_registered(master: RosMaster) -> bool:
-    """Whether the master knows all of the mission; its services come last."""
+    """Return whether the master knows all of the mission. Its services come last."""
     return ["/talker/set_logger_level", ["/talker"]] in state(master)[2]
 
 
@@ -127,7 +127,7 @@ def test_parameters_go_both_ways(tmp_path: Path, master: RosMaster) -> None:
 
 
 def test_a_node_does_not_give_way_to_what_a_former_one_has_left(tmp_path: Path, master: RosMaster) -> None:
-    """The mission's node has started after the master was asked, whose answer has a dead one of that name."""
+    """The mission's node starts after the query to the master, whose answer has a dead node of that name."""
     with joining(tmp_path, master) as run:
         run.host.seen = OwnGraph({}, [], [], [], {}, {})
         left = MasterState(1, [RosEntry(PUBLISHER, "/chatter", "/talker")], {}, {"/talker": NOBODY}, {})

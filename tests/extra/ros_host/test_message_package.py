@@ -1,4 +1,4 @@
-"""`cfepy export ros`: a package from which ROS's own generator makes the types that telemetry has over a connection."""
+"""`cfepy export ros`: a package from which ROS's own generator makes the types of telemetry on connections."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ print(json.dumps({name: each._md5sum for name, each in vars(cfe_tlm.msg).items()
 
 
 def types_of(mission: str) -> dict[str, str]:
-    """The md5sums of a mission's telemetry outside, by the types' names."""
+    """Return the md5sums of a mission's telemetry outside, by the types' names."""
     entries = dictionary_of(read_mission(mission)).telemetry.values()
     shown = [type_of(each.name, each.payload) for each in entries if isinstance(each, Telemetry) and each.payload.size]
     return {each.name: each.md5sum for each in shown}

@@ -1,8 +1,7 @@
 """The ROS master, a node on real rospy, and the mission are killed and started again, 50 times each.
 
-Each time messages go both ways again, which the one that lives on tells: a node of `meets.py` prints whom it has met.
-What lives on does not grow: a restart that left something behind would leave it 40 times after the ten first ones, in
-which caches fill.
+Each time messages pass both ways again, as the surviving side reports: a node of `meets.py` prints whom it has met.
+The survivor does not grow. A leak per restart would show 40 times after the first ten restarts, in which caches fill.
 """
 
 from __future__ import annotations
@@ -32,10 +31,10 @@ from tests.extra.ros_host.graphs import (
 
 NODE = Path(__file__).with_name("meets.py")
 RESTARTS, WARM_UP = 50, 10
-# 26 KiB a restart. Measured were 100 to 400 KiB in all, of what is printed, and of caches and free memory of Python.
+# 26 KiB a restart. Measured were 100 to 400 KiB in total, for output, caches and free memory of Python.
 MOST_GROWTH_KIB = 1024
-LOOK_AGAIN_S = 0.1  # at what soon comes to rest
-PATIENCE_S = 200  # wall time for what must come; a busy computer takes half a minute to start a process
+LOOK_AGAIN_S = 0.1  # interval for values that settle soon
+PATIENCE_S = 200  # wall time limit; a busy computer takes half a minute to start a process
 
 pytestmark = [
     pytest.mark.slow,
@@ -44,7 +43,7 @@ pytestmark = [
 
 
 class Footprint(NamedTuple):
-    """What a process has of the computer."""
+    """Resources of a process."""
 
     memory_kib: int
     threads: int
@@ -59,7 +58,7 @@ class Survivor:
         self.footprints: list[Footprint] = []
 
     def look(self) -> None:
-        """Note what it has now."""
+        """Record its present resources."""
         of = Path(f"/proc/{self.process.pid}")
         lines = [line.split() for line in (of / "status").read_text(encoding="utf-8").splitlines()]
         values = {words[0]: words[1] for words in lines if len(words) > 1}
@@ -67,9 +66,9 @@ class Survivor:
         self.footprints.append(Footprint(int(values["VmRSS:"]), int(values["Threads:"]), files))
 
     def check(self) -> None:
-        """It has not grown, and lives.
+        """Assert that the process lives and has not grown.
 
-        Threads and files of what is under way come and go: soon it has no more than in the first restarts.
+        Threads and files of current work vary: soon it has no more than in the first restarts.
         """
         first, last = self.footprints[1 : WARM_UP + 1], self.footprints[-1]
         assert len(self.footprints) == RESTARTS + 1
@@ -86,8 +85,8 @@ class Flight:
     """A mission of a node that meets others.
 
     Args:
-        folder: for its files.
-        start: what this start of it is called.
+        folder: folder for its files.
+        start: name of this start.
     """
 
     def __init__(self, folder: Path, start: str) -> None:
@@ -106,7 +105,7 @@ class Flight:
         return cfepy_run(self.folder, "--ros-master", master, "--json", str(self._report))
 
     def rows(self) -> dict[str, Any]:
-        """What the report has of the peer's topics, by topic."""
+        """Return the report's rows of the peer's topics, by topic."""
         rows = json.loads(self._report.read_text(encoding="utf-8"))["ros_peers"]
         return {row["name"]: row for row in rows if row["peer"] == "/peer" and row["name"].startswith("/of_")}
 
@@ -155,7 +154,7 @@ def kill_peers(folder: Path, master: str) -> None:
 
 
 def test_the_master_is_killed_and_comes_back(tmp_path: Path) -> None:
-    """rospy never registers again with a new master, so there is a new peer each time; the mission does."""
+    """rospy never registers again with a new master, so there is a new peer each time. The mission does register."""
     graph = free_graph(tmp_path)
     flight = Flight(tmp_path, "mission")
     with master_of(graph) as first:
@@ -173,7 +172,7 @@ def test_the_master_is_killed_and_comes_back(tmp_path: Path) -> None:
 
 
 def meet_beside(graph: RosGraph, survivor: Survivor, start: str, master: subprocess.Popen[str]) -> None:
-    """Have a peer meet the mission beside a master; both are killed."""
+    """Have a peer meet the mission beside a master. Both are killed."""
     with started(peer(start), graph.environ) as outside:
         wait_for_line(survivor.process, f"met {start}", PATIENCE_S)
         survivor.look()

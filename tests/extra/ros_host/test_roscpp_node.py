@@ -58,7 +58,7 @@ def test_both_speak_with_each_other(way: str, peer: Path, tmp_path: Path) -> Non
 
 
 def speak(peer: Path, folder: Path, master: str) -> None:
-    """One run of both; each line that is waited for comes, or the test's process is given up."""
+    """Run both once. Each expected line arrives, or the test's process is aborted."""
     (folder / "node.py").write_text(NODE, encoding="utf-8")
     (folder / "startup.scr").write_text("CFE_APP, node.py, __main__, NODE, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     with started(cfepy_run(folder, "--ros-master", master)) as mission:

@@ -1,6 +1,6 @@
-"""A mission that serves a ROS master: programs outside find its nodes, hear and call them, and the other way round.
+"""A mission that serves a ROS master: external programs find its nodes, subscribe to and call them, and vice versa.
 
-The programs speak ROS's protocols from the test itself, so nothing of ROS need be installed.
+The test itself speaks ROS's protocols for the programs, so ROS need not be installed.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Packets of cFE applications as ROS topics, and topics that are heard for them, as the mission file says."""
+"""Packets of cFE applications as ROS topics, and topics that become packets, as the mission file defines."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def test_topics_are_heard_for_applications(tmp_path: Path) -> None:
 
 
 def test_the_mission_tells_its_time(tmp_path: Path) -> None:
-    """/clock has the mission's time, at the rate that is asked for; its own nodes do not wait for it."""
+    """/clock has the mission's time, at the requested rate. Its own nodes do not wait for it."""
     node = "import rospy\nrospy.init_node('n')\nrospy.sleep(0.01)\nprint(f'at {rospy.get_time():.2f}')\nrospy.spin()\n"
     file = "params: {use_sim_time: true}\nros_bridge: {clock: 50}\n"
     with joined(tmp_path, {"N": node}, mission_file=file) as run:

@@ -1,4 +1,4 @@
-"""Clients that a mission with a ROS master does not want: pages in browsers, and those that send too much."""
+"""Unwanted clients of a mission with a ROS master: pages in browsers, and clients that send too much."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def opened(run: Joined, uri: str = "") -> socket.socket:
 
 
 def exchanged(run: Joined, data: bytes, uri: str = "", ends: bool = True) -> bytes:
-    """What comes back until the connection ends, or until an answer is whole."""
+    """Return the answer until the connection ends, or until it is complete."""
     stranger, found, is_over = opened(run, uri), b"", False
     while not is_over and b"413 Content" not in found and (ends or b"</methodResponse>" not in found):
         try:
@@ -270,7 +270,7 @@ def test_names_and_registrations_are_bounded(run: Joined, monkeypatch: pytest.Mo
 
 
 def test_requests_wait_for_their_turn(run: Joined) -> None:
-    """While the turn is over, requests stay in their connections; the next one answers them all."""
+    """While the turn is over, requests stay in their connections. The next turn answers them all."""
     turn, stranger = run.host.bounds.turn, opened(run)
     seconds, turn._seconds = turn._seconds, 0.0
     try:
@@ -410,7 +410,7 @@ def test_calls_of_a_service_that_wait_are_bounded(tmp_path: Path, monkeypatch: p
         for each in (*left, late):
             each.socket.close()
         run.mission.outside.act("publish", "/go", text("now"))
-        run.run_while(lambda: bool(entry.calls))  # also those whose callers have left
+        run.run_while(lambda: bool(entry.calls))  # also those whose callers have disconnected
         again = run.connected(uri, fields)
         again.header()
         again.frames.has_status = True
@@ -463,7 +463,7 @@ def test_a_bad_connection_header_ends_its_connection(run: Joined, data: bytes) -
     run.run_while(lambda: bool(len(run.host.bounds.places)))
 
 
-# -- what others answer ------------------------------------------------------------------------------------------------
+# -- answers of other programs -----------------------------------------------------------------------------------------
 
 
 class Answering:

@@ -1,6 +1,6 @@
-"""A 1 kHz stream each way between a node on real rospy and one of a mission, at once: nothing is lost.
+"""A 1 kHz stream each way between a node on real rospy and one of a mission at the same time: nothing is lost.
 
-What is counted does not depend on how fast the computer is: on a busy one, it takes longer. `streams.py` says why its
+The counts do not depend on the speed of the computer; a busy one only takes longer. `streams.py` explains why its
 queues hold 1,000 messages.
 """
 
@@ -17,7 +17,7 @@ from tests.extra.ros_host.graphs import HAS_ROS, PYTHON, RosGraph, cfepy_run, ro
 
 NODE = Path(__file__).with_name("streams.py")
 MESSAGES = 10_000  # in 10 s, where there is time
-PATIENCE_S = 300  # wall time, in which the stream must have come to its end
+PATIENCE_S = 300  # wall time limit of the stream
 HAS_JOINTS = not subprocess.run([PYTHON, "-c", "import sensor_msgs.msg"], capture_output=True, check=False).returncode
 
 pytestmark = [

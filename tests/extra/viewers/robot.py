@@ -1,4 +1,4 @@
-"""A robot for clients of others: its node, and the command that runs it with a viewers' server until it is to end."""
+"""A robot for foreign clients: its node, and the command that runs it with a viewers' server."""
 
 from __future__ import annotations
 
@@ -53,17 +53,17 @@ server = actionlib.SimpleActionServer("/fibonacci", FibonacciAction, count, auto
 server.start()
 rospy.spin()
 """
-PATIENCE_S = 60  # for a process of the host; what is waited for is what it does
+PATIENCE_S = 60  # for a process of the host, until it has done the expected action
 
 
 @contextmanager
 def robot(folder: Path, *options: str, server: str = "--rosbridge") -> Iterator[int]:
-    """The robot runs in real time; the port of its server.
+    """Run the robot in real time. Yields the port of its server.
 
     Args:
-        folder: for its script.
-        options: more of the command line.
-        server: the option that asks for one.
+        folder: folder for its script.
+        options: further options of the command line.
+        server: the option that starts a server.
     """
     script = folder / "robot.py"
     script.write_text(ROBOT, encoding="utf-8")

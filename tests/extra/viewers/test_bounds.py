@@ -1,4 +1,4 @@
-"""What clients of viewers' servers may take together, and how much one message may be."""
+"""Limits of viewers' servers: for all clients together, and for one message."""
 
 from __future__ import annotations
 

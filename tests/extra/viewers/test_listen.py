@@ -1,4 +1,4 @@
-"""Where servers for viewers listen, and whom they let in."""
+"""Addresses of servers for viewers, and their accepted clients."""
 
 from __future__ import annotations
 

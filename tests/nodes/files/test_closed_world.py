@@ -1,4 +1,4 @@
-"""What nodes write is the run's own: each run finds the host as the one before it did, and leaves nothing there."""
+"""Files that nodes write belong to the run: each run finds the host unchanged, and leaves nothing there."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def plan_of(script: Path, tasks: str = "thread", seconds: float = 1.0) -> RunPla
 
 
 def left(folder: Path) -> list[str]:
-    """What is in the folder of the test, but for what pytest or a journal has there."""
+    """Return the content of the test's folder, except for files of pytest and of a journal."""
     return sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.suffix != ".cfepy")
 
 

@@ -1,6 +1,6 @@
-"""Random sequences of file operations give what they give on a real folder, and leave the host's folder as it was.
+"""Random sequences of file operations give the same results as on a real folder, and leave the host's folder unchanged.
 
-The real folder is an ordinary user's, who may not do everything, also where root runs the tests.
+The real folder belongs to an ordinary user with limited permissions, even if root runs the tests.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ NOBODY = 65534
 
 @contextmanager
 def ordinary_user() -> Iterator[None]:
-    """Around what a real folder does: it is no root that asks, and files are made as usual."""
+    """Perform operations on a real folder as an ordinary user instead of root, and create files with the usual mode."""
     is_root, mask = hasattr(os, "geteuid") and os.geteuid() == 0, os.umask(0o022)
     if is_root:
         os.seteuid(NOBODY)
@@ -58,7 +58,7 @@ def ordinary_user() -> Iterator[None]:
 
 
 def fill(folder: Path) -> None:
-    """What the host has."""
+    """Create the host's files."""
     (folder / "d" / "e").mkdir(parents=True)
     (folder / "a").write_bytes(b"host a")
     (folder / "d" / "a").write_bytes(b"host d/a")
@@ -67,7 +67,7 @@ def fill(folder: Path) -> None:
 
 
 def tree(system: Any, folder: str) -> dict[str, Any]:
-    """All that is below a folder: names, kinds, permissions, sizes, targets of links."""
+    """Return all that is below a folder: names, kinds, permissions, sizes, targets of links."""
     found: dict[str, Any] = {}
     try:
         names = sorted(system.listdir(folder))
@@ -90,7 +90,7 @@ def tree(system: Any, folder: str) -> dict[str, Any]:
 
 
 def act(system: Any, opening: Callable[..., Any], folder: str, operation: tuple[Any, ...]) -> Any:
-    """What an operation gives, or the kind and the text of its error."""
+    """Return the result of an operation, or the kind and the text of its error."""
     what, first, *rest = operation
     path = os.path.join(folder, first)
     try:

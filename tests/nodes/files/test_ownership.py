@@ -1,4 +1,4 @@
-"""Whose a file is and who a program is: one ordinary user, whoever runs cfepy, with whatever umask."""
+"""Owners of files and users of programs: one ordinary user, with any user and umask of cfepy itself."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ REFUSED = "[Errno 13] Permission denied"
 
 @pytest.fixture
 def lines(run: Run, tmp_path: Path) -> Callable[[str], list[str]]:
-    """What a program prints in a folder with a file and a folder of the host."""
+    """Return the output of a program in a folder with a file and a folder of the host."""
     (tmp_path / "host").write_text("host", encoding="utf-8")
     (tmp_path / "inner").mkdir()
     (tmp_path / "inner" / "file").write_text("inner", encoding="utf-8")
@@ -218,7 +218,7 @@ print(os.getuid(), os.stat("own"), os.stat("host"), os.access("host", os.W_OK), 
 
 
 def test_a_journal_replays_for_another_user_with_another_umask(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Also what belongs to root, and to others."""
+    """The journal also covers files of root and of others."""
     home = tmp_path / "home"
     home.mkdir()
     (home / "host").write_text("x", encoding="utf-8")

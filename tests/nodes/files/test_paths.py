@@ -1,4 +1,5 @@
-"""Paths with drives: what a run writes at C:\\a lies below its own folder, and is found there by the same path."""
+"""Paths with drives: a file that a run writes on drive C: lies below its own folder, and the same path finds it
+there."""
 
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ def test_a_path_comes_back_from_its_place() -> None:
 
 @pytest.fixture
 def disk(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> overlay.Overlay:
-    """A run's files on a computer whose drive C: is a folder of this one."""
+    """Return a run's files on a computer whose drive C: is a folder of this one."""
     monkeypatch.setattr(overlay, "HAS_DRIVES", True)
     (tmp_path / "data").mkdir()
     (tmp_path / "data" / "old.txt").write_text("old", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""`time` and `datetime` of a node: virtual, in UTC, whatever the host's clock and time zone."""
+"""`time` and `datetime` of a node: virtual, in UTC, with any clock and time zone of the host."""
 
 from __future__ import annotations
 

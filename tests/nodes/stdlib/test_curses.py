@@ -13,7 +13,7 @@ curses.wrapper(main)
 
 
 def program_of(*lines: str) -> str:
-    """A program that executes lines with a screen."""
+    """Return a program that executes lines with a screen."""
     return SCREEN.format(body="\n".join(f"    {line}" for line in lines))
 
 

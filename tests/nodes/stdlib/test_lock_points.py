@@ -1,4 +1,4 @@
-"""Where others get in when threads of a node use locks: all outcomes are reached, and few schedules are wasted."""
+"""Preemptions of threads of a node that use locks: all outcomes are reached, and few schedules are wasted."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ QUICK = ("start", "alive", "active", "future")
 
 
 def flown(script: Path, policy: Policy | None = None) -> tuple[str, str]:
-    """What it leaves in `out`, or that it ends in a deadlock, and the digest of the run."""
+    """Return the content of `out`, or the deadlock at the end, and the digest of the run."""
     trace = Trace()
     with make_kernel("greenlet", trace, policy) as kernel:
         universe = Universe(kernel, name="node", script=script)

@@ -31,7 +31,7 @@ import helper
 @pytest.mark.parametrize(
     "body",
     [
-        # dataclasses with string annotations: ClassVar, InitVar and KW_ONLY are told from fields by their text
+        # dataclasses with string annotations: ClassVar, InitVar and KW_ONLY are distinguished from fields by their text
         """
 @dataclasses.dataclass
 class D(helper.Base):

@@ -1,4 +1,4 @@
-"""What belongs to a process: arguments, environment, directory, streams, signals, exit."""
+"""Properties of a process: arguments, environment, directory, streams, signals, exit."""
 
 from __future__ import annotations
 

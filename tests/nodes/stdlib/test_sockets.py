@@ -1,4 +1,4 @@
-"""Sockets of nodes on a virtual network that is joined to something: what connects, what waits, what fails and how."""
+"""Sockets of nodes on a virtual network with a bridge: successful connections, waits, and failures."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from cfepy.osal.network import Network, Place
 
 @pytest.fixture
 def network() -> Network:
-    """A network whose bridge finds nobody outside."""
+    """Return a network whose bridge finds no external peer."""
     made = Network()
     made.dial = lambda source, target: None
     return made

@@ -1,4 +1,4 @@
-"""The keyboard of a node: keys at virtual times, cooked, cbreak and raw mode, Ctrl-C, and what reads them."""
+"""The keyboard of a node: keys at virtual times, cooked, cbreak and raw mode, Ctrl-C, and reading them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names asked of `cfe` in vain: what is told, and what is left alone because it cannot be told for certain."""
+"""Names that `cfe` does not have: those that are reported, and those that are not because they are uncertain."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FOLDERS = ("apps", "missions", "examples", "tests/quality", "tests/mission", "cf
 
 
 def told(folder: Path, body: str) -> list[tuple[int, str]]:
-    """What is told of an application whose main function is `Main`: line, text."""
+    """Return the findings about an application whose main function is `Main`: line, text."""
     source = folder / "app.py"
     source.write_text(textwrap.dedent(body), encoding="utf-8")
     return sorted((problem.line, problem.text) for problem in wrong_names(source, "Main"))

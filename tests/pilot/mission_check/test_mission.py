@@ -1,4 +1,4 @@
-"""Everything wrong with a mission before it boots: each finding with its file and line."""
+"""All errors of a mission before it boots: each finding has its file and line."""
 
 from __future__ import annotations
 
@@ -231,7 +231,7 @@ def test_no_mission(tmp_path: Path) -> None:
 
 
 def read_all(path: Path) -> None:
-    """All sections of a mission file; the first mistake is raised."""
+    """Read all sections of a mission file. The first mistake is raised."""
     read_demands(read_mission_file(path, Mistakes()).demands, Mistakes())
 
 

@@ -22,7 +22,7 @@ TALKER = """\
 
 @pytest.fixture
 def demo(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A package `demo` with a node; the current folder is beside it."""
+    """Return a package `demo` with a node. The current folder is beside it."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("ROS_PACKAGE_PATH", raising=False)
     files = {

@@ -1,4 +1,4 @@
-"""What rospy does with names, values and calls that do not fit, recorded from rospy 1.15.15 with a master."""
+"""rospy's reactions to invalid names, values and calls, recorded from rospy 1.15.15 with a master."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def tried(function, *arguments):
 
 
 def answers(tmp_path: Path, body: str, seconds: float = 5.0) -> list[str]:
-    """What a node printed, log lines without their time."""
+    """Return a node's output, with log lines without their time."""
     lines = run_nodes(tmp_path, {"A": HEAD + body}, seconds=seconds).printed["a"]
     return [_STAMP.sub("", line) for line in lines]
 

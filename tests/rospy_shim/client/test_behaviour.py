@@ -1,4 +1,4 @@
-"""Expressions whose values on a real ROS 1 master are on record give the same values and errors in a node."""
+"""Expressions with recorded values from a real ROS 1 master give the same values and errors in a node."""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
-"""Connections that take their time: what is published meanwhile, who counts whom, and in which order it comes.
+"""Connections that take time: messages published meanwhile, counts of peers, and the order of arrival.
 
-On a real master a subscriber that came second was connected after 3 to 9 ms, a publisher after 30 to 80 ms. No side
-counted the other before; then the publisher counted 1 as `peer_subscribe` was called, and the latched message, which is
-the one that the listener sent, came behind.
+On a real master, a subscriber that started second was connected after 3 to 9 ms, a publisher after 30 to 80 ms. Neither
+side counted the other before. Then the publisher counted 1 when `peer_subscribe` was called, and the latched message,
+which the listener sends, arrived afterwards.
 """
 
 from __future__ import annotations

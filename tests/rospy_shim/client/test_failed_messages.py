@@ -83,7 +83,7 @@ def test_the_topic_is_dead_for_those_who_subscribe(
         "cfepy: a message for /t could not be serialized. As on ROS, the half of it that was written stays in the"
         " publisher's buffer: the next message goes out behind it, and whoever subscribes then gets nothing any more."
     ]
-    # The one behind it still goes to somebody, those after it to nobody.
+    # The message behind it still reaches a subscriber, later ones do not.
     assert told[at + 1 :] == ["1"] + ["0"] * (len(told) - at - 2)
 
 

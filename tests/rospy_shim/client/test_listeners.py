@@ -1,4 +1,4 @@
-"""Listeners for the subscribers of a publisher: what they send, in which order, and what becomes of their errors.
+"""Listeners for the subscribers of a publisher: their messages, their order, and their errors.
 
 The answers are recorded from rospy 1.15.15 with a master.
 """

@@ -9,7 +9,7 @@ from tests.rospy_shim.missions import run_nodes
 
 
 def run(tmp_path: Path, body: str) -> list[str]:
-    """What a node logged and printed, without the time."""
+    """Return a node's log and output, without the time."""
     result = run_nodes(tmp_path, {"PROBE": "import rospy, logging\n" + body})
     lines = [line for lines in result.printed.values() for line in lines] or result.lines
     return [re.sub(r" \[\d+\.\d{6}\]", "", line) for line in lines]

@@ -1,4 +1,4 @@
-"""What tools ask of a node's inside: topics, connections, services, statistics of subscribers."""
+"""Internals of a node that tools read: topics, connections, services, statistics of subscribers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Every public name of rospy 1.15 and of its modules is there, with its arguments; what is not has a reason."""
+"""Every public name of rospy 1.15 and of its modules exists, with its arguments; each missing one has a reason."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The nodes of tests/ros_nodes print here what they printed on a real ROS 1 master."""
+"""The nodes of tests/ros_nodes have the same output here as on a real ROS 1 master."""
 
 from __future__ import annotations
 

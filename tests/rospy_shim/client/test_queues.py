@@ -1,4 +1,4 @@
-"""What waits for a slow subscriber: the newest messages, as many as its queue size says."""
+"""Messages that wait for a slow subscriber: the newest ones, as many as its queue size."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Services between nodes and in one node: calls, errors, types, what happens when a side ends."""
+"""Services between nodes and in one node: calls, errors, types, and the end of one side."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def attempt(function, *args, **kwds):
 
 
 def run(tmp_path: Path, body: str) -> list[str]:
-    """What one node printed."""
+    """Return one node's output."""
     result = run_nodes(tmp_path, {"PROBE": HEAD + 'rospy.init_node("probe", log_level=rospy.FATAL)\n' + body})
     return result.printed.get("probe", result.lines)
 
@@ -172,7 +172,7 @@ for size in (32_000, 32_760, 100_000, 3_000_000):
 
 
 def test_handlers_run_side_by_side(tmp_path: Path) -> None:
-    """A handler that waits for another call of the same service, and one that is called out of itself."""
+    """One handler waits for another call of the same service, and another is called from within itself."""
     lines = run(
         tmp_path,
         """

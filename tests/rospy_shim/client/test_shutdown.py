@@ -1,4 +1,4 @@
-"""The life of a node: init_node, names, shutdown from inside and outside, what is left on the bus afterwards."""
+"""The life of a node: init_node, names, shutdown from inside and outside, and its remains on the bus."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def run(tmp_path: Path, body: str, **options: object) -> Run:
 
 
 def printed(tmp_path: Path, body: str, **options: object) -> list[str]:
-    """What one node printed."""
+    """Return one node's output."""
     result = run(tmp_path, body, **options)
     return [line for lines in result.printed.values() for line in lines] or result.lines
 

@@ -1,4 +1,4 @@
-"""Simulated time: /use_sim_time and /clock, sleeping on it, and what happens when it is set back."""
+"""Simulated time: /use_sim_time and /clock, sleeping on it, and its reset to an earlier time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A node that asks rospy at each stage of its life prints what it printed on a ROS 1 master (rospy 1.15.15)."""
+"""A node that queries rospy at each stage of its life has the same output as on a ROS 1 master (rospy 1.15.15)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`from package.msg import *` and its like: what they bring along in ROS, and what nodes rely on without saying so."""
+"""`from package.msg import *` and similar imports: their names in ROS, and names that nodes use implicitly."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from tests.rospy_shim.missions import run_nodes
 
 
 def printed(folder: Path, script: str) -> list[str]:
-    """What one node printed."""
+    """Return one node's output."""
     lines = run_nodes(folder, {"NODE": script}).printed["NODE"]
     return lines
 

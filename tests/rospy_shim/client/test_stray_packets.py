@@ -1,4 +1,4 @@
-"""Packets of the ground on the MsgIds of ROS: of any length, and belonging to no call or message."""
+"""Packets of the ground on the MsgIds of ROS: of any length, and without a call or message."""
 
 from __future__ import annotations
 

@@ -8,7 +8,7 @@ from tests.rospy_shim.missions import run_nodes
 
 
 def run(tmp_path: Path, body: str, **options: object) -> list[str]:
-    """Run one node; what it printed."""
+    """Run one node. Returns its output."""
     result = run_nodes(tmp_path, {"PROBE": "import rospy\n" + body}, **options)  # type: ignore[arg-type]
     return [line for lines in result.printed.values() for line in lines] or result.lines
 

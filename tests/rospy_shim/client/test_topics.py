@@ -17,7 +17,7 @@ from geometry_msgs.msg import PointStamped, Point
 
 
 def run(tmp_path: Path, body: str, **options: object) -> list[str]:
-    """Run one node; what it printed."""
+    """Run one node. Returns its output."""
     script = HEAD + 'rospy.init_node("probe")\n' + body
     result = run_nodes(tmp_path, {"PROBE": script}, **options)  # type: ignore[arg-type]
     return result.printed.get("probe", result.lines)
@@ -54,7 +54,7 @@ print(seen[0][2] != threading.get_ident())
 
 
 def test_messages_wait_for_a_subscriber_from_the_moment_it_subscribes(tmp_path: Path) -> None:
-    """ES starts its task 50 ms later; what is published meanwhile comes then, of latched messages the last one."""
+    """ES starts its task 50 ms later. It then gets the messages published meanwhile, and the last latched one."""
     lines = run(
         tmp_path,
         """

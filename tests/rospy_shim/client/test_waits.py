@@ -1,4 +1,4 @@
-"""How long rospy's own waits take: they look from time to time, and come back late.
+"""The durations of rospy's own waits: they poll, and return late.
 
 The times are recorded from rospy 1.15.15 with a master, to a hundredth of a second.
 """
@@ -52,7 +52,7 @@ rospy.Service("later", Empty, print)
 rospy.spin()
 """
     lines = run_nodes(tmp_path, {"WAITS": TIMED + waits, "OFFERS": TIMED + offers}, seconds=4).printed["waits"]
-    # The last look is 0.6 s after the first; the service comes 0.8 s after it.
+    # The last check is 0.6 s after the first; the service starts 0.8 s after it.
     assert lines == ["0.60 None", "0.00 None", "0.90 timeout exceeded while waiting for service /later"]
 
 

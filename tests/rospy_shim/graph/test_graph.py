@@ -1,4 +1,4 @@
-"""The parts of the ROS side that need no mission: names, parameters, MsgIds, segments, the module on the host."""
+"""The parts of the ROS side without a mission: names, parameters, MsgIds, segments, the module on the host."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The master answers as rosmaster does: every recorded question again, asked by a node through xmlrpc.client."""
+"""The master answers as rosmaster does: a node repeats every recorded request through xmlrpc.client."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a node answers at its URI."""
+"""A node's answers at its URI."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ HEAD = """
 
 
 def ask(folder: Path, questions: str) -> list[str]:
-    """What a node prints that asks another one."""
+    """Return the output of a node that queries another one."""
     return run_nodes(folder, {"ASKED": ASKED, "ASKS": HEAD + questions}, seconds=2).printed["asks"]
 
 

@@ -1,4 +1,4 @@
-"""xmlrpc.client in a node: its own types and errors, and nobody there but the master and the nodes."""
+"""xmlrpc.client in a node: its own types and errors, and no servers except for the master and the nodes."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_a_loop_that_asks_takes_time_and_is_deterministic(tmp_path: Path, tasks:
 
 
 def test_a_tool_that_the_node_brings_runs_on_it(tmp_path: Path) -> None:
-    """What such a source does, in small: a package of the node's own called rosnode, on the shipped rosgraph."""
+    """This is a small form of such a source: a package of the node's own called rosnode, on the shipped rosgraph."""
     (tmp_path / "rosnode").mkdir()
     (tmp_path / "rosnode" / "__init__.py").write_text(
         "import rosgraph\nfrom xmlrpc.client import ServerProxy\n"

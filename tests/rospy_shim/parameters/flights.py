@@ -31,7 +31,7 @@ def fly(
     tasks: str = "thread",
     attachments: Sequence[Attachment] = (),
 ) -> Mission:
-    """A mission with one node, N; it has not run yet."""
+    """Return a mission with one node, N, which has not run yet."""
     (folder / "n.py").write_text(textwrap.dedent(node), encoding="utf-8")
     script = folder / "startup.scr"
     script.write_text("CFE_APP, n, __main__, N, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8")
@@ -41,23 +41,23 @@ def fly(
 
 
 def printed(mission: Mission) -> list[str]:
-    """What the node, which calls itself n, has printed."""
+    """Return the output of the node, whose ROS name is n."""
     return [line.removeprefix("[n] ") for line in mission.console.lines if line.startswith("[n] ")]
 
 
 def events(mission: Mission) -> list[str]:
-    """The texts of ROS's events."""
+    """Return the texts of ROS's events."""
     return [line.partition("/ROS ")[2] for line in mission.console.lines if "/ROS " in line]
 
 
 def reset(mission: Mission, kind: int) -> None:
-    """What the ground commands with CFE_ES_RESTART."""
+    """Reset by the ground command CFE_ES_RESTART."""
     mission.cfe.sb.transmit_msg(command(0x1806, 2, bytes([kind, 0])), is_origination=False)
     mission.run_for(2)
 
 
 def load(mission: Mission, number: int, values: Mapping[str, str]) -> None:
-    """Load a table of parameters, whose texts are given, from a file, have it validated, and activate it."""
+    """Load a table of parameters with these texts from a file, validate it, and activate it."""
     rows = [row for name, text in values.items() for row in rows_for(name, text)]
     table = TABLES[number]
     image = table.image([{"Name": name, "Value": value} for name, value in rows])
@@ -72,7 +72,7 @@ def load(mission: Mission, number: int, values: Mapping[str, str]) -> None:
 
 
 def dump(mission: Mission, number: int) -> bytes:
-    """The file that the ground gets when it dumps a table of parameters."""
+    """Return the file that the ground gets when it dumps a table of parameters."""
     packet = DUMP.packet(ActiveTableFlag=ACTIVE_BUFFER, TableName=TABLES[number].name, DumpFilename="/ram/dump.tbl")
     mission.cfe.sb.transmit_msg(packet, is_origination=False)
     mission.cfe.sb.transmit_msg(command(0x180C, 0), is_origination=False)  # CFE_TBL writes with its housekeeping
@@ -83,7 +83,7 @@ def dump(mission: Mission, number: int) -> bytes:
 
 
 def rows_of(mission: Mission) -> list[Row]:
-    """The rows that are not free, of all tables that there are."""
+    """Return the rows that are not free, of all tables that there are."""
     registry = mission.cfe.tbl.registry
     tables = [found for table in TABLES if (found := registry.find(table.name)) is not None]
     images = [table.image(active) for table in tables if (active := registry.active(table)) is not None]

@@ -1,4 +1,4 @@
-"""Parameters as text and in rows: exact types, any name, and no more written than has changed."""
+"""Parameters as text and in rows: exact types, any name, and only changed values are written."""
 
 from __future__ import annotations
 

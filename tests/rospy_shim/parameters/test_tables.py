@@ -1,4 +1,4 @@
-"""Parameters in cFE tables: what resets leave, what the ground sees and loads, and what becomes of too many."""
+"""Parameters in cFE tables: their state after resets, the ground's view and loads, and too many of them."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def test_what_was_set_right_before_a_node_dies_is_kept(tmp_path: Path) -> None:
 def test_a_reset_before_the_tables_are_loaded_leaves_nothing_in_their_way(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Table Services begin to restore the images that the CDS has not got yet, and keep those loads in progress."""
+    """Table Services begin to restore images that the CDS does not have yet, and keep those loads in progress."""
     register, resets = ParameterImages._register, []
 
     def reset_after(images: ParameterImages, number: int) -> TableHandle | None:

@@ -1,6 +1,6 @@
-"""Launch files mean what they mean to roslaunch: parameters, nodes, tests, and which files are refused.
+"""Launch files have the same meaning as in roslaunch: parameters, nodes, tests, and refused files.
 
-What roslaunch 1.15 makes of each file was recorded with its own XmlLoader (tests/data/roslaunch_golden.json).
+The results of roslaunch 1.15 for each file were recorded with its own XmlLoader (tests/data/roslaunch_golden.json).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def read_case(case: dict[str, Any], folder: Path, mistakes: Mistakes | None = No
 
 
 def as_recorded(launch: Launch, folder: Path) -> dict[str, Any]:
-    """What was read, in the form of the recording."""
+    """Return the read data in the form of the recording."""
     tests = [
         {**node_of(test.node), "tn": test.test_name, "tl": test.time_limit, "retry": test.retry}
         for test in launch.tests
@@ -84,7 +84,7 @@ def test_a_file_is_refused_with_its_place(name: str, tmp_path: Path) -> None:
 
 
 def test_what_a_check_finds_begins_with_what_a_run_refuses(tmp_path: Path) -> None:
-    """Also in files that were damaged; those that a run takes have no mistake."""
+    """This includes damaged files. Files that a run accepts have no mistake."""
     random = Random(3)
     seen = {True: 0, False: 0}
     for case in (damaged(case, random) for case in GOLDEN["cases"][::2]):
@@ -97,7 +97,7 @@ def test_what_a_check_finds_begins_with_what_a_run_refuses(tmp_path: Path) -> No
 
 
 def damaged(case: dict[str, Any], random: Random) -> dict[str, Any]:
-    """A case whose text lacks one or two characters, or none."""
+    """Return a case whose text lacks one or two characters, or none."""
     text = case["text"]
     for _ in range(random.randrange(3)):
         at = random.randrange(len(text))

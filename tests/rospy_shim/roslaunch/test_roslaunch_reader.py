@@ -1,4 +1,4 @@
-"""What the reader says about launch files: places of errors, notes, packages, programs that are stood in for."""
+"""The reader's messages about launch files: locations of errors, notes, packages, programs with stand-ins."""
 
 from __future__ import annotations
 
@@ -124,7 +124,7 @@ def test_cat_and_xacro_are_stood_in_for(tmp_path: Path) -> None:
 
 
 def collected(folder: Path, body: str, **args: str) -> list[tuple[str, int, str]]:
-    """What is wrong with a launch file, and what of it is left out: file, line, text."""
+    """Return the errors of a launch file and its omitted parts: file, line, text."""
     file, mistakes = folder / "x.launch", Mistakes(keep=True)
     file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n", encoding="utf-8")
     remarks = read(file, args, Packages(file, {}), {}, mistakes).remarks
@@ -230,7 +230,7 @@ def test_tags_that_are_nested_too_deeply(tmp_path: Path) -> None:
 
 
 def test_results_of_a_test_stay_in_their_folder(tmp_path: Path) -> None:
-    """A test's own name may have any characters; that of a node may not, and is another one here."""
+    """A test's own name may have any characters. A node's name may not, and differs here."""
     names = ("good", "../../victim", "/victim", "a b", "a/b", "a_b", "x" * 5000, "é")
     tests = "".join(f'<test test-name="{name}" name="n{at}" pkg="arm" type="t.py"/>' for at, name in enumerate(names))
     (tmp_path / "package.xml").write_text("<package><name>arm</name></package>", encoding="utf-8")

@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 PROTOCOL = Subprotocol("foxglove.sdk.v1")
-WAIT_S = 0.001  # for what comes, before the run goes on
+WAIT_S = 0.001  # wait for input before the run continues
 PATIENCE_S = 20.0  # of a test that hangs
 T = TypeVar("T")
 
@@ -23,16 +23,16 @@ class FoxgloveClient:
     """A viewer; use as a context manager.
 
     Args:
-        url: of the server.
-        meanwhile: called while it waits, such as to let the run go on.
-        options: of `websockets.sync.client.connect`.
+        url: URL of the server.
+        meanwhile: called while it waits, such as to let the run continue.
+        options: options of `websockets.sync.client.connect`.
 
     Attributes:
-        channels: what the server advertises, by topic.
-        messages: of what it has subscribed to: topic, time in ns, data.
-        times: that the server has told, in ns.
-        texts: what else came, as JSON.
-        answers: of service calls: number, encoding, data.
+        channels: advertised channels of the server, by topic.
+        messages: messages of subscribed channels: topic, time in ns, data.
+        times: times that the server has sent, in ns.
+        texts: other received messages, as JSON.
+        answers: answers of service calls: number, encoding, data.
     """
 
     def __init__(self, url: str, meanwhile: Callable[[], object] = lambda: None, **options: Any) -> None:
@@ -61,7 +61,7 @@ class FoxgloveClient:
         self._served(self.socket.close)
 
     def _served(self, step: Callable[[], T]) -> T:
-        """Do something that waits for the server, which answers when the run goes on."""
+        """Execute a step that waits for the server, which answers while the run continues."""
         with ThreadPoolExecutor(1) as aside:
             done = aside.submit(step)
             while not done.done():
@@ -69,7 +69,7 @@ class FoxgloveClient:
                 wait([done], WAIT_S)
             return done.result()
 
-    # -- what it sends -------------------------------------------------------------------------------------------------
+    # -- sending -------------------------------------------------------------------------------------------------------
 
     def send(self, **message: Any) -> None:
         """A message in JSON."""
@@ -84,7 +84,7 @@ class FoxgloveClient:
             self.send(op="subscribe", subscriptions=[{"id": number, "channelId": number}])
 
     def advertise(self, number: int, topic: str, kind: str, encoding: str = "ros1", **more: Any) -> None:
-        """Announce what it publishes."""
+        """Advertise a topic that it publishes."""
         channel = {"id": number, "topic": topic, "encoding": encoding, "schemaName": kind, **more}
         self.send(op="advertise", channels=[channel])
 
@@ -98,10 +98,10 @@ class FoxgloveClient:
         head = struct.pack("<III", self.services[service]["id"], number, len(encoding))
         self.socket.send(b"\x02" + head + encoding.encode() + request)
 
-    # -- what it gets --------------------------------------------------------------------------------------------------
+    # -- receiving -----------------------------------------------------------------------------------------------------
 
     def wait_for(self, there: Callable[[], object]) -> None:
-        """Take what comes until something is there; the run goes on meanwhile."""
+        """Receive until a condition is true. The run continues meanwhile."""
         left = int(PATIENCE_S / WAIT_S)
         while not there():
             self._meanwhile()
@@ -117,11 +117,11 @@ class FoxgloveClient:
             self._take(message)
 
     def told(self, op: str) -> list[dict[str, Any]]:
-        """The messages of one kind."""
+        """Return the messages of one kind."""
         return [each for each in self.texts if each["op"] == op]
 
     def of(self, topic: str) -> list[bytes]:
-        """The messages of one topic."""
+        """Return the messages of one topic."""
         return [data for name, _, data in self.messages if name == topic]
 
     def _take(self, message: str | bytes) -> None:

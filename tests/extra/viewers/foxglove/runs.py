@@ -1,4 +1,4 @@
-"""Runs that Foxglove looks at: the mission goes on when the test says so, and not by the wall clock."""
+"""Runs that Foxglove looks at: the test advances the mission, not the wall clock."""
 
 from __future__ import annotations
 
@@ -69,11 +69,11 @@ class ShownRun:
             self.go_on()
 
     def client(self, **options: Any) -> FoxgloveClient:
-        """A viewer; the run goes on while it waits."""
+        """Return a viewer. The run continues while it waits."""
         return FoxgloveClient(self.url, self.go_on, **options)
 
     def shake_hands(self, peer: socket.socket) -> None:
-        """Become the only viewer, without a library that reads what comes."""
+        """Become the only viewer, without a library that reads input."""
         lines = ("GET / HTTP/1.1", f"Host: {self.viewer.place}", "Upgrade: websocket", "Connection: Upgrade")
         lines += ("Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==", "Sec-WebSocket-Version: 13")
         lines += (f"Sec-WebSocket-Protocol: {PROTOCOL}", "", "")
@@ -82,7 +82,7 @@ class ShownRun:
             self.go_on()
 
     def until_it_ends(self, peer: socket.socket) -> None:
-        """The run goes on until the server has ended a connection."""
+        """Continue the run until the server has ended a connection."""
         peer.settimeout(WAIT_S)
         left = int(PATIENCE_S / WAIT_S)
         while left:
@@ -97,12 +97,12 @@ class ShownRun:
         raise AssertionError("the connection does not end")
 
     def rows(self) -> dict[tuple[str, str], dict[str, Any]]:
-        """The report's rows by name and direction."""
+        """Return the report's rows by name and direction."""
         return {(row["name"], row["direction"]): row for row in self.mission.record.rows("viewer_peers")}
 
 
 def spec_of(folder: Path, nodes: Mapping[str, str], params: Mapping[str, Any] | None = None) -> MissionSpec:
-    """A mission of ROS nodes."""
+    """Return a mission of ROS nodes."""
     lines = []
     for name, code in nodes.items():
         (folder / f"{name}.py").write_text(textwrap.dedent(code), encoding="utf-8")

@@ -29,7 +29,7 @@ pytestmark = [
 
 @pytest.fixture(scope="module")
 def packages(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder that has the packages; nothing in them is run while they are installed."""
+    """Return the folder of the packages. Their install scripts do not run."""
     folder = tmp_path_factory.mktemp("packages")
     install = ["npm", "install", "--silent", "--no-fund", "--no-audit", "--ignore-scripts", "--prefix", str(folder)]
     subprocess.run([*install, *PACKAGES], cwd=folder, check=True, timeout=4 * PATIENCE_S)

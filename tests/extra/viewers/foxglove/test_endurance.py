@@ -1,4 +1,5 @@
-"""Viewers that come and go, that send nonsense, that do not read: the run goes on, and nothing is left of them."""
+"""Viewers that connect and leave, that send nonsense, that do not read: the run continues, and nothing of them
+remains."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ MOST_GROWTH = 4 << 20  # bytes of memory
 
 
 def memory() -> int:
-    """Bytes in use."""
+    """Return bytes in use."""
     gc.collect()
     return int(Path("/proc/self/statm").read_text(encoding="utf-8").split()[1]) * os.sysconf("SC_PAGE_SIZE")
 
@@ -35,7 +36,7 @@ def handles() -> tuple[int, int]:
 
 
 def visit(run: ShownRun, number: int) -> None:
-    """A viewer comes, does something of everything, and leaves in one of three ways."""
+    """Connect a viewer, use every function, and leave in one of three ways."""
     client = run.client()
     client.subscribe("/latched", "/chatter", "/cfe/events")
     client.advertise(1, "/orders", "std_msgs/String")
@@ -57,7 +58,7 @@ def visit(run: ShownRun, number: int) -> None:
 
 
 def publications(run: ShownRun) -> int:
-    """What viewers publish now."""
+    """Return the viewers' current publications."""
     assert run.viewer._incoming is not None
     return len(run.viewer._incoming._publications)
 
@@ -114,7 +115,7 @@ NONSENSE: tuple[str | bytes, ...] = (
 
 
 def send_nonsense(run: ShownRun, client: FoxgloveClient, choose: random.Random) -> bool:
-    """A frame that means nothing; whether the connection is still there."""
+    """Send a meaningless frame. Returns whether the connection is still open."""
     frame = choose.choice(NONSENSE)
     if choose.random() < 0.5:
         changed = bytearray(frame.encode() if isinstance(frame, str) else frame)
@@ -133,7 +134,10 @@ def send_nonsense(run: ShownRun, client: FoxgloveClient, choose: random.Random) 
 
 
 def settled(run: ShownRun, client: FoxgloveClient) -> FoxgloveClient:
-    """When the server has read everything, and the run has taken it; of a viewer that was sent away, another."""
+    """Wait until the server has read everything and the run has processed it.
+
+    Returns a new viewer if it was disconnected.
+    """
     try:
         client.send(op="getParameters", parameterNames=[], id="last")
         client.wait_for(lambda: any(each.get("id") == "last" for each in client.told("parameterValues")))

@@ -1,4 +1,4 @@
-"""Foxglove's protocol as bytes: what is told, and what is understood of what viewers send."""
+"""Foxglove's protocol as bytes: sent messages, and the parsing of received ones."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ NUMBER = st.integers(0, 2**32 - 1)
 
 
 def ask(op: str, **fields: Any) -> str:
-    """A message of a viewer."""
+    """Return a message of a viewer."""
     return json.dumps({"op": op, **fields})
 
 

@@ -1,4 +1,4 @@
-"""A mission in Foxglove: what a client of its protocol sees of a run, and what it does to it."""
+"""A mission in Foxglove: a client's view of a run, and its effects on the run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ EPOCH_NS = 316_533_800_000_000_000  # of the mission's clock at power-on
 
 
 def text(value: str) -> bytes:
-    """A std_msgs/String as ROS serialises it."""
+    """Return a std_msgs/String as ROS serialises it."""
     return bytes(STRING(value)._pack())
 
 

@@ -1,4 +1,4 @@
-"""Whom the server lets in, and what it tells of those that it does not."""
+"""Accepted clients of the server, and its reports of refused ones."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TOKEN = "a-long-enough-token"
 
 
 def refused(run: ShownRun, path: str = "/", origin: str | None = None) -> int:
-    """The status with which a connection is refused; 101 when it is not."""
+    """Return the status of a refused connection, or 101 if it is accepted."""
     headers = {} if origin is None else {"Origin": origin}
     try:
         FoxgloveClient(f"ws://{run.viewer.place}{path}", run.go_on, additional_headers=headers).close()
@@ -85,10 +85,10 @@ def test_who_leaves_too_much_unread_that_is_not_to_be_lost_is_sent_away(tmp_path
         for _ in range(900):
             viewer.tell(status(WARNING, "x" * 10_000))
         run.go_on()
-        assert run.viewer._server.viewers == [viewer]  # the system has taken some of it
+        assert run.viewer._server.viewers == [viewer]  # the system has accepted some of it
         for _ in range(900):
             viewer.tell(status(WARNING, "x" * 10_000))
-        assert run.viewer._server.viewers == [viewer]  # nobody is sent away in the middle of a piece
+        assert run.viewer._server.viewers == [viewer]  # the server disconnects no client in the middle of a piece
         run.go_on()
         assert run.viewer._server.viewers == []
         row = run.rows()["(connections)", "out"]

@@ -1,4 +1,4 @@
-"""A mission with a rosbridge server, and clients that the test plays: each step is driven by the test."""
+"""A mission with a rosbridge server, and clients that the test plays: the test drives each step."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Bridged:
             self.step()
 
     def client(self, path: str = "/", headers: Mapping[str, str] | None = None) -> Client:
-        """A client that is connected."""
+        """Return a client that is connected."""
         client = Client(self, path, headers or {})
 
         def waits() -> bool:
@@ -69,7 +69,7 @@ class Client:
 
     Attributes:
         refused: status and text of the answer to its request, if it was refused.
-        code: with which the connection was closed; None before it was.
+        code: close code of the connection; None before its end.
     """
 
     def __init__(self, run: Bridged, path: str, headers: Mapping[str, str]) -> None:
@@ -89,13 +89,13 @@ class Client:
         self.flush()
 
     def flush(self) -> None:
-        """Send what there is to send."""
+        """Send all pending data."""
         self.socket.setblocking(True)
         self.socket.sendall(b"".join(self._protocol.data_to_send()))
         self.socket.setblocking(False)
 
     def look(self) -> list[Any]:
-        """What has come and was not asked for yet."""
+        """Return the received messages that were not read yet."""
         try:
             while data := self.socket.recv(1 << 16):
                 self._protocol.receive_data(data)
@@ -135,12 +135,12 @@ class Client:
         self.flush()
 
     def next(self) -> Any:
-        """What comes next, for which the run goes on."""
+        """Return the next message, running the mission until it arrives."""
         self._run.run_while(lambda: not self.look() and not self.is_over)
         return self._found.pop(0)
 
     def ended(self) -> int | None:
-        """Let the run go on until the connection is over; the code with which it was closed."""
+        """Run until the connection is over. Returns its close code."""
 
         def stays() -> bool:
             self.look()
@@ -150,7 +150,7 @@ class Client:
         return self.code
 
     def call(self, service: str, *arguments: Any, **fields: Any) -> Any:
-        """The answer to a call; its values if it went well, else what went wrong, as an op."""
+        """Return the answer to a call: its values on success, otherwise the error as an op."""
         self._number += 1
         name = f"call:{self._number}"
         self.send(op="call_service", service=service, id=name, args=fields or list(arguments))
@@ -171,14 +171,14 @@ def bridged(
     admission: Admission | None = None,
     lines: str = "",
 ) -> Iterator[Bridged]:
-    """A mission of nodes, by application, that clients reach while it runs.
+    """Run a mission of nodes, by application, that clients can reach.
 
     Args:
-        folder: the mission's.
+        folder: folder of the mission.
         nodes: their programs.
-        mission_file: more of it.
-        admission: whom the server lets in.
-        lines: more of its startup script.
+        mission_file: further text of it.
+        admission: the clients that the server accepts.
+        lines: further lines of its startup script.
     """
     (folder / "mission.yaml").write_text(mission_file or "name: bridged\n", encoding="utf-8")
     apps = [f"CFE_APP, {app.lower()}.py, __main__, {app}, 100, 16384, 0x0, 0;\n" for app in nodes]

@@ -1,6 +1,6 @@
-"""`python roslibpy_client.py URL`: what a program with roslibpy does with the robot of these tests, told as JSON.
+"""`python roslibpy_client.py URL`: a roslibpy program uses the robot of these tests, and prints its results as JSON.
 
-It is a process of its own, since roslibpy's reactor can be started only once in one.
+It is a separate process, because roslibpy's reactor can be started only once in a process.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def main(url: str) -> None:
     found: dict[str, Any] = {}
     servers = roslibpy.Service(client, "/rosapi/action_servers", "rosapi/GetActionServers")
     while "/fibonacci" not in servers.call(roslibpy.ServiceRequest(), timeout=PATIENCE_S)["action_servers"]:
-        pass  # the robot has not come up yet
+        pass  # the robot has not started yet
     found["is there"] = "/robot" in client.get_nodes()
     found["type"] = client.get_topic_type("/chatter")
     found["types"] = client.get_topics_for_type("std_msgs/Float64MultiArray")

@@ -63,7 +63,7 @@ TYPE = "cfe_tlm/CFE_ES_HK_TLM"
 
 
 def test_packets_that_the_mission_file_shows(tmp_path: Path) -> None:
-    """They are topics of the node /cfe, with the types that nodes outside see; the mission has nothing of that."""
+    """They are topics of the node /cfe, with the types for external nodes. The mission itself does not have them."""
     with bridged(tmp_path, {}, SHOWN) as run:
         client = run.client()
         assert client.call("/rosapi/topics") == {"topics": ["/cfs/es_hk", "/cfs/es_hk_raw"], "types": [TYPE, RAW]}

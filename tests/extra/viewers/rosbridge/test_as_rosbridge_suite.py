@@ -1,4 +1,4 @@
-"""A client sees what it sees with the real rosbridge_websocket and rosapi, which have answered the same on record."""
+"""A client sees the same as with the real rosbridge_websocket and rosapi, whose answers are on record."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_the_exchanges_on_record() -> None:
             for op in row["sent"]:
                 client.send(**({**op, "id": last["id"]} if op == RESPONSE else op))
             came = [_answer(client) for _ in row["came"]]
-            if not came:  # what has come late would come in the next step
+            if not came:  # a late message would arrive in the next step
                 client.send(op="call_service", service="/t/ready", id="in between")
                 between = _answer(client)
                 assert between.get("id") == "in between", (row, between)
@@ -46,7 +46,7 @@ def test_the_exchanges_on_record() -> None:
 
 
 def _answer(client: Client) -> Any:
-    """The next answer but for statuses, which rosbridge_suite keeps for itself."""
+    """Return the next answer other than a status, which rosbridge_suite does not send."""
     found = client.next()
     while isinstance(found, dict) and found["op"] == "status":
         found = client.next()

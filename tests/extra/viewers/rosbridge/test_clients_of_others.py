@@ -1,4 +1,4 @@
-"""Clients of others with a robot that runs in real time: roslibpy, and roslibjs in a browser."""
+"""Foreign clients with a robot that runs in real time: roslibpy, and roslibjs in a browser."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_roslibpy(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def pages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str]]:
-    """A folder with roslibjs and a page that loads it, and the URL at which this computer serves it."""
+    """Return a folder with roslibjs and a page that loads it, and the URL at which this computer serves it."""
     folder = tmp_path_factory.mktemp("pages")
     subprocess.run(["npm", "pack", "--silent", ROSLIBJS], cwd=folder, check=True, timeout=4 * PATIENCE_S)
     (archive,) = folder.glob("*.tgz")
@@ -77,7 +77,7 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Path, str]
 
 class _Quiet(SimpleHTTPRequestHandler):
     def log_message(self, *_: object) -> None:
-        """Tell nobody."""
+        """Log nothing."""
 
 
 SCRIPT = """(async () => {

@@ -1,4 +1,4 @@
-"""Many clients come and go, and send nonsense: nothing of it stays."""
+"""Many clients connect and leave, and send nonsense: nothing of it remains."""
 
 from __future__ import annotations
 
@@ -65,7 +65,8 @@ def _nonsense(run: Bridged, numbers: random.Random, count: int) -> None:
 
 
 def _held() -> tuple[int, int, int]:
-    """Open files, and bytes of memory: the server's own, and all of it, in which the mission's records grow, too."""
+    """Return open files, and bytes of memory: the server's own, and the total, in which the mission's records grow,
+    too."""
     gc.collect()
     filters = [
         tracemalloc.Filter(True, f"*/{part}/*") for part in ("cfepy/extra/viewers", "cfepy/io", "websockets", "json")
@@ -75,7 +76,7 @@ def _held() -> tuple[int, int, int]:
 
 
 def _grown(what: str, before: tuple[int, int, int]) -> tuple[int, int, int]:
-    """What is held now; that it is no more than before."""
+    """Return the present resources. Assert that they have not grown."""
     held = _held()
     files, own, whole = (now - then for now, then in zip(held, before, strict=True))
     print(f"{what}: {files} files, {own:,} bytes of the server's, {whole:,} in all")

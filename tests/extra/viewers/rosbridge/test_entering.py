@@ -1,4 +1,4 @@
-"""What clients do enters through the door of the mission: it can be repeated without them."""
+"""All input from clients passes the door of the mission, so it can be repeated without them."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def _session(run: Bridged) -> None:
 
 
 def test_a_refusal_is_repeated(tmp_path: Path) -> None:
-    """Two topics with one MsgId: what the mission has refused is refused in the repetition, too."""
+    """Two topics with one MsgId: the repetition refuses what the mission has refused."""
     arrivals: list[tuple[int, bytes]] = []
     with bridged(tmp_path, {"TALKER": TALKER}) as run:
         door = run.mission.outside

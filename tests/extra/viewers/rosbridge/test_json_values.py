@@ -1,4 +1,4 @@
-"""Messages in JSON, PNG and CBOR, and what cannot be one."""
+"""Messages in JSON, PNG and CBOR, and values that cannot be messages."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def test_a_publisher_numbers_its_messages() -> None:
 
 
 @pytest.mark.parametrize(
-    ("values", "said"),  # what genpy says of a number that does not fit is its own
+    ("values", "said"),  # genpy's text about a number that does not fit is its own
     [
         ({"c": "A"}, "requires base64 for field c"),
         ({"c": [1, 2, 256]}, "requires octets for field c"),
@@ -95,7 +95,7 @@ def test_whatever_comes_is_a_message_or_refused(values: dict[str, Any]) -> None:
 
 
 def _without_nulls(values: Any) -> Any:
-    """Numbers that JSON does not know come back as null, which is no number."""
+    """Replace the nulls for numbers that JSON cannot express."""
     if isinstance(values, dict):
         return {name: _without_nulls(value) for name, value in values.items()}
     if isinstance(values, list):

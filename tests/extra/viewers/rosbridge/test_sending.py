@@ -1,4 +1,4 @@
-"""When a client gets which messages; messages in pieces."""
+"""The times at which a client gets messages; messages in pieces."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Clients of rosbridge publish, hear, call and serve."""
+"""Clients of rosbridge publish, subscribe, call and serve."""
 
 from __future__ import annotations
 

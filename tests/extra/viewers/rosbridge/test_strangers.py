@@ -1,4 +1,4 @@
-"""Who may connect, and what a client that does wrong gets; the mission and the other clients go on."""
+"""Which clients may connect, and the answers to misbehaving ones; the mission and the other clients continue."""
 
 from __future__ import annotations
 
@@ -166,7 +166,7 @@ def test_what_is_no_frame_ends_the_connection(talker: Bridged, data: bytes, code
 
 
 def _sent_until_over(run: Bridged, stranger: socket.socket, data: bytes) -> bytes:
-    """What the server answers before it ends the connection."""
+    """Return the server's answer before it ends the connection."""
     found, rest, is_over = b"", data, False
     while not is_over:
         try:
@@ -211,7 +211,7 @@ def test_what_is_too_much_for_a_piece_of_the_run_is_lost_and_counted(
         client.close()
 
 
-# -- who may connect ---------------------------------------------------------------------------------------------------
+# -- connections -------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("origin", ["https://example.org", "null", "http://localhost.example.org:8000"])

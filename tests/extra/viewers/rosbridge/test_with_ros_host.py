@@ -1,4 +1,4 @@
-"""Clients of rosbridge and ROS nodes outside are one graph, when a run has both."""
+"""Clients of rosbridge and external ROS nodes are one graph if a run has both."""
 
 from __future__ import annotations
 

@@ -18,7 +18,7 @@ MESSAGE: Any = make_module("genpy.message")
 
 
 def pose() -> Any:
-    """A stamped pose with numbers of several lengths."""
+    """Return a stamped pose with numbers of several lengths."""
     made = message_class("geometry_msgs/PoseStamped")()
     made.header.seq, made.header.stamp = 7, genpy.Time(12, 42507489)
     made.pose.position.x, made.pose.position.y = -123.456789, 1e20
@@ -59,7 +59,7 @@ def test_why_a_field_does_not_fit(kind: str, value: Any, problem: str) -> None:
 
 
 def filled(name: str, arguments: Any, keys: Any = None) -> Any:
-    """A message of a type with plain values."""
+    """Return a message of a type with plain values."""
     made = message_class(name)()
     MESSAGE.fill_message_args(made, arguments, keys or {})
     return made

@@ -1,7 +1,7 @@
 """Run by a Python that has real ROS's genpy: makes classes of many types, and encodes and decodes values of them.
 
-One JSON object comes in and one goes out. It uses the public API of genpy and genmsg only. Making the classes of a type
-writes and imports a file, so a type that has several others as fields stands for them.
+It reads one JSON object and prints one. It uses the public API of genpy and genmsg only. Making the classes of a type
+writes and imports a file, so a type with several others as fields stands for them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Run by a Python that has real ROS's genpy: encodes and decodes what the test sends, one JSON object per line.
+"""Run by a Python that has real ROS's genpy: encodes and decodes the test's requests, one JSON object per line.
 
 It uses the public API of genpy only.
 """

@@ -1,4 +1,4 @@
-"""What genpy does with values and bytes that do not fit: what it has written, what it has read, what it raises.
+"""genpy's reactions to values and bytes that do not fit: its written bytes, its read values, its exceptions.
 
 All answers are recorded from genpy 0.6.16 (Debian's python3-genpy), those with arrays of numbers with NumPy 1.26.
 """

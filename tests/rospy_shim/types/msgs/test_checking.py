@@ -1,4 +1,4 @@
-"""Everything wrong with the definitions of a package, each with file and line, as far as genmsg has the same view."""
+"""All errors in the definitions of a package, each with file and line, as far as genmsg agrees."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rospy_shim.types.msgs import Packages, check_definitions
 
 
 def faults(folder: Path, **files: str) -> list[tuple[str, int, str, bool]]:
-    """Faults of the package `own` as (file, line, text, is_warning); files by their names, as a_msg for msg/a.msg."""
+    """Return faults of the package `own` as (file, line, text, is_warning); files by name, as a_msg for msg/a.msg."""
     for name, text in files.items():
         stem, _, kind = name.rpartition("_")
         path = folder / "own" / kind / f"{stem}.{kind}"

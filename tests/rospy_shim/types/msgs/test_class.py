@@ -220,7 +220,7 @@ def test_short_bytes() -> None:
         JointState._unpack(JointState(position=[1.0])._pack()[:-1])
     with pytest.raises(genpy.DeserializationError):
         JointState._unpack(JointState()._pack()[:16] + b"\xff\xff\xff\xff")
-    # genpy takes what there is of a string that is cut off.
+    # genpy accepts the available part of a truncated string.
     assert String().deserialize(b"\x05\0\0\0ab").data == "ab"
 
 

@@ -1,8 +1,8 @@
 """Every built-in message and service type against real genpy: generated values, their bytes and texts, the md5sums.
 
-It needs the genpy of Debian (python3-genpy), and says so where it is missing. Classes are made there from our own
-definitions, so none of Debian's message packages has to be installed; that the definitions are ROS's is what the
-recorded md5sums of `test_golden` show.
+It needs the genpy of Debian (python3-genpy), and reports if it is missing. Classes are made there from our own
+definitions, so none of Debian's message packages has to be installed. The recorded md5sums of `test_golden` show that
+the definitions are ROS's.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ def has_genpy() -> bool:
 
 
 def values_of(name: str, count: int) -> list[Any]:
-    """So many generated values of a type, the same in every run; the first one is all zeros."""
+    """Return `count` generated values of a type, the same in every run. The first one is all zeros."""
     found: list[Any] = []
     how = settings(
         max_examples=count,
@@ -74,7 +74,7 @@ def with_nested(names: Sequence[str]) -> list[str]:
 
 
 def ask(values: dict[str, list[Any]], services: Sequence[str]) -> dict[str, Any]:
-    """What real genpy makes of it, in one process."""
+    """Return the answer of real genpy, in one process."""
     library, names = shipped(), list(values)
     known = with_nested([*names, *(name + part for name in services for part in PARTS)])
     request = {

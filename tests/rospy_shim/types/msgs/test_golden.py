@@ -1,4 +1,4 @@
-"""Shipped types against what real genpy 0.6.16 made of them: md5sum, definition, bytes and text."""
+"""Shipped types against the results of real genpy 0.6.16: md5sum, definition, bytes and text."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ STANDARD = [
 
 
 def _squeezed(text: str) -> list[str]:
-    """Lines without white space, which differs between ROS's files and ours and enters no md5sum."""
+    """Return lines without white space, which differs between ROS's files and ours and enters no md5sum."""
     return [line for line in ("".join(line.split()) for line in text.split("\n")) if line]
 
 

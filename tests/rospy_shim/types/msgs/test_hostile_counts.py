@@ -1,7 +1,7 @@
-"""Counts that cannot be true: a packet never makes the decoder build more than its bytes pay for.
+"""Impossible counts: a packet never makes the decoder build more than its bytes pay for.
 
-genpy goes through an array of messages as often as the packet says, where a message is made of octets alone: those it
-takes as many as there are, down to none. Here such a packet is refused as genpy refuses one whose bytes end.
+genpy iterates over an array of messages as often as the packet says. An exception are messages of octets alone: it
+takes the available ones, down to none. Here such a packet is refused as genpy refuses one whose bytes end.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def count(number: int) -> bytes:
 
 
 def decode(cls: MessageClass, data: Any, way: int) -> Any:
-    """What each of the four ways to decode makes of bytes."""
+    """Return the result of one of the four ways to decode bytes."""
     if way == 0:
         return cls._unpack(b"123" + data, 3)
     if way == 1:
@@ -72,7 +72,7 @@ def test_the_largest_counts_in_a_map() -> None:
 
 
 def test_a_message_that_is_cut_off_is_not_read_from_its_middle() -> None:
-    """What is left of this path from its second pose on would be an empty path, by itself."""
+    """The rest of this path from its second pose on would be a valid, empty path."""
     path = message_class("nav_msgs/Path")
     pose = message_class("geometry_msgs/PoseStamped")
     whole = path(poses=[pose(), pose()])._pack()
@@ -89,7 +89,7 @@ def test_damaged_packets_take_memory_for_their_bytes_only() -> None:
         for name in [*all_types()[::9], *ANGLED]:
             cls = message_class(name)
             for way in (0, 1):
-                decode(cls, cls()._pack(), way)  # what is made once for a type is no part of it
+                decode(cls, cls()._pack(), way)  # objects made once for a type do not count
             for packet in packets(name, 15):
                 tracemalloc.reset_peak()
                 before = tracemalloc.get_traced_memory()[0]

@@ -1,4 +1,4 @@
-"""What a node finds when it imports std_msgs.msg, std_srvs.srv or genpy."""
+"""The names in std_msgs.msg, std_srvs.srv and genpy for a node that imports them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""ROS packages on disk: where they are looked for, what they are called, and which one counts."""
+"""ROS packages on disk: searched folders, names, and precedence."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rospy_shim.types.msgs.packages import name_of
 
 
 def make_package(folder: Path, name: str = "", *files: str) -> Path:
-    """A package with a manifest that gives it a name; without one, only with the files."""
+    """Write a package with a manifest that gives it a name; without a name, write only the files."""
     folder.mkdir(parents=True)
     if name:
         (folder / "package.xml").write_text(f"<package>\n  <name> {name} </name>\n</package>\n", encoding="utf-8")

@@ -1,4 +1,4 @@
-"""The .msg parser: genmsg's rules, and errors that say where."""
+"""The .msg parser: genmsg's rules, and errors with their location."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def write(folder: Path, **files: str) -> None:
 
 
 def library_of(root: Path) -> Library:
-    """The library of a node whose packages are in a folder."""
+    """Return the library of a node whose packages are in a folder."""
     for folder in root.iterdir():
         (folder / "package.xml").touch()
     return Library([OnDisk(Packages(None, {"ROS_PACKAGE_PATH": str(root)}))], base=shipped())

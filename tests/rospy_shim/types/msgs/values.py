@@ -24,7 +24,7 @@ def _values() -> MessageValues:
 
 
 def for_json(value: Any) -> Any:
-    """Bytes as hexadecimal digits; JSON carries one NaN only, so payloads would be lost on the way to genpy."""
+    """Return bytes as hexadecimal digits. JSON has only one NaN, so payloads would be lost on the way to genpy."""
     if isinstance(value, dict):
         return {name: for_json(item) for name, item in value.items()}
     if isinstance(value, list):

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Asks for changes, and prints what comes of them; it runs beside roscpp, too."""
+"""Requests changes, and prints their results; it also runs beside roscpp."""
 
 import rospy
 from dynamic_reconfigure.msg import (

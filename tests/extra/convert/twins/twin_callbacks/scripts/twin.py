@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The twin of src/twin.cpp: what its callbacks say, in the order of its subscriptions."""
+"""The twin of src/twin.cpp: the output of its callbacks, in the order of its subscriptions."""
 
 import rospy
 from std_msgs.msg import Int32, String
@@ -24,7 +24,7 @@ class Twin:
         self.say(f"method {self.heard[which]}", value)
 
     def forms(self, value):
-        """What each form has to say, in the order of the subscriptions."""
+        """Yield functions that print the output of each form, in the order of the subscriptions."""
         yield lambda: self.say("function, ConstPtr", value)
         yield lambda: self.say("function, ConstPtr by value", value)
         yield lambda: self.say("function, const&", value)

@@ -6,7 +6,7 @@ from std_msgs.msg import Int32, String
 
 
 class Watch(rospy.SubscribeListener):
-    """What happens when a subscriber comes or goes; said when the node spins, as roscpp has it."""
+    """Arrivals and departures of subscribers, printed when the node spins, as in roscpp."""
 
     def __init__(self, waiting, comes):
         self.peer_subscribe = lambda _name, _publish, to_one: waiting.append(lambda: comes(to_one))

@@ -45,7 +45,7 @@ def on_image(message):
 
 
 def echo(name, kind, act):
-    """Publish what a function makes of each message."""
+    """Publish a function's result for each message."""
     publisher = rospy.Publisher(f"{name}_out", kind, queue_size=5)
     rospy.Subscriber(name, kind, lambda message: publisher.publish(act(message)), queue_size=5)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""The twin of src/twin.cpp: what rospy says of the same parameters."""
+"""The twin of src/twin.cpp: rospy's answers about the same parameters."""
 
 import rospy
 from std_msgs.msg import String

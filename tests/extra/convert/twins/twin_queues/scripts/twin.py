@@ -33,7 +33,7 @@ class Twin:
             self.spin_once()
 
     def spin_once(self):
-        """Call what waits in the global queue: in the order of the first messages that came, one callback each."""
+        """Call the waiting entries of the global queue: in the order of the first messages, one callback each."""
         small, medium, _ = self.queues
         spread = max(len(medium.waiting), len(small.waiting))
         for number in range(spread):

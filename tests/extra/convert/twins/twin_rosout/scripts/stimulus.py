@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Tells what of /rosout is the same in both languages: not the line of the source, nor the number of the message."""
+"""Prints the parts of /rosout that are the same in both languages: not the source line, nor the message number."""
 
 import rospy
 from rosgraph_msgs.msg import Log

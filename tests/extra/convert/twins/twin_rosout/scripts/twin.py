@@ -7,7 +7,8 @@ import rospy
 
 
 class Delayed:
-    """ROS_INFO_DELAYED_THROTTLE, which rospy does not have: a period begins with the first call, which says nothing."""
+    """ROS_INFO_DELAYED_THROTTLE, which rospy does not have: a period begins with the first call, which prints
+    nothing."""
 
     def __init__(self, period):
         self.period = rospy.Duration(period)

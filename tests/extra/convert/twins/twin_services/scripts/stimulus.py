@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Offers a service that multiplies and refuses what is negative, and calls those of the node; what comes is said."""
+"""Offers a service that multiplies and refuses negative numbers, and calls the node's services; prints the results."""
 
 import rospy
 from rospy_tutorials.srv import AddTwoInts, AddTwoIntsResponse
@@ -14,7 +14,7 @@ def times(request):
 
 
 def tell(name, kind, *args):
-    """Call a service and say what comes of it."""
+    """Call a service and print its result."""
     try:
         answer = repr(str(rospy.ServiceProxy(name, kind)(*args)))
     except rospy.ServiceException as error:

@@ -63,7 +63,7 @@ class Twin:
         self.out.publish(Header(stamp=rospy.Time.now(), frame_id=what))
 
     def spin_once(self):
-        """Call what is due, in the order of the times, each once."""
+        """Call the timers that are due, in the order of their times, each once."""
         now = self.now()
         for timer in sorted((each for each in self.timers if each.runs and each.due <= now), key=lambda each: each.due):
             timer.call()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints what comes on some topics: the time in nanoseconds, the topic, its type and the message's bytes."""
+"""Prints the messages of some topics: the time in nanoseconds, the topic, its type and the message's bytes."""
 
 import rospy
 
