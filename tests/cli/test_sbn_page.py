@@ -23,7 +23,7 @@ def commands() -> list[str]:
 @pytest.mark.slow
 def test_its_commands_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "missions").symlink_to(PAGE.parents[1] / "missions")
+    (tmp_path / "missions").symlink_to(PAGE.parents[2] / "missions")
     free = [line for line in commands() if "--realtime" not in line]  # those are flown in tests/twin/test_sbn.py
     assert len(free) == 9
     for line in free:

@@ -153,6 +153,6 @@ def test_where_google_test_is_not_installed_it_is_said(
     monkeypatch.setenv("GTEST_ROOT", str(tmp_path / "nowhere"))
     assert main(["rostest", str(package / "test/words.test")]) == 1
     shown = capfd.readouterr().out
-    assert "the sources of GoogleTest are not there" in shown
+    assert "the sources of GoogleTest are not installed" in shown
     assert "apt-get install libgtest-dev" in shown
     assert os.fspath(tmp_path / "nowhere") in shown

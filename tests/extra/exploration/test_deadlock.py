@@ -131,7 +131,7 @@ def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
     failed = first_failed(found)
     (failure,) = failed.failures
     assert (failure.kind, failure.who, failure.at_ns) == (STUCK, "PAIR", None)
-    assert "waits for ever for lock at pair.py:18, since 0.55" in failure.text
+    assert "waits forever for lock at pair.py:18, since 0.55" in failure.text
     deviations = ",".join(f"{at}={choice}" for at, choice in failed.deviations)
     for tasks in ("thread", "greenlet"):
         again = replace(found, plan=replace(found.plan, tasks=tasks)).run(Schedule.parse(f"at:{deviations}"))
