@@ -105,7 +105,7 @@ def test_what_no_finder_knows_is_told(loader: ModuleLoader, console: Console) ->
             load()
         assert caught.value.status == OS_ERROR
     assert [line[:28] for line in console.lines] == [
-        "OS_ModuleLoad: found no x.py",
+        "OS_ModuleLoad: no x.py",
         "OS_ModuleLoad: found no own.",
     ]
     assert [loader.exists(f"/cf/{name}.so") for name in ("hk", "own", "x")] == [True, True, False]
