@@ -152,7 +152,6 @@ def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
         )
 
 
-@pytest.mark.slow
 def test_libraries_are_code_of_nodes(tree: Tree) -> None:
     """They run in a node's universe, with its rospy and its clock.
 

@@ -48,7 +48,6 @@ def test_what_is_no_message_is_refused(data: str, why: str) -> None:
         protocol.unpack(bytes.fromhex(data), LONGEST)
 
 
-@pytest.mark.slow
 def test_random_bytes_are_a_message_or_malformed_and_nothing_else() -> None:
     rng = random.Random(1)
     messages = 0

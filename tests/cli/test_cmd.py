@@ -113,7 +113,6 @@ def test_a_command_for_a_processor_beside_it_waits_for_the_way_there(capsys: pyt
     assert "SAMPLE_APP_HK_TLM CommandErrorCounter=0 CommandCounter=1" in counted
 
 
-@pytest.mark.slow
 def test_a_command_that_nobody_takes_beside_it_either(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["cmd", "pair", "SAMPLE_APP_NOOP", "--with", "lab"]) == 1
     assert capsys.readouterr().out.startswith("5.600 SAMPLE_APP_NOOP sent to no receiver")

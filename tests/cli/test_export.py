@@ -75,7 +75,6 @@ def test_a_part_of_the_run(sources: dict[str, list[str]], capsys: pytest.Capture
     assert 0.6 <= times[0] < times[-1] <= 0.7
 
 
-@pytest.mark.slow
 def test_several_series_in_one_file_and_in_a_folder(
     sources: dict[str, list[str]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

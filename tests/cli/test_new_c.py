@@ -48,7 +48,6 @@ def test_one_that_is_not_built_is_found_by_check(capsys: pytest.CaptureFixture[s
     assert "if it is the application in fsw/src, compile it: cfepy build thermal" in capsys.readouterr().out
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("omit_deprecated", [False, True])
 def test_it_compiles_without_a_warning(omit_deprecated: bool) -> None:
     main(["new", "app", "--c", "thermal"])
@@ -62,7 +61,6 @@ def test_its_cmake_lists_name_all_sources() -> None:
     assert {*said.sources, *said.tables} == there
 
 
-@pytest.mark.slow
 def test_the_longest_name_flies(capsys: pytest.CaptureFixture[str]) -> None:
     name = "thermal_contro"
     assert main(["new", "app", "--c", name]) == 0

@@ -177,7 +177,6 @@ def test_node_and_launch_end_with_status_1_after_an_exception_in_a_callback(
     assert "ZeroDivisionError" in capsys.readouterr().err
 
 
-@pytest.mark.slow
 def test_rostest_fails_after_an_exception_in_a_callback_of_another_node(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -141,7 +141,6 @@ def test_another_version_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixt
     assert "recorded with Python 3.99.1, this is" in said
 
 
-@pytest.mark.slow
 def test_a_journal_without_an_end_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["run", "capture", "--for", "2", "--quiet", "--record", "a.cfepy"])
     data = Path("a.cfepy").read_bytes()

@@ -135,7 +135,6 @@ def test_breakpoints_of_python_take_the_path_that_it_had(
     assert "cfepy-replay-" not in out
 
 
-@pytest.mark.slow
 def test_a_user_who_goes_back_from_the_end(
     journal: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -84,7 +84,6 @@ def test_a_file_without_tests(write_launch: Launch, capsys: pytest.CaptureFixtur
     assert "missing <test>; use `cfepy launch` to run a launch file without tests" in capsys.readouterr().err
 
 
-@pytest.mark.slow
 def test_rostests_own_test_nodes(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
     params = '<param name="topic" value="chatter"/><param name="hz" value="{}"/><param name="hzerror" value="0.5"/>'
     rate = (

@@ -259,7 +259,6 @@ def on_terminal(*arguments: str) -> str:
     return shown.decode()
 
 
-@pytest.mark.slow
 def test_a_terminal_gets_a_status_line_and_the_same_digest(
     make_mission: Write, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -107,7 +107,6 @@ def test_a_stimulus_that_fails_is_told(sources: Sources, tmp_path: Path) -> None
     assert reason == "N['/x']>0; stimulus: NameError: name 'nowhere' is not defined"
 
 
-@pytest.mark.slow
 def test_scenarios_run_in_processes_of_their_own(tmp_path: Path) -> None:
     scenario = read_corpus().scenarios["rt_talker"]
     script = Sources(tmp_path).folder(scenario.node.repo) / scenario.node.path

@@ -41,7 +41,6 @@ def check(name: str, seeds: range, seconds: float, intensity: str = "high") -> N
         assert sum(row["times"] > 0 for row in first.faults) > 0
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["lab", "sched", "rx64m_pubsub"])
 def test_random_faults_repeat(name: str) -> None:
     check(name, range(1), 11)
@@ -74,7 +73,6 @@ def test_a_plan_by_its_seed_by_its_text_and_as_a_run_plan() -> None:
 LOST = FaultPlan.from_dict({"faults": [{"drop": "/no_such_topic"}, {"crash": "NOBODY", "at": 2}]}).to_yaml()
 
 
-@pytest.mark.slow
 def test_a_prepared_plan_says_what_is_not_in_the_mission() -> None:
     spec = read_mission("lab")
     prepared = prepare(LOST, spec)
@@ -101,7 +99,6 @@ def test_seeds_that_are_none(text: str) -> None:
         plan_of(text, read_mission("lab"))
 
 
-@pytest.mark.slow
 def test_another_seed_of_the_run_draws_other_numbers() -> None:
     plan = FaultPlan.from_dict({"faults": [{"drop": "CFE_TIME_*", "probability": 0.5}]}).to_yaml()
     traces = {fly(RunPlan(("lab",), seconds=10, seed=seed, faults=plan)).trace for seed in (1, 1, 2)}

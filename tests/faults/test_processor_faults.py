@@ -230,7 +230,6 @@ def test_the_nth_call_fails(tmp_path: Path) -> None:
     assert len(failures(tmp_path, {"fail": "os.queue_put", "object": "WORK_QUEUE"})) == 4
 
 
-@pytest.mark.slow
 def test_every_processor_has_the_failing_call(tmp_path: Path) -> None:
     fault = {"fail": "OS_QueuePut", "app": "WORKER", "number": [1, 6]}
     reset = {"reset": "processor", "at": 2}

@@ -152,7 +152,6 @@ def test_no_field_of_a_segment_can_be_set(tmp_path: Path) -> None:
     assert images(mission)[:3] == ["[0]", "[1]", "[2]"]
 
 
-@pytest.mark.slow
 def test_a_node_of_a_launch_file_comes_back(tmp_path: Path) -> None:
     (tmp_path / "beat.py").write_text(
         "#!/usr/bin/env python3\nimport rospy\nrospy.init_node('beat')\nprint('begins')\nrospy.spin()\n",

@@ -99,7 +99,6 @@ def test_a_flight_has_numbers_until_now(flight: cfepy.Flight) -> None:
     assert flight.speed > 0
 
 
-@pytest.mark.slow
 def test_a_picture(run: cfepy.Run, tmp_path: Path) -> None:
     picture = run.plot("/joint_states", "position[0]", file=tmp_path / "arm.svg")
     assert picture._repr_png_().startswith(b"\x89PNG")

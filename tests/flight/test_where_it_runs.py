@@ -192,7 +192,6 @@ def test_after_a_fork_beside_a_mission_that_flies(tasks: str, counter: str, usua
         other.result(LONGEST_S)
 
 
-@pytest.mark.slow
 @needs_fork
 def test_a_mission_on_threads_does_not_come_along_into_a_forked_process(counter: str, usual: str) -> None:
     with flying(counter, "thread") as flight:

@@ -67,7 +67,6 @@ def test_recording_changes_nothing(recorded: Recorded) -> None:
     assert fly(PLAN).results.trace == recorded.trace
 
 
-@pytest.mark.slow
 def test_only_what_was_asked_for() -> None:
     asked = SeriesRecorder(["/joint_states.position", "CFE_ES.HK_TLM.CommandCounter", "0x0801", "CFE_TBL_SEND_HK"])
     with takeoff(PLAN, attachments=[asked]) as run:

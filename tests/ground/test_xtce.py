@@ -232,7 +232,6 @@ def entries_of(export: Export, command: Command) -> Iterator[ElementTree.Element
     yield from container
 
 
-@pytest.mark.slow
 def test_a_command_put_together_from_the_document_is_ours(export: Export) -> None:
     """A ground system would send it, with a different byte in every argument; it may leave the checksum zero."""
     for command in export.dictionary.commands.values():

@@ -35,7 +35,6 @@ def main(cfe):
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("policy", ["random:{}", "pct:{}:2:60"])
 def test_what_comes_right_after_letting_go_is_found(tmp_path: Path, policy: str) -> None:
     (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY, encoding="utf-8")

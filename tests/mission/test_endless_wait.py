@@ -228,7 +228,6 @@ def in_app(folder: Path, source: str) -> EndlessWaits:
     return found_in(folder)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def test_a_worker_that_gets_no_sentinel_while_the_main_program_joins_it(tmp_path: Path, tasks: str) -> None:
     found = in_node(tmp_path, SENTINEL, tasks)

@@ -104,7 +104,6 @@ def test_a_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
     assert not list(tmp_path.glob("*.scr"))
 
 
-@pytest.mark.slow
 def test_a_burst_waits_as_on_a_pc(tmp_path: Path) -> None:
     """A thousand messages for a subscriber that has not handled the first of them."""
     script = tmp_path / "burst.py"

@@ -145,7 +145,6 @@ def test_a_closed_one_does_not_go_on() -> None:
         mission.run_for(0.1)
 
 
-@pytest.mark.slow
 def test_python_ends_with_one_open() -> None:
     code = f"from cfepy.mission import Mission\nmission = Mission('capture')\nmission.run_for({SECONDS})"
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)

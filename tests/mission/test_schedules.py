@@ -54,7 +54,7 @@ def test_exploring_without_a_deviation_is_the_run_that_everybody_has(mission: st
     assert fly(mission, Schedule("at"))[0] == fly(mission, None)[0]
 
 
-@pytest.mark.parametrize("mission", ["rx64m_pubsub", pytest.param("capture", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("mission", ["capture", "rx64m_pubsub"])
 @pytest.mark.parametrize("text", ["random:1", "pct:2:3", "random:3:any", "random:4:hold=500us", "pct:5:2:any:hold=1ms"])
 def test_a_schedule_can_be_given_again_on_the_other_context(mission: str, text: str) -> None:
     schedule = Schedule.parse(text)

@@ -96,7 +96,6 @@ def test_tests_of_all_kinds_are_found_and_counted(sources: Sources) -> None:
     assert verdict.good
 
 
-@pytest.mark.slow
 def test_a_file_that_cannot_be_imported(sources: Sources) -> None:
     verdict = run(peer_of("own/test/unit/broken.py", UNIT), sources)
     assert "No module named 'no_such_module'" in verdict.failing["import"]

@@ -27,7 +27,6 @@ def stream(batches: Sequence[Sequence[bytes]], facts: dict[str, int] | None = No
     return RecordReader(file)
 
 
-@pytest.mark.slow
 @given(st.lists(records, max_size=4), st.lists(records, max_size=4), records)
 def test_the_first_parting_is_that_of_the_lists(
     one: list[list[bytes]], other: list[list[bytes]], common: list[bytes]

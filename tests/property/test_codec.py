@@ -43,7 +43,6 @@ def test_round_trip(typed: tuple[str, Any]) -> None:
     assert cls().deserialize(encoded)._pack() == encoded
 
 
-@pytest.mark.slow
 @_SMALL
 @given(st.lists(st.lists(st.text(max_size=3), max_size=4), min_size=1, max_size=6))
 def test_remembered_strings_change_nothing(lists: list[list[str]]) -> None:

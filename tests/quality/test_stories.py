@@ -10,7 +10,6 @@ from dev.quality.stories import read, told
 QUICK = ("lock_order", "parameter_update")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "bug", [pytest.param(bug, marks=[] if bug.name in QUICK else [pytest.mark.slow], id=bug.name) for bug in BUGS]
 )

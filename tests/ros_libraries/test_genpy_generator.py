@@ -117,7 +117,6 @@ def test_dynamic_classes() -> None:
         dynamic.generate_dynamic("a/B", "C c\n")
 
 
-@pytest.mark.slow
 def test_package_on_disk(tmp_path: Path) -> None:
     """A package generated elsewhere: its sources are nodes' own modules, and travel over topics."""
     (tmp_path / "defs").mkdir()

@@ -69,7 +69,6 @@ def places(frame: bytes) -> list[int]:
     return [BLOCK_AT + each for each in tokens(frame[BLOCK_AT : BLOCK_AT + size])]
 
 
-@pytest.mark.slow
 def test_each_whole_sequence_of_a_block_is_unpacked(frame: bytes, places: list[int]) -> None:
     found = [beginning(frame[:place]) for place in places]
     assert len(found) > 100
@@ -77,7 +76,6 @@ def test_each_whole_sequence_of_a_block_is_unpacked(frame: bytes, places: list[i
     assert all(len(one) < len(other) for one, other in pairwise(found))
 
 
-@pytest.mark.slow
 def test_a_damaged_byte_leaves_each_sequence_before_it(frame: bytes, places: list[int]) -> None:
     for at in range(BLOCK_AT, len(frame) - 4, 5):
         damaged = bytearray(frame)

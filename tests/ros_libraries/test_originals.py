@@ -11,8 +11,6 @@ import ast
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
-
 from rospy_shim.library_parts import FOLDER, library_names
 from tests.rospy_shim.missions import run_nodes
 
@@ -47,7 +45,6 @@ def _dotted(node: ast.AST) -> list[str]:
     return [node.id, *reversed(parts)] if isinstance(node, ast.Name) and parts else []
 
 
-@pytest.mark.slow
 def test_libraries_take_from_each_other_what_the_originals_have() -> None:
     known = set(NAMES.read_text(encoding="utf-8").split())
     files = [file for file in sorted(FOLDER.rglob("*.py")) if file.relative_to(FOLDER).parts[0] not in OWN]

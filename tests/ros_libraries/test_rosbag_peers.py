@@ -59,7 +59,6 @@ def written(folder: Path, kind: str) -> Path:
     return file
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["bz2", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("none", "lz4"))])
 def test_rosbag_says_the_same_of_a_bag(tmp_path: Path, kind: str) -> None:
     if not has_rosbag():

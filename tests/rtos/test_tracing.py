@@ -49,7 +49,6 @@ def test_tasks_are_traced_as_threads_are(kind: str) -> None:
     assert getattr(sys, f"get{kind}")() is not look
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("tasks", [pytest.param("thread", marks=pytest.mark.slow), "greenlet"])
 def test_a_function_can_be_traced_after_a_stall(tasks: str, tmp_path: Path) -> None:
     """Ending a task that spins leaves nothing in the interpreter; a traced function hung there."""

@@ -117,7 +117,6 @@ class SlowToLeave:
             pass
 
 
-@pytest.mark.slow
 def test_the_kernel_is_not_hit_while_it_takes_leave_of_a_task(kernel: Kernel) -> None:
     def main() -> None:
         kernel.current.held.append(SlowToLeave())  # type: ignore[arg-type]  # it stands for a mutex
@@ -285,7 +284,6 @@ def test_who_waits_for_something_outside_is_told_once_and_left_alone(make_kernel
     assert told[0].startswith("cfepy: task asking has been waiting for something outside the simulation since 0.0000")
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("soon")
 def test_what_cannot_be_struck_is_left_behind() -> None:
     reader, writer = os.pipe()

@@ -273,7 +273,6 @@ DANGEROUS = re.compile("\x1b[^\\[]|\x1b\\[31m\x9b|[\x80-\x9f\u202a-\u202e\x07\x7
 """Not among what rich writes: other sequences than colours and movements."""
 
 
-@pytest.mark.slow
 def test_a_run_on_a_terminal_has_colours_of_nodes_and_nothing_else(tmp_path: Path) -> None:
     text = on_a_terminal(["run", str(node_file(tmp_path)), "--for", "1"])
     assert "\x1b[32mgreen\x1b[0m" in text

@@ -84,7 +84,6 @@ def test_fifo_is_the_first_schedule_and_finds_nothing(suite: Suite) -> None:
     suite(RACE.format(policy="random", shrink=10), "--cfepy-schedule", "fifo").assert_outcomes(passed=1)
 
 
-@pytest.mark.slow
 def test_each_schedule_has_fixtures_of_its_own(suite: Suite) -> None:
     result = suite(
         """
@@ -130,7 +129,6 @@ def test_each_schedule_has_fixtures_of_its_own(suite: Suite) -> None:
     result.assert_outcomes(passed=5)
 
 
-@pytest.mark.slow
 def test_failures_other_than_of_the_call(suite: Suite) -> None:
     result = suite(
         """

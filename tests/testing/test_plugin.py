@@ -69,7 +69,6 @@ turns = 0
 """Of the task below, which the host's clocks go by here: nothing else is too slow for them on a busy computer."""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 def test_a_task_that_does_not_give_up_the_cpu_fails_its_test_alone(
     suite: Suite, tasks: str, monkeypatch: pytest.MonkeyPatch

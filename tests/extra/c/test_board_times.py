@@ -36,7 +36,6 @@ def told(folder: Path, profile: Path, capsys: pytest.CaptureFixture[str]) -> dic
     return {option: int(time.removesuffix("ns")) for option, time in zip(fields[::2], fields[1::2], strict=True)}
 
 
-@pytest.mark.slow
 def test_it_measures_on_a_profile_what_that_was_made_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program, folder = tmp_path / "program", tmp_path / "mission"
     assert main(["board", "program", str(program)]) == 0

@@ -96,7 +96,6 @@ def test_error_elsewhere_is_not_blamed_on_the_cache() -> None:
 APP = "void APP_Main(void) { CFE_ES_ExitApp(CFE_ES_RunStatus_APP_EXIT); }\n"
 
 
-@pytest.mark.slow
 @needs_compiler
 def test_application_is_built_and_flown_without_a_home(tmp_path: Path) -> None:
     (tmp_path / "app.c").write_text('#include "cfe.h"\n' + APP, encoding="utf-8")

@@ -180,7 +180,6 @@ def test_objects_begin_and_end(tmp_path: Path, flags: tuple[str, ...]) -> None:
     ]
 
 
-@pytest.mark.slow
 def test_a_static_variable_is_initialised_once_while_another_task_comes(tmp_path: Path) -> None:
     source = """
         static int made;
@@ -199,7 +198,6 @@ def test_a_static_variable_is_initialised_once_while_another_task_comes(tmp_path
         assert sorted(said(fly_cpp(tmp_path, source, *flags))) == ["child 1", "main 1"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("code", "what"),
     [

@@ -52,7 +52,6 @@ def test_a_lost_update_is_found_and_its_timeline_shows_lines_of_c(tmp_path: Path
     assert "PREEMPTED by ADDER" in shown
 
 
-@pytest.mark.slow
 def test_a_deadlock_tells_the_lines_of_c_that_wait(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
     compile_c(
         tmp_path,

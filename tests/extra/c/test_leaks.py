@@ -69,7 +69,6 @@ def restart(mission: Mission, times: int) -> None:
         mission.run_for(8)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("restarts", [30, pytest.param(1000, marks=pytest.mark.slow)])
 def test_restarts_leave_nothing_behind(tmp_path: Path, restarts: int) -> None:
     compile_c(tmp_path, "TEST", SOURCE)

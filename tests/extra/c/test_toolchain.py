@@ -68,7 +68,6 @@ def sections(built: Built) -> set[str]:
 # -- sources -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
 def test_a_folder_without_cmake_is_all_its_sources_but_those_of_eds(app: Path) -> None:
     write(app, {"fsw/src/probe_eds_dispatch.c": "#error EDS\n", "fsw/src/more.c": "int More(void) { return 1; }\n"})
     built = build(app)
@@ -136,14 +135,12 @@ def test_headers_of_a_mission_go_before_defaults(app: Path, tmp_path: Path) -> N
     build(app, options=Options(definitions=tmp_path / "defs"))
 
 
-@pytest.mark.slow
 def test_a_header_that_only_missions_have_is_empty_without_one(app: Path) -> None:
     write(app, {"mission_build.cmake": "set(PROBE_MISSION_CONFIG_FILE_LIST\n  probe_msgids.h\n  probe_extra.h\n)\n"})
     write(app, {"fsw/src/more.c": '#include "probe_extra.h"\nint more;\n'})
     assert build(app).warnings == []
 
 
-@pytest.mark.slow
 def test_headers_of_a_library_beside_it_are_found(app: Path) -> None:
     write(app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/user.c)\nadd_cfe_app_dependency(probe my_lib)\n"})
     write(app, {"fsw/src/user.c": '#include "my_lib.h"\nint user = MY_LIB;\n'})
@@ -176,19 +173,16 @@ def test_a_compiler_that_is_not_there(app: Path, monkeypatch: pytest.MonkeyPatch
         build(app)
 
 
-@pytest.mark.slow
 def test_debug_data_is_there_unless_unwanted(app: Path) -> None:
     assert ".debug_info" in sections(build(app))
     assert ".debug_info" not in sections(build(app, options=Options(debug=False)))
 
 
-@pytest.mark.slow
 def test_two_builds_give_the_same_bytes(app: Path, tmp_path: Path) -> None:
     one, other = (build(app, tmp_path / name).library.read_bytes() for name in ("one.so", "other.so"))
     assert one == other
 
 
-@pytest.mark.slow
 def test_sources_of_one_name_in_two_folders(app: Path) -> None:
     write(
         app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/a.c fsw/src/x/a.c ../common.c)\n", "fsw/src/a.c": "int a;\n"}
@@ -197,7 +191,6 @@ def test_sources_of_one_name_in_two_folders(app: Path) -> None:
     assert {"a", "b", "c"} <= symbols(build(app)).keys()
 
 
-@pytest.mark.slow
 @needs_cpp
 def test_cpp_has_its_library(app: Path, tmp_path: Path) -> None:
     text = """
@@ -221,7 +214,6 @@ def test_cpp_has_its_library(app: Path, tmp_path: Path) -> None:
     assert said(console_of(fly(write_mission(tmp_path, "TEST"), 1))) == ["onetwo"]
 
 
-@pytest.mark.slow
 def test_flags_and_optimisation_reach_the_compiler(app: Path) -> None:
     text = "#if !defined WANTED || !defined __OPTIMIZE__\n#error flags\n#endif\nint flags;\n"
     write(app, {"fsw/src/flags.c": text})
@@ -230,14 +222,12 @@ def test_flags_and_optimisation_reach_the_compiler(app: Path) -> None:
         build(app, options=Options(flags=["-DWANTED"], optimize="0"))
 
 
-@pytest.mark.slow
 def test_without_deprecated_names_handles_are_ids(app: Path) -> None:
     write(app, {"fsw/src/size.c": '#include "cfe.h"\nchar size[sizeof(CFE_TBL_Handle_t) == SIZE ? 1 : -1];\n'})
     build(app, options=Options(flags=["-DSIZE=2"]))
     build(app, options=Options(flags=["-DSIZE=4"], omit_deprecated=True))
 
 
-@pytest.mark.slow
 def test_accesses_of_memory_are_told_to_whoever_loads_it(app: Path) -> None:
     write(app, {"fsw/src/shared.c": "int shared; int Read(void) { return shared; }\n"})
     built = build(app, options=Options(sanitize_thread=True))
@@ -287,7 +277,6 @@ def test_a_table_is_the_file_that_nasas_tools_make(app: Path, tmp_path: Path) ->
     assert made.read_bytes() == (DATA / "sample_app_tbl.tbl").read_bytes()
 
 
-@pytest.mark.slow
 def test_a_table_of_zeros_has_its_zeros(app: Path) -> None:
     write(app, {"fsw/tables/zeros.c": TABLE.replace("= {1, 2}", "")})
     (made,) = build(app).tables
@@ -302,7 +291,6 @@ def test_addresses_in_a_table_are_told(app: Path) -> None:
     assert read_table_file(built.tables[0].read_bytes())[2] == (1).to_bytes(8, "little") + bytes(8)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("old", "new", "wrong"),
     [

@@ -109,7 +109,6 @@ def test_the_first_failure_in_order_ends_it(crew: Crew) -> None:
     assert tally == Tally(done=30, failed=1)
 
 
-@pytest.mark.slow
 def test_a_search_that_waits_for_verdicts() -> None:
     class Doubling:
         """Has a schedule, then two for each verdict."""
@@ -215,7 +214,6 @@ def test_workers_that_do_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
         run(FakeTrial(), 3, Processes(1))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("hash_seed", [None, "7"])
 def test_workers_have_a_hash_seed(hash_seed: str | None, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("PYTHONHASHSEED", raising=False)
@@ -259,7 +257,6 @@ def test_a_second_run_does_only_what_is_missing(tmp_path: Path, jobs: int) -> No
     assert sorted(number for number, _ in read_results(path)[1]) == list(range(30))
 
 
-@pytest.mark.slow
 def test_resuming_more_than_may_be_ahead(tmp_path: Path) -> None:
     with_file = ResultsFile(tmp_path / "results", IDENTITY)
     for number in range(AHEAD + 50):
@@ -298,7 +295,6 @@ Campaign(FakeTrial(hangs=(1,)), Seeds(), 3, crew).run(tell)
 """
 
 
-@pytest.mark.slow
 def test_workers_end_with_their_parent() -> None:
     """Also when it is killed, and they are in the middle of a schedule that does not end."""
     environment = {**os.environ, "PYTHONPATH": import_path()}

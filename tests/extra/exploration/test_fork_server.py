@@ -43,7 +43,6 @@ def server() -> Iterator[ForkServer]:
         yield made
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seeds", [2, pytest.param(4, marks=pytest.mark.slow)])
 def test_a_forked_run_is_the_run_from_the_start(server: ForkServer, seeds: int) -> None:
     digests = set()

@@ -79,7 +79,6 @@ both(one, other)
     ]
 
 
-@pytest.mark.slow
 def test_looking_for_races_changes_nothing(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text(SCRIPT, encoding="utf-8")
     (tmp_path / "main.py").write_text(PRELUDE + RACY["two topics"][1], encoding="utf-8")

@@ -49,7 +49,6 @@ def test_a_schedule_that_does_not_fail_is_not_shrunk(bank: Path) -> None:
     assert Shrinker(trial, [Schedule()], f"{INVARIANT}|all paid|x").run() is None
 
 
-@pytest.mark.slow
 def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Path) -> None:
     folder = missions.write_late(tmp_path)
     with (folder / "apps.py").open("a") as apps:
@@ -68,7 +67,6 @@ def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Pa
     assert other.group in late.run(shrunk.verdict.schedule).groups
 
 
-@pytest.mark.slow
 def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
     schedule = Schedule.parse("at:1=1,4=1,7=1")
@@ -78,7 +76,6 @@ def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
     assert shrunk.probes <= 10 + 3 + 1  # and the subsets of two moves, and the one that makes sure of the result
 
 
-@pytest.mark.slow
 def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
     schedule = Schedule.parse("at:4=1,7=1")

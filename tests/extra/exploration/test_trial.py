@@ -280,7 +280,6 @@ def test_nor_is_that_of_a_node(tmp_path: Path) -> None:
     assert Trial(plan).run(Schedule()).failures == ()
 
 
-@pytest.mark.slow
 def test_a_task_that_does_not_give_up_the_cpu_is_a_failure_of_its_schedule(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("CFE_APP, app, main, SPIN, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     (tmp_path / "app.py").write_text("def main(cfe):\n    while True:\n        pass\n", encoding="utf-8")

@@ -79,7 +79,6 @@ class Same:
         """Nothing to learn."""
 
 
-@pytest.mark.slow
 def test_a_file_in_the_working_directory_is_no_module_of_a_worker(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

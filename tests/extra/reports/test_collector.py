@@ -30,7 +30,6 @@ def test_bins_lose_nothing_however_often_they_fold(times: list[int]) -> None:
     assert all(found.counts[time // found.width_ns] for time in times)
 
 
-@pytest.mark.slow
 @given(TIMES)
 def test_runs_stand_for_the_counts(times: list[int]) -> None:
     found = Bins()

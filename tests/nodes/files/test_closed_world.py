@@ -220,7 +220,6 @@ print(os.stat("starts").st_size)
 """
 
 
-@pytest.mark.slow
 def test_a_process_that_waits_for_schedules_leaves_no_files(node: Path, tmp_path: Path) -> None:
     node.write_text(AT_ODDS, encoding="utf-8")
     judge = ForkingJudge(Trial(replace(plan_of(node, "greenlet"), schedule=Schedule.parse("random:0:from=700ms"))))

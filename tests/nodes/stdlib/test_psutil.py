@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import pytest
 
-
-@pytest.mark.slow
 def test_the_load_is_that_of_the_node(run):
     program = run(
         """

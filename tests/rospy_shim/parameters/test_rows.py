@@ -88,7 +88,6 @@ def test_any_name_can_be_written(parts: list[str]) -> None:
     assert parts_of(name) == parts
 
 
-@pytest.mark.slow
 @given(st.dictionaries(NAMES, VALUES, max_size=4))
 def test_a_tree_comes_back_from_its_rows(tree: dict[str, Any]) -> None:
     rows = [row for name, text in leaves_of("", tree) for row in rows_for(name, text)]

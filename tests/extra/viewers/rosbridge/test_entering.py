@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import msgpack
-import pytest
 
 from cfepy.mission import Arrival, Mission
 from cfepy.writing.console import Console
@@ -90,7 +89,6 @@ def test_a_refusal_is_repeated(tmp_path: Path) -> None:
     _repeat(tmp_path, arrivals, end_ns, digest, lines)
 
 
-@pytest.mark.slow
 def test_who_only_looks_leaves_no_trace(tmp_path: Path) -> None:
     """Asking rosapi, hearing a topic, sending nonsense and leaving again changes nothing of the run."""
     digests = []
