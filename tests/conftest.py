@@ -20,7 +20,7 @@ pytest.register_assert_rewrite(
     "dev", *(f"tests.{each.stem}" for each in Path(__file__).parent.iterdir() if each.stem.isidentifier())
 )
 
-from tests import quick  # noqa: E402
+from tests import costs  # noqa: E402
 from tests.add_ons import MISSING, lacks_add_on  # noqa: E402
 
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # an installed plugin has this name, too
@@ -84,7 +84,7 @@ def _signals_are_answered_as_before() -> Iterator[None]:
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Skip the import of files that need a missing add-on, and of files without a test in this run."""
     named = any("::" in word for word in config.args)  # then the marks do not apply to whole files
-    is_vain = not named and quick.is_read_in_vain(collection_path, config.getoption("markexpr"))
+    is_vain = not named and costs.is_read_in_vain(collection_path, config.getoption("markexpr"))
     return True if is_vain or lacks_add_on(collection_path.relative_to(TESTS).as_posix()) else None
 
 
@@ -98,12 +98,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Mark the tests of the quick loop, and check that the table of costs only lists existing tests."""
     if MISSING:
         items[:] = [item for item in items if not lacks_add_on(test_of(item))]
-    for item in quick.quick_ones(items):
-        item.add_marker(quick.MARK)
+    for item in costs.quick_ones(items):
+        item.add_marker(costs.QUICK)
     if not any("::" in word for word in config.args) and not config.getoption("lf", False):
-        config.stash[quick.STALE] = quick.stale_lines(items)
+        config.stash[costs.STALE] = costs.stale_lines(items)
     if not config.pluginmanager.hasplugin(METER):  # the meter measures them, too
-        for item in quick.slow_ones(items):
-            item.add_marker(quick.SLOW)
+        for item in costs.slow_ones(items):
+            item.add_marker(costs.SLOW)
     yield
     items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)  # long ones, one after the other, first

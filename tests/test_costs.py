@@ -1,4 +1,4 @@
-"""The table of costs: it is compact, all lines name existing tests, and no test is too expensive."""
+"""The table of costs: it is compact, all lines name existing tests, and costs decide which tests are slow."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pytest
 
 from dev.costs import meter
 from dev.costs.table import ROOT, SLOW_S, Table, file_of, function_of, lines
-from tests import quick
+from tests import costs
 
 SLOW, DEAR, CHEAP = 0.5, 0.1, 0.01
 MEASURED = {
@@ -101,7 +101,7 @@ def test_a_meter_shares_what_fixtures_cost(pytester: pytest.Pytester, monkeypatc
 
 def test_every_line_is_about_a_test() -> None:
     known: dict[str, set[str]] = {}
-    for line in quick.TABLE.costs:
+    for line in costs.TABLE.costs:
         file, *names = function_of(line).split("::")
         if file not in known:
             tree = ast.parse((ROOT / file).read_text(encoding="utf-8"))
@@ -115,7 +115,7 @@ def test_every_line_is_about_a_test() -> None:
 
 
 def test_lines_are_about_cases_that_there_are(pytestconfig: pytest.Config) -> None:
-    stale = pytestconfig.stash.get(quick.STALE, [])
+    stale = pytestconfig.stash.get(costs.STALE, [])
     assert stale == [], f"python -m dev.costs {' '.join(sorted(set(map(file_of, stale))))}"
 
 
@@ -140,9 +140,9 @@ def test_slow_is_a_test_whose_line_has_the_cost_of_one() -> None:
 def test_file_is_read_unless_marks_leave_out_all_of_its_tests(
     text: str, read_by: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(quick, "is_dear", lambda path: False)
+    monkeypatch.setattr(costs, "is_dear", lambda path: False)
     file = tmp_path / "test_it.py"
     file.write_text(text, encoding="utf-8")
     marks = ("quick", "not slow", "slow", "", "corpus")
-    assert tuple(each for each in marks if not quick.is_read_in_vain(file, each)) == read_by
-    assert not any(quick.is_read_in_vain(tmp_path, each) for each in marks)
+    assert tuple(each for each in marks if not costs.is_read_in_vain(file, each)) == read_by
+    assert not any(costs.is_read_in_vain(tmp_path, each) for each in marks)

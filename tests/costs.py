@@ -1,7 +1,7 @@
-"""The quick loop: `python -m pytest -m quick`, all tests that cost little, after a change and before the whole suite.
+"""The marks `quick` and `slow` by cost: which tests of the table of costs a run has.
 
-A test belongs to it unless it is slow or in the table of costs, `tests/costs.tsv`, which `python -m dev.costs`
-measures and writes. A new test belongs to it until it is measured.
+`tests/costs.tsv` has the tests that are not quick; `python -m dev.costs` measures and writes it. `-m quick` runs all
+other tests: use it after each change. A new test is quick until it is measured.
 """
 
 from __future__ import annotations
@@ -14,9 +14,8 @@ import pytest
 
 from dev.costs.table import ROOT, Table, file_of, function_of
 
-MARK = "quick"
 TABLE = Table.read()
-SLOW = "slow"
+QUICK, SLOW = "quick", "slow"
 _ALL_SLOW = re.compile(r"^pytestmark = (\[\s*)?([\w.]+,\s*)*pytest\.mark\.slow\b", re.MULTILINE)
 STALE = pytest.StashKey[list[str]]()
 """Lines of the table that name no test of the default suite, of the files that were collected whole."""
@@ -32,13 +31,13 @@ def _name_of(path: Path) -> str:
 
 
 def is_read_in_vain(path: Path, marks: str) -> bool:
-    """Return whether a run of tests with `-m MARKS` needs no test of a file.
+    """Return whether a run of tests with `-m QUICKS` needs no test of a file.
 
     Importing all files would take ten seconds.
     """
-    if marks == MARK and is_dear(path):
+    if marks == QUICK and is_dear(path):
         return True
-    if marks not in (MARK, SLOW, f"not {SLOW}") or not path.name.startswith("test_") or not path.is_file():
+    if marks not in (QUICK, SLOW, f"not {SLOW}") or not path.name.startswith("test_") or not path.is_file():
         return False
     text = path.read_text(encoding="utf-8")
     if marks == SLOW:
