@@ -229,7 +229,7 @@ class _Hooking(ast.NodeTransformer):
         return node
 
     def _before(self, node: ast.stmt) -> list[ast.stmt]:
-        """Return the reports before a statement: variables that it deletes or updates."""
+        """Return the reports before a statement: variables that it deletes, or reads in order to change them."""
         if isinstance(node, ast.AugAssign):
             return self._told("__read_variable__", [node.target], node)
         if isinstance(node, ast.Delete):

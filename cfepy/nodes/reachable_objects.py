@@ -61,7 +61,7 @@ def reaches(roots: Iterable[object], subject: object, closed: Iterable[object] =
 
 
 def held_by(frame: FrameType | None) -> Iterator[object]:
-    """Yield the objects held by a task with this innermost frame.
+    """Yield the objects that a task with this innermost frame can use when it continues from there.
 
     Frames of the simulator do not count: they only lead back to the program at its current place.
     """

@@ -104,7 +104,7 @@ class Overlay:
         return with_end(done)
 
     def _refuse_search(self, here: str, path: str, is_searched: bool) -> None:
-        """Raise the OSError of a path that continues behind something that is not a searchable folder."""
+        """Raise the OSError of a path that continues behind a file, or a folder that the program may not search."""
         if not self.is_folder(here):
             if self.exists(here):
                 raise os_error(errno.ENOTDIR, path)

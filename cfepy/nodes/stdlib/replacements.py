@@ -1,4 +1,8 @@
-"""Modules that are made for each node, by name, and the changes to those that are executed for it."""
+"""Modules that are made for each node, by name, and the changes to those that are executed for it.
+
+Some modules are rarely used by nodes, or are missing on some systems. The code that makes them is loaded when a node
+first loads such a module.
+"""
 
 from __future__ import annotations
 
