@@ -109,7 +109,7 @@ def _from_function(function: FunctionType) -> Iterator[object]:
 
 
 def _is_opaque(module: object) -> bool:
-    """Return whether a module's variables are ignored because they do not lead to objects of the program."""
+    """Return whether a module's variables are ignored: as its code uses them, they lead to no object of the program."""
     return isinstance(module, str) and module.partition(".")[0] in _OPAQUE
 
 

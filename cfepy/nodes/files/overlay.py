@@ -558,7 +558,7 @@ class Overlay:
         self._top = ""
 
     def part(self) -> None:
-        """Continue in a forked process with a copy of the run's files, and reopen its open files."""
+        """Continue in a forked process with a copy of the run's files; open files get positions of their own."""
         import fcntl  # only systems that can fork have it
 
         old = self._top

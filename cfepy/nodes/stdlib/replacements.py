@@ -107,7 +107,10 @@ def _codecs(universe: Universe) -> ModuleType:
 
 
 def _fix_element_tree(universe: Universe, module: ModuleType) -> None:
-    """Do not use its C part, which recognizes comments by the functions of the most recently loaded module."""
+    """Use the host's functions for comments in the node's module, and set them in the C part again.
+
+    The C part recognizes comments by the functions of the module that was loaded last.
+    """
     import _elementtree  # type: ignore[import-not-found]
     from xml.etree import ElementTree
 

@@ -144,8 +144,8 @@ class Epoll(Poll):
 
 
 class _Kind:
-    """Return a class with the waiter of one universe. `selectors` stores it as a class attribute, where a function
-    would become a method, as does a `functools.partial` from Python 3.14 on.
+    """Makes objects of a class with the waiter of one universe. `selectors` stores it as a class attribute, where a
+    function would become a method, as would a `functools.partial` from Python 3.14 on.
     """
 
     def __init__(self, made: Callable[..., Any], waiter: Waiter) -> None:

@@ -1,8 +1,8 @@
 """`socket` of a node: sockets on the mission's virtual network (`cfepy.osal.network`), with virtual timeouts.
 
 If no program of the mission listens at the address of a connection, the socket requests the connection from the bridge
-to this computer. In virtual time no outside program could answer, so sockets are refused there; `--realtime` joins the
-networks. `socketpair` needs no network and is always available.
+to this computer. In virtual time no outside program could answer, so a mission in virtual time refuses sockets;
+`--realtime` joins the networks. `socketpair` needs no network and is always available.
 """
 
 from __future__ import annotations
@@ -207,7 +207,7 @@ class NodeSocket:
         self._timeout = None if flag else 0.0
 
     def setsockopt(self, level: int, optname: int, value: Any, optlen: int | None = None) -> None:
-        """Set an option, which has no effect on this network."""
+        """Store an option for `getsockopt`; it has no effect on this network."""
         self._alive()
         self._options[level, optname] = value
 

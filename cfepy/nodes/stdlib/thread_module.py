@@ -93,8 +93,8 @@ class ThreadHandle:
 
     Args:
         gate: a fresh lock of the universe; it is held until the thread is done.
-        ident: of a thread that runs already.
-        kernel: its observer is told which tasks have observed the end.
+        ident: identifier of a thread that already runs; None for a thread to be started.
+        kernel: its observer learns which tasks have seen the end of the thread.
     """
 
     def __init__(self, gate: Any, ident: int | None = None, kernel: Kernel | None = None) -> None:
