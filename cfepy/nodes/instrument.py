@@ -49,7 +49,7 @@ _QUIET = frozenset(
         *("__delattr__", "__dir__", "__reduce__", "__reduce_ex__", "__getstate__", "__setstate__", "__index__"),
     }
 )
-"""Methods that are left unchanged because any code, including cfepy, may call them."""
+"""Methods that are left unchanged because any code, including cfepy, may call them implicitly."""
 _NEVER_AWAY = frozenset(
     name for name in dir(builtins) if name not in ("__import__", "eval", "exec", "input", "open", "print")
 )
