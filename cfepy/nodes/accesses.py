@@ -1,9 +1,9 @@
 """`Accesses`: reports the reads and writes of tasks in mission code to observers, with optional scheduling points.
 
 Code compiled by `cfepy.nodes.instrument` calls the hooks of a run just before it reads or writes an attribute, an item
-of a container, or a variable that several functions share. Each object gets a number in order of first access, so the
-same run always reports the same numbers. If there are no observers and no points, code is compiled unchanged and this
-module has no cost.
+of a container, or a variable that several functions share. A scheduling point comes before the access. Each object gets
+a number in order of first access, so the same run always reports the same numbers. If there are no observers and no
+points, code is compiled unchanged and this module has no cost.
 """
 
 from __future__ import annotations
@@ -223,7 +223,7 @@ class Accesses:
             self._point()
 
     def called(self, value: T) -> T:
-        """Let other tasks run after a call that entered cfepy, because its result may be out of date."""
+        """Let other tasks run after a call that entered cfepy, so that the values it read can become outdated."""
         kernel = cast("CallPointKernel", self._kernel)
         task = kernel.current
         if kernel.entered.pop(task, False) and task not in self._loading:
@@ -248,7 +248,7 @@ class Accesses:
         return thing
 
     def updates_attribute(self, thing: T, name: str, site: int) -> T:
-        """An attribute is about to be read for an augmented assignment."""
+        """An attribute is about to be read for an augmented assignment, which then sets it to the result."""
         frame = sys._getframe(1)
         self._held.pop((id(frame), site), None)
         found = self._attribute(thing, name, is_write=False)
@@ -429,7 +429,7 @@ class Accesses:
         return thing
 
     def holds_method(self, thing: T, name: str, text: str, site: int) -> T:
-        """Hold such a method until its arguments have been evaluated."""
+        """Such a method is about to be called, but its arguments are not evaluated yet: keep it until they are."""
         self._held[id(sys._getframe(1)), site] = thing, name, text
         return thing
 

@@ -3,7 +3,7 @@
 An application in Python is part of the simulated computer and runs with the host's modules, threads, clocks and
 packages. Only its files belong to the run: its `open`, and the modules that open files, which are made or executed once
 for all applications of a processor, since they share a process. They are made when an application first opens a file or
-loads such a module.
+loads such a module. Until then they cost nothing.
 """
 
 from __future__ import annotations

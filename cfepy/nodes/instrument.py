@@ -49,7 +49,7 @@ _QUIET = frozenset(
         *("__delattr__", "__dir__", "__reduce__", "__reduce_ex__", "__getstate__", "__setstate__", "__index__"),
     }
 )
-"""Methods that are left unchanged because any code, including cfepy, may call them."""
+"""Methods that are left unchanged because any code, including cfepy, may call them implicitly."""
 _NEVER_AWAY = frozenset(
     name for name in dir(builtins) if name not in ("__import__", "eval", "exec", "input", "open", "print")
 )
@@ -229,7 +229,7 @@ class _Hooking(ast.NodeTransformer):
         return node
 
     def _before(self, node: ast.stmt) -> list[ast.stmt]:
-        """Return the reports before a statement: variables that it deletes or updates."""
+        """Return the reports before a statement: variables that it deletes, or reads in order to change them."""
         if isinstance(node, ast.AugAssign):
             return self._told("__read_variable__", [node.target], node)
         if isinstance(node, ast.Delete):

@@ -118,7 +118,7 @@ def is_stdlib(top: str) -> bool:
 
 
 def is_pure_python(spec: ModuleSpec) -> bool:
-    """Return whether a module or package, found by `spec`, has no extension modules."""
+    """Return whether an installed module or package, found by `spec`, has no extension module anywhere below it."""
     origin = spec.origin or ""
     known = _pure.get(origin)
     if known is None:

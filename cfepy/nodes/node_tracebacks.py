@@ -1,4 +1,6 @@
-"""Tracebacks of nodes: lines of the node and its libraries, without lines of the simulator."""
+"""Tracebacks of nodes, as the author of a node expects them: lines of the node and its libraries, without lines of the
+simulator.
+"""
 
 from __future__ import annotations
 

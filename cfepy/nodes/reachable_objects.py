@@ -61,7 +61,7 @@ def reaches(roots: Iterable[object], subject: object, closed: Iterable[object] =
 
 
 def held_by(frame: FrameType | None) -> Iterator[object]:
-    """Yield the objects held by a task with this innermost frame.
+    """Yield the objects that a task with this innermost frame can use when it continues from there.
 
     Frames of the simulator do not count: they only lead back to the program at its current place.
     """
@@ -109,7 +109,7 @@ def _from_function(function: FunctionType) -> Iterator[object]:
 
 
 def _is_opaque(module: object) -> bool:
-    """Return whether a module's variables are ignored because they do not lead to objects of the program."""
+    """Return whether a module's variables are ignored: as its code uses them, they lead to no object of the program."""
     return isinstance(module, str) and module.partition(".")[0] in _OPAQUE
 
 

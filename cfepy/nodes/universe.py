@@ -1,4 +1,9 @@
-"""`Universe`: the process environment of a Python program: modules, threads, environment, streams, signals, entropy."""
+"""`Universe`: the process environment of a Python program: modules, threads, environment, streams, signals, entropy.
+
+A Universe belongs to one node of one simulated computer. It replaces the process that `rosrun` starts, from `__main__`
+to the exit status. The modules that it makes (`cfepy.nodes.stdlib`) call back into it. Two universes share no mutable
+state.
+"""
 
 from __future__ import annotations
 
@@ -49,7 +54,39 @@ EXIT_BITS = 0xFF  # bits of a program's exit status that its parent sees
 
 
 class Universe:
-    """Environment of one unmodified program."""
+    """Environment of one unmodified program.
+
+    Args:
+        kernel: kernel of the simulated computer.
+        name: name of the node. It appears in output and task names, and (with `seed`) seeds the node's random numbers.
+        script: path of the program.
+        argv: arguments of the program, without the program itself.
+        env: its environment; None for only the host's HOME and PATH.
+        cwd: its working directory; None for the host's.
+        search_paths: folders in which it finds modules, after the script's own folder.
+        library_paths: folders of libraries, searched after all of the node's folders.
+        fallback_paths: folders of replacements for packages that may not be installed, searched last.
+        seed: seed of the run.
+        epoch_ns: time of day in ns since 1970 (UTC) at which the kernel's clock is 0.
+        call_cost_ns: virtual CPU time in ns of a polling call (clock, lock, event). With 0, a polling loop never ends.
+        stdout: receives each line that the program prints, with the node's name before it; None stores the lines in
+            `output`.
+        provision: replacements for the host's modules; None for those of a node.
+        modules: factories of further modules by name, such as rospy. A dotted name requires that its package exists.
+        find_module: returns a factory for a name that `modules` does not contain, or None if it does not know the name.
+        priority: priority of its tasks, 0 to 255.
+        ordered_sets: whether sets in the node's code iterate in insertion order.
+        keys: keys typed at its terminal (`cfepy.nodes.stdlib.terminal`). With None it has no terminal, and its input is
+            at the end of the file.
+        network: network of its sockets; None refuses sockets.
+        root: folder that replaces the computer's root directory, "" for none. Files that exist there are read from
+            there, and the program sees them at their usual path.
+        overlay: files of its run, which already include that root; None lets the program read and write the host's
+            files.
+        accesses: where the accesses of its code are reported; None for no reports.
+        on_thread_start: `(task name, entry, priority) -> Task`, starts the task of a thread, so that the owner of the
+            node also owns its threads; None uses `Kernel.spawn`.
+    """
 
     def __init__(
         self,
@@ -140,7 +177,16 @@ class Universe:
         self.importer.load("sys")
 
     def run_script(self) -> int:
-        """Execute the script as `__main__` in the current task, until its last non-daemon thread has ended."""
+        """Execute the script as `__main__` in the current task, until its last non-daemon thread has ended.
+
+        Call it only once.
+
+        Returns:
+            The exit status: 0, the status passed to `sys.exit`, or 1 after an uncaught error. `error` holds that error.
+
+        Raises:
+            TaskExit: if the task was ended from outside. The node's threads are then ended too, without its exit hooks.
+        """
         return _run_script(self)
 
     def adopts(self, variables: dict[str, Any]) -> None:
@@ -243,7 +289,11 @@ class Universe:
                 self.print_error(f"Exception ignored in atexit callback {function!r}:\n{traceback_text(error)}")
 
     def deliver_signal(self, number: int) -> None:
-        """Run the node's handler of a signal in the current task, which must belong to the node."""
+        """Run the node's handler of a signal in the current task, which must belong to the node.
+
+        An exception of the handler, such as the KeyboardInterrupt of SIGINT, is raised in the main task, by the call in
+        which it waits.
+        """
         try:
             self.signals.deliver(number)
         except (Exception, NodeInterrupt, SystemExit) as error:
@@ -257,14 +307,22 @@ class Universe:
             self.kernel.interrupt(main, error)
 
     def absolute(self, path: Any) -> str:
-        """Return an absolute path; relative paths start at the node's working directory."""
+        """Return an absolute path; relative paths start at the node's working directory.
+
+        Raises:
+            OSError: ENXIO, if the path is the host's terminal (/dev/tty).
+        """
         plain = os.fsdecode(path)
         if plain == _TERMINAL:
             raise OSError(errno.ENXIO, os.strerror(errno.ENXIO), _TERMINAL)
         return plain if os.path.isabs(plain) else os.path.join(self.cwd, plain)
 
     def resolve(self, path: Any) -> Any:
-        """Return the host path of a program's path, for reading."""
+        """Return the host path of a program's path, for reading.
+
+        Raises:
+            OSError: ENXIO, if the path is the host's terminal (/dev/tty).
+        """
         if isinstance(path, int):
             return path
         whole = self.absolute(path)
@@ -287,7 +345,11 @@ class Universe:
         return found
 
     def claimed(self, path: str) -> str:
-        """Return the host path of a program's path, for changes."""
+        """Return the host path of a program's path, for changes.
+
+        Raises:
+            OSError: if the file cannot be changed.
+        """
         if self.overlay is None:
             return str(self.resolve(path))
         return self.overlay.claim(self.overlay.real(self.absolute(path)))
@@ -332,20 +394,32 @@ class Universe:
 
 
 def process_number(name: str) -> int:
-    """Return the process number of a node, unless it is already taken."""
+    """Return the first choice for a node's process number: a hash of its name, from 1000 to 30999.
+
+    If another node already has the number, `ProcessNumbers.take` finds a free one.
+
+    Args:
+        name: name of the node.
+    """
     return 1000 + zlib.crc32(name.encode()) % 30000
 
 
 class ProcessNumbers:
-    """Return the process numbers that are taken: each node of a mission has its own, which is also the port in its
-    URIs.
+    """The process numbers in use: each node of a mission has its own, which is also the port in its URIs.
+
+    Args:
+        taken: ports that no node can have, because they are used otherwise.
     """
 
     def __init__(self, taken: Collection[int] = ()) -> None:
         self._taken = set(taken)
 
     def take(self, wanted: int) -> int:
-        """Return the next number that is not taken."""
+        """Reserve and return the first number from `wanted` on that no other node has.
+
+        Args:
+            wanted: the preferred number; see `process_number`.
+        """
         while wanted in self._taken:
             wanted += 1
         self._taken.add(wanted)

@@ -104,7 +104,7 @@ class Overlay:
         return with_end(done)
 
     def _refuse_search(self, here: str, path: str, is_searched: bool) -> None:
-        """Raise the OSError of a path that continues behind something that is not a searchable folder."""
+        """Raise the OSError of a path that continues behind a file, or a folder that the program may not search."""
         if not self.is_folder(here):
             if self.exists(here):
                 raise os_error(errno.ENOTDIR, path)
@@ -558,7 +558,7 @@ class Overlay:
         self._top = ""
 
     def part(self) -> None:
-        """Continue in a forked process with a copy of the run's files, and reopen its open files."""
+        """Continue in a forked process with a copy of the run's files; open files get positions of their own."""
         import fcntl  # only systems that can fork have it
 
         old = self._top

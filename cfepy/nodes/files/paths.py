@@ -40,7 +40,7 @@ def path_below(top: str, place: str) -> str:
 
 
 def with_end(done: str) -> str:
-    """Return the path of a folder from its known parts; a root ends with "/"."""
+    """Return the path of a folder from all of its parts; a root ends with "/"."""
     return done if "/" in done else f"{done}/"
 
 

@@ -340,7 +340,11 @@ class CursesWindow:
         return chr(key) if key < _curses.KEY_MIN else key_name(key).decode()
 
     def get_wch(self, *place: int) -> int | str:
-        """Return the next character, or the number of a special key."""
+        """Return the next character, or the number of a special key.
+
+        Raises:
+            _curses.error: if no key comes in time.
+        """
         key = self.getch(*place)
         if key == _NO_KEY:
             raise _curses.error("no input")
@@ -363,7 +367,11 @@ def _text_of(char: Any) -> str:
 
 
 class Screen:
-    """The screen of one node, and the curses functions outside of windows."""
+    """The screen of one node, and the curses functions outside of windows.
+
+    Args:
+        universe: universe of the node.
+    """
 
     def __init__(self, universe: Universe) -> None:
         self._universe = universe

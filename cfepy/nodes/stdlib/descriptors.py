@@ -1,4 +1,4 @@
-"""Sockets of a program, by descriptor. Without a network they are refused."""
+"""Sockets of a program, by descriptor. Sockets are refused if there is no network for them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,15 @@ FIRST_DESCRIPTOR = 1000  # above those that the host gives to the files of a nod
 
 
 class SocketTable:
-    """Open sockets of a node, by descriptor."""
+    """Open sockets of a node, by descriptor.
+
+    Args:
+        universe: universe of the node.
+        network: network of the mission; None if there is none.
+
+    Attributes:
+        default_timeout: `socket.getdefaulttimeout`, in seconds; None for no limit.
+    """
 
     def __init__(self, universe: Universe, network: Network | None) -> None:
         self.default_timeout: float | None = None
@@ -25,7 +33,14 @@ class SocketTable:
         self._next = FIRST_DESCRIPTOR
 
     def network(self, what: str) -> Network:
-        """Return the network for a socket."""
+        """Return the network for a socket.
+
+        Args:
+            what: name of the called function, for the error.
+
+        Raises:
+            RefusedError: if there is no network, or it is not joined to another one.
+        """
         if self._network is None or self._network.dial is None:
             refusal(self._universe, what, NETWORK)()
         return self._network

@@ -1,4 +1,9 @@
-"""Futures of a node, from `concurrent.futures` and `asyncio`: they hash by a serial number instead of their address."""
+"""Futures of a node, from `concurrent.futures` and `asyncio`: they hash by a serial number instead of their address.
+
+The standard library iterates over sets of futures and threads, in the order of their hashes. `asyncio` is the standard
+library's own, with an event loop based on the node's `select` and `socket`. The loop waits in virtual time. Its
+transports and servers have a network if the node's sockets have one.
+"""
 
 from __future__ import annotations
 

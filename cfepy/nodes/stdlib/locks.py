@@ -45,7 +45,11 @@ def wait_ns(seconds: float) -> int:
 
 
 def timeout_ns(blocking: bool, timeout: float) -> int:
-    """Return the wait that the arguments of `acquire` request: FOREVER, 0 for none, or ns."""
+    """Return the wait that the arguments of `acquire` request: FOREVER, 0 for none, or ns.
+
+    Raises:
+        ValueError: if Python's own locks refuse these arguments.
+    """
     if timeout == -1:
         return FOREVER if blocking else 0
     if not blocking:
@@ -65,7 +69,17 @@ def make_lock_types(universe: Universe) -> LockTypes:
 
 
 class LockPoints(NamedTuple):
-    """Where other tasks may run when a lock is used."""
+    """Where other tasks may run when a lock is used.
+
+    The standard library's own locks guard its internal state, and the order in which tasks acquire them does not affect
+    the mission. The use of such a lock is therefore part of its caller's step, unless the caller has to wait.
+
+    Attributes:
+        taking: whether other tasks may run before the lock is acquired.
+        giving: whether they may run before it is released.
+        given: whether they may run after it is released, if the release, or something done while the lock was held,
+            made a task ready.
+    """
 
     taking: bool
     giving: bool
@@ -85,7 +99,11 @@ END = LockPoints(taking=True, giving=False, given=False)
 
 
 def _points_of(frame: FrameType | None) -> LockPoints:
-    """Return where other tasks may run when a lock created here is used, depending on its creator."""
+    """Return where other tasks may run when a lock created here is used, depending on its creator.
+
+    Args:
+        frame: frame of the function that creates the lock.
+    """
     outermost = ""
     while frame is not None and (is_standard(file := frame.f_code.co_filename) or not is_shown(file)):
         outermost = frame.f_code.co_qualname
@@ -101,8 +119,10 @@ _MAKERS_OF_OWN = ("", "RLock", "Condition.__init__")
 
 
 def _explore(lock: type, kernel: ExploringKernel) -> None:
-    """Make calls that acquire or release a lock scheduling points (`LockPoints`), and record the holder of a
-    plain one.
+    """Make calls that acquire or release a lock scheduling points (`LockPoints`), and record the holder of a plain one.
+
+    The kernel's observer receives these calls, the creation of a lock, and the call by which a condition checks the
+    lock's owner (`_is_owned`).
     """
     methods = vars(lock)
     plain = "holder" in methods

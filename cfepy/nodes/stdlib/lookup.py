@@ -1,4 +1,9 @@
-"""Standard modules that look a class up by its module name, changed to use the node's module table."""
+"""Standard modules that look a class up by its module name, changed to use the node's module table.
+
+`dataclasses` (string annotations), `typing.get_type_hints` and `inspect` read `sys.modules`. Their functions get the
+node's `sys`. Their classes remain the host's, so dataclasses of a host library and of a node can be mixed. `pickle` and
+`unittest` are executed for each node and need no change here.
+"""
 
 from __future__ import annotations
 
@@ -50,7 +55,8 @@ def typing_module(universe: Universe) -> ModuleType:
 
 
 def functools_module(universe: Universe) -> ModuleType:
-    """Return `functools` without the real lock that Python 3.11's `cached_property` holds while the property is
-    computed.
+    """Return `functools` without the real lock that Python 3.11's `cached_property` holds during the computation.
+
+    A task that waits while it holds a real lock would stop the whole simulated computer.
     """
     return proxy(functools, cached_property=CachedProperty)

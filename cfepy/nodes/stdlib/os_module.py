@@ -1,4 +1,8 @@
-"""`os` of a node: its own environment, working directory, process number and entropy, and the files of its run."""
+"""`os` of a node: its own environment, working directory, process number and entropy, and the files of its run.
+
+Relative paths are relative to the node's working directory. Functions that start a process, or change the host's
+process, are refused or have no effect.
+"""
 
 from __future__ import annotations
 

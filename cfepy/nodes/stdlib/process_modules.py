@@ -1,4 +1,13 @@
-"""A node's view of its process and of the computer: `gc`, `locale`, `resource` and `psutil`."""
+"""A node's view of its process and of the computer: `gc`, `locale`, `resource` and `psutil`.
+
+The kernel collects garbage at fixed virtual times. If a node could enable automatic collection, finalizers would run
+at times that depend on the host. Settings of the whole process are stored for the node that made them, and have no
+effect.
+
+`psutil` reports the load of the simulated processor: processor times are those of the kernel's tasks. All other numbers
+describe an idle computer: free memory, no traffic on disks and networks, no sensors. A node has `psutil` whether or not
+it is installed on the host.
+"""
 
 from __future__ import annotations
 
@@ -124,7 +133,12 @@ class ProcessMemory(NamedTuple):
 
 
 class CpuMeter:
-    """Measures how busy the processor was since the last call."""
+    """Measures how busy the processor was since the last call.
+
+    Args:
+        universe: provides the clock and the kernel.
+        only_own: whether to count only the node's tasks.
+    """
 
     def __init__(self, universe: Universe, only_own: bool = False) -> None:
         self._universe = universe

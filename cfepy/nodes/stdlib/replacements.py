@@ -1,4 +1,8 @@
-"""Modules that are made for each node, by name, and the changes to those that are executed for it."""
+"""Modules that are made for each node, by name, and the changes to those that are executed for it.
+
+Some modules are rarely used by nodes, or are missing on some systems. The code that makes them is loaded when a node
+first loads such a module.
+"""
 
 from __future__ import annotations
 
@@ -103,7 +107,10 @@ def _codecs(universe: Universe) -> ModuleType:
 
 
 def _fix_element_tree(universe: Universe, module: ModuleType) -> None:
-    """Do not use its C part, which recognizes comments by the functions of the most recently loaded module."""
+    """Use the host's functions for comments in the node's module, and set them in the C part again.
+
+    The C part recognizes comments by the functions of the module that was loaded last.
+    """
     import _elementtree  # type: ignore[import-not-found]
     from xml.etree import ElementTree
 

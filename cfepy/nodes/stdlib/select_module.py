@@ -1,4 +1,7 @@
-"""`select` of a node: waiting for its sockets and keyboard. Without descriptors it sleeps."""
+"""`select` of a node: waiting for its sockets and keyboard. Without descriptors it sleeps.
+
+Host files are refused, because a file is always readable. Other descriptors do not exist.
+"""
 
 from __future__ import annotations
 
@@ -25,13 +28,23 @@ _MS = 1e-3
 
 
 class Waiter:
-    """Waits for descriptors of one node."""
+    """Waits for descriptors of one node.
+
+    Args:
+        universe: universe of the node.
+    """
 
     def __init__(self, universe: Universe) -> None:
         self._universe = universe
 
     def events(self, fd: int, mask: int) -> int:
-        """Return which events of `mask` a descriptor has now; POLLHUP is always reported."""
+        """Return which events of `mask` a descriptor has now; POLLHUP is always reported.
+
+        Raises:
+            RefusedError: if the descriptor is a file.
+            ValueError: if it is negative, such as `fileno()` of a closed socket.
+            OSError: EBADF, if it belonged to a socket that is closed now.
+        """
         if fd == STDIN:
             terminal = self._universe.terminal
             return mask & POLLIN if terminal is not None and terminal.ready else 0
@@ -41,7 +54,16 @@ class Waiter:
         return found | (POLLHUP if gone else 0)
 
     def wait(self, fds: Sequence[int], ready: Callable[[], bool], seconds: float | None) -> bool:
-        """Wait until `ready` returns true; it is checked again at each event of a descriptor."""
+        """Wait until `ready` returns true; it is checked again at each event of a descriptor.
+
+        Args:
+            fds: the descriptors.
+            ready: returns whether the wait is over.
+            seconds: longest wait in seconds; None for no limit.
+
+        Returns:
+            False if the time elapsed first.
+        """
         terminal = self._universe.terminal
         waits = terminal.waits if terminal is not None and STDIN in fds else None
         endpoints = [self._socket(fd).endpoint for fd in fds if fd != STDIN]
@@ -70,7 +92,7 @@ class Poll:
         self._masks: dict[int, int] = {}
 
     def register(self, fd: Any, eventmask: int = _READ | POLLOUT) -> None:
-        """Register a descriptor."""
+        """Watch a descriptor from now on."""
         self._masks[descriptor(fd)] = eventmask
 
     def modify(self, fd: Any, eventmask: int) -> None:
@@ -80,7 +102,7 @@ class Poll:
         self._masks[descriptor(fd)] = eventmask
 
     def unregister(self, fd: Any) -> None:
-        """Unregister a descriptor."""
+        """Stop watching a descriptor."""
         del self._masks[descriptor(fd)]
 
     def poll(self, timeout: float | None = None) -> list[tuple[int, int]]:
@@ -111,7 +133,7 @@ class Epoll(Poll):
         self.close()
 
     def close(self) -> None:
-        """Close it."""
+        """Close it and stop watching all descriptors."""
         self.closed = True
         self._masks.clear()
 
@@ -122,8 +144,8 @@ class Epoll(Poll):
 
 
 class _Kind:
-    """Return a class with the waiter of one universe. `selectors` stores it as a class attribute, where a function
-    would become a method, as does a `functools.partial` from Python 3.14 on.
+    """Makes objects of a class with the waiter of one universe. `selectors` stores it as a class attribute, where a
+    function would become a method, as would a `functools.partial` from Python 3.14 on.
     """
 
     def __init__(self, made: Callable[..., Any], waiter: Waiter) -> None:

@@ -21,14 +21,21 @@ _HARMLESS = frozenset({"SIGCHLD", "SIGCONT", "SIGURG", "SIGWINCH"})
 
 
 class NodeInterrupt(KeyboardInterrupt):
-    """KeyboardInterrupt of a node that was sent SIGINT, to distinguish it from a Ctrl-C of the host's user."""
+    """KeyboardInterrupt of a node that was sent SIGINT, to distinguish it from a Ctrl-C of the host's user.
+
+    A traceback in the node shows it as `KeyboardInterrupt`.
+    """
 
     __module__ = "builtins"
     __qualname__ = "KeyboardInterrupt"
 
 
 class SignalTable:
-    """Signal handlers of one node."""
+    """Signal handlers of one node.
+
+    Args:
+        universe: universe of the node.
+    """
 
     def __init__(self, universe: Universe) -> None:
         self._universe = universe

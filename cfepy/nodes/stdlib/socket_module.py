@@ -1,4 +1,9 @@
-"""`socket` of a node: sockets on the mission's virtual network (`cfepy.osal.network`), with virtual timeouts."""
+"""`socket` of a node: sockets on the mission's virtual network (`cfepy.osal.network`), with virtual timeouts.
+
+If no program of the mission listens at the address of a connection, the socket requests the connection from the bridge
+to this computer. In virtual time no outside program could answer, so a mission in virtual time refuses sockets;
+`--realtime` joins the networks. `socketpair` needs no network and is always available.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +38,18 @@ def await_endpoints(
     seconds: float | None,
     waits: WaitList | None = None,
 ) -> bool:
-    """Wait until `ready` returns true; it is checked again whenever an endpoint has changed."""
+    """Wait until `ready` returns true; it is checked again whenever an endpoint has changed.
+
+    Args:
+        universe: universe of the waiting task.
+        endpoints: endpoints to watch.
+        ready: returns whether the wait is over.
+        seconds: longest wait in seconds; None for no limit.
+        waits: wait list to use, if something else, such as a key, can end the wait too.
+
+    Returns:
+        False if the time elapsed first.
+    """
     universe.charge()
     if ready() or (seconds is not None and seconds <= 0):
         return ready()
@@ -54,7 +70,16 @@ def await_endpoints(
 
 
 class NodeSocket:
-    """A socket, with the methods and errors of `socket.socket`."""
+    """A socket, with the methods and errors of `socket.socket`.
+
+    Each node has a subclass, which sets `universe` to the node's.
+
+    Args:
+        family: AF_INET or AF_INET6; -1 for AF_INET.
+        type: SOCK_STREAM or SOCK_DGRAM; -1 for SOCK_STREAM.
+        proto: any protocol.
+        fileno: must be None, because descriptors cannot be passed on.
+    """
 
     universe: Universe
 
@@ -182,7 +207,7 @@ class NodeSocket:
         self._timeout = None if flag else 0.0
 
     def setsockopt(self, level: int, optname: int, value: Any, optlen: int | None = None) -> None:
-        """Set an option, which has no effect on this network."""
+        """Store an option for `getsockopt`; it has no effect on this network."""
         self._alive()
         self._options[level, optname] = value
 

@@ -30,12 +30,12 @@ def host_of(name: Any, family: int, host_name: str) -> str:
     """Return the numeric address of a host.
 
     Args:
-        name: as a node gives it.
+        name: name or address, as a node gives it.
         family: AF_INET or AF_INET6.
         host_name: name of the simulated computer.
 
     Raises:
-        socket.gaierror: there is no such host.
+        socket.gaierror: if there is no such host.
     """
     if isinstance(name, (bytes, bytearray)):
         name = name.decode()
@@ -59,14 +59,14 @@ def place_of(address: Any, family: int, host_name: str, call: str) -> Place:
 
     Args:
         address: a tuple of host and port.
-        family: of the socket.
+        family: address family of the socket, AF_INET or AF_INET6.
         host_name: name of the simulated computer.
-        call: the function that was called, for texts of errors.
+        call: name of the called function, for the text of errors.
 
     Raises:
-        TypeError: if it is not a such tuple.
-        OverflowError: a port that cannot be.
-        socket.gaierror: there is no such host.
+        TypeError: if the address is not such a tuple.
+        OverflowError: if the port is not from 0 to 65535.
+        socket.gaierror: if there is no such host.
     """
     if not isinstance(address, tuple) or len(address) < 2:
         raise TypeError(f"{call}(): AF_INET address must be tuple, not {type(address).__name__}")
@@ -79,7 +79,7 @@ def place_of(address: Any, family: int, host_name: str, call: str) -> Place:
 
 
 def address_of(place: Place) -> tuple[Any, ...]:
-    """Return how a place is shown to a node."""
+    """Return the address of a place as a socket address tuple, with four items for IPv6 and otherwise two."""
     return (place.host, place.port, 0, 0) if place.is_ip6 else (place.host, place.port)
 
 
@@ -132,5 +132,5 @@ def _port_of(port: Any) -> int:
 
 
 def unreachable() -> OSError:
-    """Return the answers of a network with only this computer."""
+    """Return the error of a network with only this computer: ENETUNREACH."""
     return failure(errno.ENETUNREACH)

@@ -22,7 +22,13 @@ def descriptor(file: Any) -> int:
 
 
 class ConsoleStream(io.TextIOBase):
-    """Text output to the console, line by line."""
+    """Text output to the console, line by line.
+
+    Args:
+        name: "<stdout>" or "<stderr>".
+        fd: 1 or 2.
+        write_line: receives each complete line, without its line end.
+    """
 
     encoding = "utf-8"
     errors = "replace"
@@ -92,7 +98,11 @@ class NoInput(io.TextIOWrapper):
 
 
 class TypedInput(io.TextIOBase):
-    """A standard input that is a terminal. It does not read ahead, so `select` is right."""
+    """A standard input that is a terminal. It does not read ahead, so `select` is right.
+
+    Args:
+        terminal: provides the keys.
+    """
 
     name = "<stdin>"
     mode = "r"

@@ -1,4 +1,10 @@
-"""Terminal from which a node is started, and `termios` and `fcntl`, with which the node configures it."""
+"""Terminal from which a node is started, and `termios` and `fcntl`, with which the node configures it.
+
+It replaces the pseudo-terminal that a program has as file descriptor 0 when a user starts it by hand. Keys are typed
+at virtual times. Cooked mode collects lines, lets the user correct them and turns Ctrl-C into SIGINT. Raw and cbreak
+modes pass on each key. Input is not echoed, because the output of two writers would be mixed on one console. For a node
+without keys, no descriptor is a terminal. The host's own terminal is never used.
+"""
 
 from __future__ import annotations
 
@@ -30,7 +36,7 @@ _NOT_A_TERMINAL = (25, "Inappropriate ioctl for device")
 
 
 def cooked_attributes() -> list[Any]:
-    """Return the default settings of `termios.tcgetattr`."""
+    """Return the result of `termios.tcgetattr` for a terminal whose settings were never changed."""
     controls: list[Any] = [b"\x00"] * 32
     for name, character in _CONTROLS.items():
         controls[getattr(termios, name)] = character
@@ -41,7 +47,14 @@ def cooked_attributes() -> list[Any]:
 
 
 class Terminal:
-    """A terminal, as seen by the node that runs on it."""
+    """A terminal, as seen by the node that runs on it.
+
+    Args:
+        universe: universe of the node.
+        keys: texts and numbers in the order of typing. Each text is typed at once, 0.1 s after the item before it. A
+            number is an additional wait in seconds.
+        on_signal: called with SIGINT or SIGQUIT when its key, such as Ctrl-C, is typed in cooked mode.
+    """
 
     def __init__(self, universe: Universe, keys: Sequence[Key], on_signal: Callable[[int], object]) -> None:
         self.blocking = True
@@ -130,7 +143,11 @@ class Terminal:
         return self.ready
 
     def read(self, size: int) -> bytes:
-        """`os.read`: at most `size` bytes, of one line in cooked mode; b"" at the end of the file."""
+        """`os.read`: at most `size` bytes, of one line in cooked mode; b"" at the end of the file.
+
+        Raises:
+            BlockingIOError: if no input is available and the file is non-blocking.
+        """
         if not self._wait_to_read():
             return b""
         if self._attributes[LFLAG] & termios.ICANON:
@@ -153,12 +170,12 @@ class Terminal:
         return self.wait(_number(controls[termios.VTIME]) * _VTIME_S if polled else None)
 
     def put_back(self, data: bytes) -> None:
-        """Put back bytes for the next read."""
+        """Put back bytes that were read before, so that the next read begins with them."""
         if data:
             self._chunks.insert(0, data)
 
     def flush(self) -> None:
-        """`termios.tcflush`: discard unread input."""
+        """`termios.tcflush`: discard typed input that has not been read."""
         self._chunks.clear()
         self._line.clear()
 
@@ -177,12 +194,16 @@ class Terminal:
 
 
 def _number(control: Any) -> int:
-    """Return VMIN and VTIME with bytes or numbers as Python gives them."""
+    """Return VMIN or VTIME as a number; programs set them as bytes or as numbers."""
     return control if isinstance(control, int) else ord(control)
 
 
 def terminal_of(universe: Universe, file: Any) -> Terminal:
-    """Return the terminal of a file."""
+    """Return the terminal of a file.
+
+    Raises:
+        termios.error: if the file is not a terminal.
+    """
     number = descriptor(file)
     if universe.terminal is None or number not in _STANDARD:
         raise termios.error(*_NOT_A_TERMINAL)

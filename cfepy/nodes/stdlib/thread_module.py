@@ -1,5 +1,8 @@
-"""`_thread` on the kernel, on which the standard library's own `threading`, `queue` and `concurrent.futures`
-are based.
+"""`_thread` on the kernel, on which the standard library's own `threading`, `queue` and `concurrent.futures` are based.
+
+A thread is a task with the priority of the thread that starts it. `threading.local` stores values by task: greenlet
+tasks share one OS thread, and CPython's own `threading.local` stores values by OS thread. From Python 3.13 on
+`threading` is based on joinable threads and their handles.
 """
 
 from __future__ import annotations
@@ -90,8 +93,8 @@ class ThreadHandle:
 
     Args:
         gate: a fresh lock of the universe; it is held until the thread is done.
-        ident: of a thread that runs already.
-        kernel: its observer is told which tasks have observed the end.
+        ident: identifier of a thread that already runs; None for a thread to be started.
+        kernel: its observer learns which tasks have seen the end of the thread.
     """
 
     def __init__(self, gate: Any, ident: int | None = None, kernel: Kernel | None = None) -> None:
@@ -229,7 +232,12 @@ def _body(
 
 
 def show_thread_error(universe: Universe, args: Any) -> None:
-    """`threading.excepthook`: an error ends the thread and not the node."""
+    """`threading.excepthook`: an error ends the thread and not the node.
+
+    Args:
+        universe: universe of the node.
+        args: the argument of `threading.excepthook`.
+    """
     if issubclass(args.exc_type, (TaskExit, SystemExit)):
         return
     error = args.exc_value if args.exc_value is not None else args.exc_type()
@@ -241,7 +249,11 @@ def show_thread_error(universe: Universe, args: Any) -> None:
 
 
 def fix_threading(universe: Universe, module: Any) -> None:
-    """Fix `threading` after loading: threads hash by serial number, and checking an event takes CPU time."""
+    """Fix `threading` after loading: threads hash by serial number, and checking an event takes CPU time.
+
+    `concurrent.futures` iterates over a set of threads. Without the CPU time, a loop that polls `event.is_set()` would
+    never let other tasks run.
+    """
     is_set, make_invoke = module.Event.is_set, module._make_invoke_excepthook
 
     def make_quiet_invoke() -> Callable[[Any], None]:

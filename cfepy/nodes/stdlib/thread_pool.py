@@ -1,4 +1,8 @@
-"""`multiprocessing.pool` of a node: `ThreadPool`, which uses the node's own threads and no processes."""
+"""`multiprocessing.pool` of a node: `ThreadPool`, which uses the node's own threads and no processes.
+
+This file is executed in each node. `cfepy.nodes.refused_modules` refuses processes. The semantics are those of Python's
+library reference, "multiprocessing.pool".
+"""
 
 from __future__ import annotations
 
@@ -16,7 +20,14 @@ Done = Callable[[Any], object] | None
 
 
 class AsyncResult:
-    """Result of a call that may not have ended."""
+    """Result of a call that may not have ended.
+
+    Args:
+        parts: futures of the calls; several for `map`.
+        single: whether there is one part, whose result is the whole result.
+        callback: called with the result once it is available.
+        error_callback: called with the exception if a call fails.
+    """
 
     def __init__(self, parts: list[Future[Any]], single: bool, callback: Done, error_callback: Done) -> None:
         self._parts, self._single = parts, single
@@ -55,7 +66,11 @@ class AsyncResult:
         return self._event.is_set()
 
     def successful(self) -> bool:
-        """Return whether the call ended without an exception."""
+        """Return whether the call ended without an exception.
+
+        Raises:
+            ValueError: if the result is not available yet.
+        """
         if not self.ready():
             raise ValueError(f"{self!r} not ready")
         return self._error() is None
@@ -65,7 +80,14 @@ class AsyncResult:
         self._event.wait(timeout)
 
     def get(self, timeout: float | None = None) -> Any:
-        """Return the result, or raise the exception of the call."""
+        """Return the result, or raise the exception of the call.
+
+        Args:
+            timeout: longest wait in seconds; None for no limit.
+
+        Raises:
+            multiprocessing.TimeoutError: if the result is not available in time.
+        """
         if not self._event.wait(timeout):
             raise TimeoutError
         error = self._error()
@@ -87,7 +109,11 @@ class _Results(Iterator[Any]):
         return next(self._parts).result()
 
     def next(self, timeout: float | None = None) -> Any:
-        """Return the next result, waiting at most so many s."""
+        """Return the next result, waiting at most `timeout` seconds, None for no limit.
+
+        Raises:
+            multiprocessing.TimeoutError: if the result is not available in time.
+        """
         try:
             return next(self._parts).result(timeout)
         except FutureTimeoutError:
@@ -95,7 +121,13 @@ class _Results(Iterator[Any]):
 
 
 class ThreadPool:
-    """Pool of threads."""
+    """Pool of threads.
+
+    Args:
+        processes: number of threads; None for one, because there is one processor.
+        initializer: called in each thread with `initargs`.
+        initargs: arguments of `initializer`.
+    """
 
     def __init__(
         self,

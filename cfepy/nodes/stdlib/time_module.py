@@ -39,7 +39,12 @@ def cfepy_module(universe: Universe) -> ModuleType:
 
 
 class VirtualClock:
-    """Clock of a universe. Its functions are methods, because bound methods, like C functions, are not bound again."""
+    """Clock of a universe. Its functions are methods, because bound methods, like C functions, are not bound again.
+
+    Args:
+        universe: the universe that uses the clock.
+        epoch_ns: time of day in ns since 1970 (UTC) at which the kernel's clock is 0.
+    """
 
     def __init__(self, universe: Universe, epoch_ns: int) -> None:
         self._universe = universe

@@ -1,4 +1,8 @@
-"""User of a program: one ordinary user on every computer, who owns all files that the program sees."""
+"""User of a program: one ordinary user on every computer, who owns all files that the program sees.
+
+A run thus does not depend on the user who starts it: other users can replay a journal that root recorded. `pwd` and
+`grp` know this user and root.
+"""
 
 from __future__ import annotations
 
@@ -58,7 +62,11 @@ def identity(universe: Universe) -> dict[str, Any]:
 
 
 def _check(ids: tuple[int, ...], own: int) -> None:
-    """Check ids that a program sets: an ordinary user may set only its own."""
+    """Check ids that a program sets: an ordinary user may set only its own.
+
+    Raises:
+        PermissionError: if an id is not the user's own.
+    """
     if not set(ids) <= {own, KEEP}:
         raise PermissionError(errno.EPERM, os.strerror(errno.EPERM))
 
