@@ -221,7 +221,7 @@ class HkApp:
             self._combiner.use_table(entries)
 
     def _validate_copy_table(self) -> None:
-        """Validate a new table. HK reports a failure and continues."""
+        """Validate a new table. If that fails, HK sends an error event and continues."""
         try:
             _expect_success(self._cfe.tbl.validate(self._copy_table))
         except CfeError as error:

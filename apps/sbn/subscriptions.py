@@ -117,7 +117,12 @@ class Subscriptions:
     # -- of peers ----------------------------------------------------------------------------------------------------
 
     def from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
-        """Add a peer's subscriptions (SBN_ProcessSubsFromPeer)."""
+        """Add a peer's subscriptions (SBN_ProcessSubsFromPeer).
+
+        Raises:
+            Malformed: if the payload is too short for its subscriptions.
+            CfeError: if the Software Bus has no room for a subscription.
+        """
         for each in self._read(peer, payload):
             self._subscribe(peer, _wanted(peer, each.msg_id))
 
@@ -136,7 +141,11 @@ class Subscriptions:
         peer.subs[msg_id] = None
 
     def unsub_from_peer(self, peer: SubscribedPeer, payload: bytes) -> None:
-        """Remove a peer's subscriptions (SBN_ProcessUnsubsFromPeer)."""
+        """Remove a peer's subscriptions (SBN_ProcessUnsubsFromPeer).
+
+        Raises:
+            Malformed: if the payload is too short for its subscriptions.
+        """
         for each in self._read(peer, payload):
             msg_id = _wanted(peer, each.msg_id)
             if msg_id in peer.subs:

@@ -188,8 +188,8 @@ class EventServices(EventCore):
         Args:
             event_id: see `send_event`.
             event_type: see `send_event`.
-            app_id: the application of the event, whose filters apply; the enabled types are those of the calling
-                application.
+            app_id: the application of the event, whose filters apply. The enabled types of the calling application
+                apply.
             text: see `send_event`.
             values: see `send_event`.
 

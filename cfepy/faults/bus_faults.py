@@ -204,7 +204,7 @@ def faulty(base: type[SoftwareBus], switchboard: MessageSwitchboard) -> type[Sof
                     timeout_ms = max(0, -((self.kernel.now - end_ns) // NS_PER_MS))
 
         def _taken(self, packet: bytes, pipe: Pipe) -> bytes | None:
-            """Return the bytes for the receiver of a message; None if there are none now."""
+            """Return the bytes that the receiver gets for a message from its pipe; None if it gets none now."""
             if type(packet) is Passed:
                 return bytes(packet)
             faults = switchboard.on_receive(packet, pipe)

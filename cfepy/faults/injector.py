@@ -34,6 +34,9 @@ Strike = Callable[[Processor], object]
 class FaultInjector(Attachment):
     """Injects the faults of a plan.
 
+    Give it to `Mission(attachments=[...])` as the last attachment. Scripts and bags before it then see each message
+    after the faults that change it for all receivers.
+
     Args:
         plan: the faults.
 
@@ -131,7 +134,7 @@ class FaultInjector(Attachment):
         return call
 
     def _prepare(self, fault: Fault) -> None:
-        """Schedule a fault that is not on messages."""
+        """Schedule a fault that does not affect messages, at its times."""
         gate, report, kernel = self._gates[fault.name], self.report, self._kernel
         if fault.kind == "lose_1hz":
             self._power_ups.append(LostSignal(fault, gate, report, kernel).power_up)

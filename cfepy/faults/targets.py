@@ -33,10 +33,12 @@ class Targets:
 
     Attributes:
         apps: the mission's own applications.
-        messages: names of messages that have a receiver, with their number.
+        messages: names of messages that have a receiver, with how many of each were sent.
         pipes: pipes of the mission's own applications.
         tables: full names of tables.
         files: paths of table files.
+        begin_ns: start of the virtual time in which faults may happen, in ns.
+        end_ns: end of that time, in ns.
     """
 
     apps: tuple[str, ...] = ()
@@ -169,10 +171,12 @@ class _Maker:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """Possible names in a mission.
+    """Names in a mission that faults can name as their target.
 
     Attributes:
         messages: all names of messages that were sent or subscribed to.
+        pipes: names of all pipes.
+        tables: full names of all tables.
         tasks: names of tasks that sent a message, or existed at the end.
         targets: choices for a random plan.
     """
@@ -193,7 +197,7 @@ def targets_of(spec: MissionSpec) -> Targets:
 
 @dataclass(frozen=True, slots=True)
 class _Version:
-    """Return a mission's current files: path, time stamp and size of each."""
+    """A mission's current files: path, time stamp and size of each."""
 
     spec: MissionSpec = field(hash=False)
     stamps: tuple[tuple[str, int, int], ...]
@@ -205,7 +209,7 @@ def _targets_of(version: _Version) -> Targets:
 
 
 def _stamps(spec: MissionSpec) -> Iterator[tuple[str, int, int]]:
-    """Return the files in its folder, and other files that it consists of."""
+    """Yield path, time stamp in ns and size in bytes of the files in its folder, and of its files elsewhere."""
     named = (spec.script, spec.mission_file, *spec.scripts.values())
     inside = spec.folder.iterdir() if spec.folder.is_dir() else ()
     for path in sorted({*inside, *filter(None, named)}):

@@ -30,11 +30,14 @@ class When:
 
     Attributes:
         at_ns: virtual times in ns. A fault with occasions happens at the next one after each of them.
+        after_ns: start of the window of virtual time, in ns.
+        until_ns: end of the window, which is not included; None for the end of the run.
         number: which occasions within the window, from 1; any if empty.
         every: only every n-th of them.
-        probability: probability of each that is left, 0 to 1.
+        probability: probability of a fault at each remaining occasion, 0 to 1.
         count: maximum number of occurrences; None for no limit.
-        explored: maximum number of occurrences chosen by the schedule; 0 if it is not asked.
+        explored: maximum number of occurrences, if the schedule decides at which of these occasions it happens;
+            otherwise 0.
     """
 
     at_ns: tuple[int, ...] = ()
@@ -116,7 +119,10 @@ def asker(kernel: Kernel, name: str) -> Callable[[], bool]:
 
 
 class OpenCalls:
-    """Calls of applications as occasions of faults, if the kernel explores."""
+    """Calls of applications as occasions of faults, if the kernel explores.
+
+    An occasion comes before each call, and before each charge of CPU time: wherever other tasks could run.
+    """
 
     def __init__(self) -> None:
         self._open: list[tuple[str | None, Gate, Callable[[], object]]] = []

@@ -1,8 +1,8 @@
 """A mission in the hands of a program: flown step by step, or examined after its flight.
 
 The actions of a test, a notebook or a script on a mission belong here: let it run, send and publish, wait for events
-and messages, and read what was sent. Flying a run is in `cfepy.pilot`, and the pytest parts are in `cfepy.testing`. The
-central file is `cfepy/flight/flight.py`.
+and messages, and read the sent packets. Flying a run is in `cfepy.pilot`, and the pytest parts are in `cfepy.testing`.
+The central file is `cfepy/flight/flight.py`.
 """
 
 from __future__ import annotations

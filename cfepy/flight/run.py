@@ -232,8 +232,8 @@ class Run:
         return [problem.text for problem in problems_of(self.mission, endless_waits(self.mission))]
 
     def message_class(self, kind: str) -> Any:
-        """Return the class of a ROS message type, such as "std_msgs/Float64", including those of the mission's own
-        packages.
+        """Return the class of a ROS message type, such as "std_msgs/Float64". The mission's own packages are searched
+        too.
 
         Raises:
             UsageError: if the type is unknown.

@@ -37,7 +37,12 @@ ROS_PACKETS = "rospy_shim.parameters.table"
 
 
 class Decoded(NamedTuple):
-    """A decoded packet."""
+    """A decoded packet.
+
+    Attributes:
+        time_s: time in its header, in s; None for a command.
+        problem: why `values` is empty although the packet has a payload.
+    """
 
     name: str
     msg_id: int

@@ -147,7 +147,11 @@ def values_at(messages: Sequence[Any], steps: Sequence[Step]) -> list[Any]:
 
 
 def array_of(values: Sequence[Any]) -> NDArray[Any]:
-    """Return values as an array, with the first axis counting them."""
+    """Return values as an array, with the first axis counting them.
+
+    Arrays of equal length become rows. Times and durations become float64 in s, and a missing number becomes NaN.
+    Texts, structs and arrays of different lengths become objects.
+    """
     import numpy
 
     if _are_rows(values):

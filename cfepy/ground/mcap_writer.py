@@ -1,6 +1,6 @@
 """Writing MCAP files with the library mcap, which is used only here (`pip install 'cfepy[mcap]'`).
 
-The same messages give the same file: it contains no time or name of the computer.
+The same messages give the same file, because no clock time and no name of this computer is written to it.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ class McapWriter:
         self._writer.add_metadata(name, dict(values))
 
     def attachment(self, log_time: int, create_time: int, name: str, media_type: str, data: bytes) -> None:
-        """Attach a file; times in ns."""
+        """Write an attachment: a file that accompanies the messages. Times are in ns."""
         self._writer.add_attachment(create_time, log_time, name, media_type, data)
 
     def flush(self) -> None:

@@ -55,7 +55,11 @@ def empty_mission() -> MissionSpec:
 
 
 def _package_paths(spec: MissionSpec) -> dict[str, str]:
-    """Return where the mission's nodes find packages, whose message types a program needs to communicate with them."""
+    """Return the variables with which the mission's nodes find packages.
+
+    A program that communicates with these nodes needs their message types. For a mission without nodes, the variables
+    are the user's own.
+    """
     nodes = spec.ros.nodes.values()
     if not nodes:
         return mission_environment()
@@ -74,6 +78,9 @@ def ground_node_ended(mission: Mission) -> bool:
 
 def with_player(spec: MissionSpec, bag: str, options: str = "") -> MissionSpec:
     """Return a mission in which a bag is played, with its time on /clock if the mission's nodes use simulated time.
+
+    The player starts in the bag's folder and gets the bag's name alone. The player prints that name, and the run must
+    not depend on where the folder is.
 
     Args:
         spec: the mission.

@@ -1,7 +1,10 @@
 """A whole recording, a bag or an MCAP file, possibly damaged: its contents, and a rewritten copy of the readable part.
 
-summary_of("run.mcap").text() rewrite("cut.bag", "whole.bag")  # what is left of it rewrite("run.mcap", "run.bag",
-strict=True)  # a conversion: nothing may be lost
+For example:
+
+    summary_of("run.mcap").text()
+    rewrite("cut.bag", "whole.bag")  # the readable part
+    rewrite("run.mcap", "run.bag", strict=True)  # a conversion: nothing may be lost
 """
 
 from __future__ import annotations
@@ -63,9 +66,14 @@ class RecordingSummary:
     """Contents of a recording.
 
     Attributes:
+        file: name of the file.
+        format: ".bag" or ".mcap".
+        size: size in bytes.
         finished: whether it has its end and index.
+        start_ns: time of the first message, in ns; None without messages.
+        end_ns: time of the last message, in ns; None without messages.
         chunks: number of chunks, by compression.
-        topics: by name.
+        topics: the topics, sorted by name.
         losses: parts that could not be read.
         doubtful: number of messages in chunks with a wrong checksum.
         metadata: metadata of an MCAP file, by name.

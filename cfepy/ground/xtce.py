@@ -369,7 +369,7 @@ def _has_time(msg_id: int) -> bool:
 
 
 class _Message:
-    """Position in a message; `fixed_bytes` is the offset, None after something of variable length."""
+    """Position in a message; `fixed_bytes` is the offset in bytes, None after a part of variable length."""
 
     def __init__(self, library: Any, types: TypeSet, name: Callable[[str], str]) -> None:
         self.fixed_bytes: int | None = 0

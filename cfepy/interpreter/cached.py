@@ -1,4 +1,4 @@
-"""A cached property that takes no lock of the host.
+"""A property that is computed at its first use and then kept, without a lock of the host.
 
 `functools.cached_property` of Python 3.11 holds one real lock for all objects of a class while it computes the value. A
 task that waits inside would stop the whole simulated computer, and a process forked meanwhile would never get the lock.

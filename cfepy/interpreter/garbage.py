@@ -61,7 +61,7 @@ _runs = 0
 
 
 def freeze() -> None:
-    """Exclude all present objects from collections, if the interpreter can."""
+    """Exclude all present objects from garbage collection, if the interpreter can."""
     if CAN_FREEZE:
         gc.freeze()
 

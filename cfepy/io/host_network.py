@@ -183,7 +183,10 @@ class HostNetwork:
             self._tell(f"a datagram for port {target.port} could not be sent: {error.strerror}")
 
     def _for_replies(self, port: int) -> socket.socket:
-        """Return the sender for a port that is not open on this computer: a socket that also receives the answers."""
+        """Return the socket that sends for a port that is not open on this computer, and that receives the answers.
+
+        If the mission has closed the port meanwhile, the answers of the returned socket are not read.
+        """
         if (False, port) not in self._mission.network.datagrams.bound:
             return self._anonymous
         opened = self._replies.get(port)
@@ -260,7 +263,7 @@ def _is_public(endpoint: Endpoint) -> bool:
 
 
 class HostConnection:
-    """Transfers bytes in both directions, with flow control.
+    """Transfers bytes in both directions. A side that does not read holds the other side back.
 
     Args:
         host: the real socket, connected.

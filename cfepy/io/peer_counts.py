@@ -19,6 +19,8 @@ class PeerCount:
         name: name of the topic or service.
         peer: name of the outside node, or its URI if the name is not known yet.
         direction: "in" or "out", of messages or of a service's requests.
+        messages: number of messages that passed.
+        size: total size of these messages, in bytes.
         dropped: messages lost because the peer was too slow, or the bus did not take them.
         connections: number of connections.
         ended: connections that the other side ended, or that broke.

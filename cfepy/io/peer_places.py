@@ -42,7 +42,10 @@ class PeerPlaces:
         return len(self._new) + len(self._idle) + len(self._kept)
 
     def take(self, peer: Guarded, now_s: float) -> None:
-        """Add a connection. If the limit is reached, the oldest that may be closed is closed."""
+        """Add a connection. If the limit is reached, close the oldest connection that may be closed.
+
+        If none may be closed, close the new connection.
+        """
         while len(self) >= self._most:
             other = next(iter(self._new), None) or next(iter(self._idle), None)
             if other is None:

@@ -109,7 +109,7 @@ class PeerSocket:
             self._watch()
 
     def pause(self) -> None:
-        """Pause receiving."""
+        """Stop receiving for now. Data stays in the other program until then."""
         self._is_paused = True
         self._watch()
 
@@ -169,7 +169,7 @@ class PeerSocket:
             self._lost(why)
 
     def _watch(self) -> None:
-        """Update the events in the selector."""
+        """Update the events for which the selector watches the socket."""
         reads = 0 if self._is_paused else EVENT_READ
         writes = EVENT_WRITE if self._under_way or self._waiting else 0
         wanted, watched = reads | writes if self.is_open else 0, self._watched

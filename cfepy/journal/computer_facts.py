@@ -59,7 +59,10 @@ def host_facts() -> dict[str, str]:
 
 
 def environ_of(spec: MissionSpec) -> dict[str, str]:
-    """Return the variables that a mission can see, without those whose names suggest a secret."""
+    """Return the environment variables that a mission can see, without variables whose names suggest a secret.
+
+    A mission with a startup script sees a few variables. A launch file or a single node sees all.
+    """
     sees_all = spec.startup is not None and spec.mission_file is None
     names = sorted(os.environ) if sees_all else KEPT_ENVIRONMENT
     return {name: os.environ[name] for name in names if name in os.environ and not _SECRET.search(name)}

@@ -43,6 +43,7 @@ class MissionFile:
     Attributes:
         path: absolute path.
         size: size in bytes.
+        sha256: hash of the contents, in hexadecimal; empty if the contents could not be read.
         packed: compressed contents; None if the journal does not contain them.
         mode: its permissions.
     """

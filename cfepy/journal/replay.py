@@ -325,7 +325,7 @@ class Difference:
 
     Attributes:
         after: the records agree up to there.
-        before: they differ there; its numbers are those of the journal.
+        before: they differ there; its numbers come from the journal.
         lines: the replay's records between the two, as text.
     """
 

@@ -109,7 +109,10 @@ def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[Mi
 
 @contextlib.contextmanager
 def _unpacked(journal: Journal) -> Iterator[tuple[str, Collection[str]]]:
-    """A folder with files at their old paths, and paths that did not exist."""
+    """Provide a folder with files at their old paths, and the paths that did not exist.
+
+    Meanwhile, tracebacks show the lines of these files, not of the computer's files at the same paths.
+    """
     with tempfile.TemporaryDirectory(prefix="cfepy-replay-") as folder:
         root = os.path.realpath(folder)
         try:
@@ -224,8 +227,9 @@ def moved_plan(header: Header, root: str) -> RunPlan:
 
 
 def _moved_mission(text: str, cwd: str, root: str) -> str:
-    """Return the current place of a mission that flew together with that of the journal; one included in cfepy
-    stays.
+    """Return the current place of a mission that flew together with the journal's mission.
+
+    A mission that is included in cfepy keeps its place.
     """
     mission, _ = boot_of(text)
     place = root + os.path.normpath(os.path.join(cwd, mission))

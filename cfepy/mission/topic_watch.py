@@ -73,8 +73,7 @@ class TopicWatch(PacketWatch):
     def begin(self, mission: Mission) -> None:
         self._mission = mission
 
-    # -- observed packets
-    # ------------------------------------------------------------------------------------------------
+    # -- observed packets ----------------------------------------------------------------------------------------------
 
     def _graph(self) -> Graph | None:
         ros = None if self._mission is None else self._mission.ros

@@ -161,7 +161,7 @@ class AnswerJudge(Judge):
 
 
 class AgainJudge(Judge):
-    """Reports if no matching message came for too long, since the start or since the last one."""
+    """Reports if no matching message came for too long, since the invariant began to apply or since the last one."""
 
     def __init__(self, invariant: Invariant, latest: Latest, report: Report, now_ns: int) -> None:
         super().__init__(invariant, latest, report)

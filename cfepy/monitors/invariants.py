@@ -62,9 +62,11 @@ class Invariant:
         when: condition; it applies only to messages for which this holds.
         holds: condition that must hold for each of them.
         answer: answer that must follow each of them.
-        again_ns: longest virtual time between such messages; None for no limit.
+        again_ns: longest virtual time between such messages, and before the first one, in ns; None for no limit.
         eventually: condition that must hold for at least one message by the end of the run.
-        after_ns: virtual time from which on it applies.
+        file: Python file of the mission with `function`; None without it.
+        function: function of the mission that judges the messages; empty for none.
+        after_ns: virtual time in ns from which on it applies.
     """
 
     name: str

@@ -17,7 +17,10 @@ from cfepy.units import NS_PER_S
 
 
 class Fields(dict[str, Any]):
-    """Fields of a packet: `msg.PacketID.AppName`, or as a dict."""
+    """Fields of a packet: `msg.PacketID.AppName`, or as a dict.
+
+    A packet without a declared layout has one field `data`: its bytes after the header.
+    """
 
     def __getattr__(self, name: str) -> Any:
         try:

@@ -27,7 +27,10 @@ class Sent(NamedTuple):
 
     Attributes:
         number: number of the transmission, from 1.
-        at_ns: virtual time.
+        at_ns: virtual time in ns.
+        msg_id: its MsgId.
+        sequence: its sequence count, as subscribers see it.
+        size: its length in bytes.
         task: the sender.
     """
 
@@ -52,8 +55,7 @@ class Observer(Attachment):
         self._by_mark: dict[bytes, Task] = {}
         self._is_console = False
 
-    # -- overridden by subclasses
-    # ---------------------------------------------------------------------------------------
+    # -- overridden by subclasses --------------------------------------------------------------------------------------
 
     def on_run(self, task: Task, at_ns: int) -> None:
         """A task got the processor."""

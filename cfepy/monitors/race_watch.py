@@ -106,8 +106,7 @@ class RaceWatch(Attachment):
         self._mission: Mission | None = None
         self._is_over = False
 
-    # -- what orders tasks
-    # -----------------------------------------------------------------------------------------------
+    # -- what orders tasks ---------------------------------------------------------------------------------------------
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         made: type[SoftwareBus] = listened(base, self)
@@ -265,7 +264,7 @@ class RaceWatch(Attachment):
                     return
 
     def _frames(self) -> Frames:
-        """Return the lines of mission code of the running task, innermost first."""
+        """Return the lines of mission code of the running task, from the innermost one up to its caller outside."""
         assert self._mission is not None
         files = self._mission.accesses.files
         found = []

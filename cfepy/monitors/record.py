@@ -55,7 +55,11 @@ class Inversion(NamedTuple):
 
     Attributes:
         at_ns: start of the wait.
+        victim: name of the task that waited.
+        victim_priority: its priority.
         what: lock, such as "semaphore SELECT".
+        holder: name of the task that had the lock when the wait began.
+        holder_priority: its priority.
         waited_ns: duration of the wait.
         others: name, priority and time of each task that ran meanwhile without being more urgent than the victim.
     """

@@ -52,7 +52,9 @@ class TrafficWatch(Observer):
     """Measures messages once the mission is OPERATIONAL and has settled, until the end of the run.
 
     Attributes:
-        arrivals: by MsgId and pipe name.
+        arrivals: times of arrival, by MsgId and pipe name.
+        sent: how many messages were sent, by MsgId.
+        lost: how many messages a pipe refused or dropped, by MsgId.
         end_ns: virtual time of the end of the run.
     """
 

@@ -23,7 +23,10 @@ _LENGTH = "I"
 
 
 class ComparedTrace(Trace):
-    """A trace with additional records for comparison, which its digest leaves out."""
+    """A trace with additional records for comparison.
+
+    Its digest leaves them out, so it is the same as the digest of a trace without them.
+    """
 
     __slots__ = ()
 

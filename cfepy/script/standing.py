@@ -36,7 +36,7 @@ class StandingScript:
 
     @property
     def is_waiting(self) -> bool:
-        """Whether a line or a file is waiting."""
+        """Whether a line or a file is waiting for an expected condition."""
         return any(run.is_waiting for run in self._runs)
 
     def add(self, text: str, file: str | Path, tell: Tell, stop_on_failure: bool = False) -> None:
@@ -69,7 +69,7 @@ class StandingScript:
         return wake_ns
 
     def give_up(self) -> int:
-        """Stop waiting; unwanted conditions are still watched for.
+        """Stop waiting for expected conditions. Unwanted conditions are still watched for.
 
         Returns:
             How many lines and files were given up.

@@ -54,6 +54,10 @@ def explore(
 ) -> pytest.MarkDecorator:
     """Run a test under many schedules, until it fails under one.
 
+    Each schedule is a run of the whole test, with new function-scoped fixtures, including `mission` and tmp_path. The
+    first schedule is fifo. When the test fails, the schedule is shrunk to the fewest deviations from fifo that still
+    fail. The failure shows these deviations, and the command that repeats the run. It works on functions and classes.
+
     Args:
         seeds: number of schedules; overridden by --cfepy-schedules.
         policy: "random", "pct", "abreast", several of them in turn, or "all" as in `cfepy explore`.

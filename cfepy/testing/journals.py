@@ -53,7 +53,7 @@ class FlightJournal:
         return self._path.replace(path)
 
     def drop(self) -> None:
-        """End and delete the journal."""
+        """End the journal and delete it, because it is not needed."""
         if not self._ended:
             self._ended = True
             self.recorder.__exit__(None, None, None)

@@ -296,6 +296,8 @@ def tables(
 def schedules(decisions: int = DECISIONS, *, most: int = 3, candidates: int = 3) -> st.SearchStrategy[str]:
     """Return a strategy for schedules with a few deviations from fifo, as for `mission(schedule=...)`: "at:42=1".
 
+    The schedules shrink to the fewest deviations, and then to the earliest ones.
+
     Args:
         decisions: approximate number of decisions in a run; later ones are as with fifo.
         most: maximum number of deviations.

@@ -51,7 +51,7 @@ class PlayParser(argparse.ArgumentParser):
 
 
 class CheckedPlayParser(PlayParser):
-    """A `PlayParser` that only checks the words."""
+    """A `PlayParser` that only checks whether the words are valid."""
 
     def error(self, message: str) -> NoReturn:
         """Raises ValueError, where a parser ends the process."""

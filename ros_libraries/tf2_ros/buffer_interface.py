@@ -1,4 +1,4 @@
-"""Transforms stamped data of any registered type (tf2_ros.buffer_interface).
+"""Transforms stamped data of any type that is registered here (tf2_ros.buffer_interface).
 
 Imports rospy and std_msgs.
 """

@@ -178,5 +178,5 @@ class Client:
 
 
 def _till_look(after_ns: int) -> int:
-    """Return when `wait_for_message` looks next, in ns from its beginning; not at once."""
+    """Return when `wait_for_message` looks at or after a time, both in ns from its beginning; not at once."""
     return max(-(-after_ns // LOOK_NS), 1) * LOOK_NS

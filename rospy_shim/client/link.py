@@ -239,7 +239,7 @@ class Link(TopicSide):
             self.topic.unsent = True
 
     def _hold_back(self) -> None:
-        """Wait for a free time slot, on a board with a maximum publishing rate."""
+        """Wait for a time slot in which nothing was sent yet, on a board with a maximum publishing rate."""
         kernel = self.node.kernel
         slot = kernel.now // self._slot_ns
         while slot <= self._slot:

@@ -202,7 +202,7 @@ class Subscription(TopicSide):
         self._calls = [(count, None), *self._calls]
 
     def close(self) -> None:
-        """Leave the graph. The serving task ends when it has returned from its callbacks."""
+        """Leave the graph. After this, the serving task ends once it has returned from its callbacks."""
         topic, self.topic = self.topic, None
         if self.node.subscriptions.get(self.name) is self:
             del self.node.subscriptions[self.name]

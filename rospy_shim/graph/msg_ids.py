@@ -128,7 +128,7 @@ def next_free(msg_id: int, taken: Mapping[int, str]) -> int:
 
 
 def msg_id_of(name: str) -> int:
-    """Return the MsgId of a name's hash: 0x0901 to 0x0FFF."""
+    """Return the default MsgId of a name: 0x0901 to 0x0FFF, from a hash; /rosout has 0x0900."""
     if name == ROSOUT:
         return ROSOUT_MSG_ID
     digest = hashlib.blake2b(name.encode(), digest_size=8).digest()

@@ -357,7 +357,7 @@ class _Reader:
         self._read_all(tag.children, scope.inside(namespace))
 
     def _check_clear_params(self, attributes: Attributes, namespace: str | None) -> None:
-        """Check `clear_params`; there is nothing to clear at the start of a run."""
+        """Check that `clear_params` is valid. It has no effect: there is nothing to clear at the start of a run."""
         wanted = bool(attributes.tag.attributes.get("clear_params")) and attributes.flag("clear_params")
         if wanted and namespace is None and not attributes.failed:
             attributes.wrong("requires ns=, the namespace to clear", "clear_params")

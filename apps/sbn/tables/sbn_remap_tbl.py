@@ -1,4 +1,4 @@
-"""SBN's default remapping, NASA's: one MsgId changes at processor 3, all others stay.
+"""SBN's default remapping, NASA's: one MsgId changes at processor 3, all others stay the same.
 
 After a change, `python -m apps.sbn.tables.sbn_remap_tbl` rewrites sbn_remap_tbl.tbl.
 """

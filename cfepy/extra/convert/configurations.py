@@ -67,7 +67,10 @@ def configuration_headers(headers: Iterable[str], program: Program) -> dict[str,
 
 
 def configuration_script(header: str, program: Program) -> Path | None:
-    """Return the script for a configuration's header; None for another header, or one without a script."""
+    """Return the script that a configuration's header is generated from.
+
+    Returns None if it is another header, or if the package has no such script.
+    """
     package, slash, name = header.partition("/")
     stem = name.removesuffix(SUFFIX)
     if package != program.package.name or not slash or not name.endswith(SUFFIX) or not stem.isidentifier():

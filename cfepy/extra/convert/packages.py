@@ -123,7 +123,7 @@ class Program:
     Attributes:
         package: its package.
         type: of the node.
-        sources: files, including those of the libraries of nearby packages.
+        sources: source files, including the source files of libraries in nearby packages.
         includes: folders of headers, the first searched first.
         definitions: the compiler's -D, without -D.
         outside: linked libraries without sources here, as written.

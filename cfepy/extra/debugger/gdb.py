@@ -33,7 +33,7 @@ def gdb_script(mission: Mission, folder: Path, function: str) -> str:
 
     Args:
         mission: the flying mission.
-        folder: receives copies of the objects, because those of the mission may be only in its journal.
+        folder: receives copies of the objects, because the mission's objects may be only in its journal.
         function: function of the first stop; empty for none.
     """
     runtime = mission.processor.compiled

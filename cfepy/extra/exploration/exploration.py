@@ -56,8 +56,8 @@ class Told:
         finding: the failure, and the schedules that showed it.
         shrunk: its schedule with the fewest preemptions; None if there is none, or it was not searched for.
         story: the course of the run under that schedule.
-        inversions: the priority inversions before it, a sentence each, the longest first; only those of the failed task
-            if it had any.
+        inversions: the priority inversions before it, a sentence each, the longest first. If the failed task had
+            inversions, only its own.
         repeats: whether a second run under the schedule that showed it fails in the same way. If not, the failure does
             not depend on the schedule alone.
         is_steady: whether that run had the same trace.

@@ -30,7 +30,7 @@ NONE = "none"
 
 
 class Result(NamedTuple):
-    """A result: its name, a digest of all of it, and a short text."""
+    """A result: its name, a digest of all of it, and a short text for the user."""
 
     name: str
     digest: str

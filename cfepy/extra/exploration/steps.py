@@ -203,7 +203,7 @@ class StepLog:
         self._kernel.current.passed += 1
 
     def close(self) -> None:
-        """Stop recording."""
+        """Stop recording. Later operations are not part of the log."""
         self._try()
         self._is_open = False
 

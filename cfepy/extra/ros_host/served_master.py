@@ -113,7 +113,7 @@ class ServedMaster:
     # -- the mission and outside nodes -------------------------------------------------------------------------------
 
     def look(self, seen: OwnGraph, now_s: float) -> None:
-        """Notify outside subscribers of changed publishers."""
+        """Notify outside subscribers of a topic if its publishers have changed."""
         registry = self._registry
         publishers, told = registry.publishers(), {}
         for topic, held in registry.subscribers().items():

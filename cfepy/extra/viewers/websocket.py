@@ -75,11 +75,11 @@ class WebSocket:
 
     @property
     def unfinished(self) -> int:
-        """Estimated bytes of an incomplete message."""
+        """Approximate number of received bytes of an incomplete message."""
         return self._unfinished + sum(map(len, self._parts))
 
     def ping(self) -> None:
-        """Send a ping (RFC 6455, 5.5.2)."""
+        """Send a ping, to which the client must reply (RFC 6455, 5.5.2)."""
         if self.is_open and self._protocol.state.name == OPEN:
             self.has_pinged = True
             self._protocol.send_ping(b"")

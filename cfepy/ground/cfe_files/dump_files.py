@@ -37,7 +37,7 @@ class Column(NamedTuple):
 
 
 class DumpKind(NamedTuple):
-    """A kind of file: its name, size and reader of a record, and columns."""
+    """A kind of file: its name, the size of a record in bytes, the reader of a record, and the columns to show."""
 
     name: str
     size: int
@@ -47,7 +47,13 @@ class DumpKind(NamedTuple):
 
 @dataclass(slots=True)
 class DumpFile:
-    """A file that was read: its records, and the reason if it is incomplete."""
+    """A file that was read: its records, and the reason if it is incomplete.
+
+    Attributes:
+        lines: the lines of a system log.
+        about: the metadata before the records of performance data.
+        problem: why the file is incomplete; empty if it is complete.
+    """
 
     kind: str
     header: FileHeader
@@ -58,8 +64,7 @@ class DumpFile:
     problem: str = ""
 
 
-# -- formats of values
-# ---------------------------------------------------------------------------------------------------
+# -- formats of values -------------------------------------------------------------------------------------------------
 def hexadecimal(value: int) -> str:
     """Return a MsgId or another number in hexadecimal."""
     return f"0x{value:04X}"
@@ -271,7 +276,13 @@ def value_at(record: Record, path: str) -> Any:
 
 @dataclass(slots=True)
 class Timing:
-    """Durations of a part in us; `open` are entries without an exit yet."""
+    """Durations of a part of the code, from each entry to its exit.
+
+    Attributes:
+        taken_us: durations in us.
+        open: times in us of entries without an exit yet.
+        unpaired: number of exits without an entry.
+    """
 
     taken_us: list[float] = field(default_factory=list)
     open: list[float] = field(default_factory=list)

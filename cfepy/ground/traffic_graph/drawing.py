@@ -121,8 +121,7 @@ class Drawing:
         rows = len(self._pipes.get(name, ())) + len(self._offers.get(name, ()))
         return Box(name, 2 * PAD + LINE * (2 + rows))
 
-    # -- drawing
-    # --------------------------------------------------------------------------------------------------------
+    # -- drawing -------------------------------------------------------------------------------------------------------
 
     def _lines(self, left: dict[str, Box], middle: dict[str, Box], right: dict[str, Box]) -> None:
         for name, box in left.items():

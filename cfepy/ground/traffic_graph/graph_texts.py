@@ -25,7 +25,7 @@ def graph_text(graph: MissionGraph, width: int = 100) -> str:
 
 
 def _wrapped(line: str, width: int) -> str:
-    """Return a line wrapped with indentation to its second word; text in brackets stays together."""
+    """Return a line, wrapped below its own second word if it is too long. Text in brackets stays together."""
     own = line[: len(line) - len(line.lstrip())]
     below = own + " " * 7 if own == _MARGIN else own + "  "
     head, bracket, rest = line.lstrip().partition("  (")

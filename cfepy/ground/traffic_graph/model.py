@@ -94,7 +94,11 @@ class MissionGraph:
         return ", ".join(f"{count} {what}{'' if count == 1 else 's'}" for what, count in counts.items())
 
     def of_interest(self) -> MissionGraph:
-        """Return the graph without the parts that every mission has."""
+        """Return the graph without the parts that every mission has.
+
+        The services of cFE become one unit, and messages between them are left out. A log without subscribers and the
+        services that set log levels are left out too.
+        """
         core = {unit.name for unit in self.units if unit.kind == CORE}
         rest = [unit for unit in self.units if unit.name not in core]
         channels = tuple(filter(_is_of_interest, (_with_one_core(channel, core) for channel in self.channels)))

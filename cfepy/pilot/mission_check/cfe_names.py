@@ -260,8 +260,7 @@ def _positional(function: _Function) -> list[str]:
     return [each.arg for each in (*function.args.posonlyargs, *function.args.args)]
 
 
-# -- kinds
-# ---------------------------------------------------------------------------------------------------------------
+# -- kinds -------------------------------------------------------------------------------------------------------------
 
 
 class _Reader:
@@ -407,8 +406,7 @@ def _expects_it(node: ast.AST) -> bool:
     return any(guard in ast.unparse(each.type) for each in handlers if each.type is not None for guard in GUARDS)
 
 
-# -- existing names
-# ------------------------------------------------------------------------------------------------------
+# -- existing names ----------------------------------------------------------------------------------------------------
 
 
 @cache

@@ -98,7 +98,10 @@ def check_nodes(scripts: Iterable[NodeScript]) -> Iterator[MissionProblem]:
     """Check node scripts: their syntax, and the messages that they import.
 
     Args:
-        scripts: the scripts, in any order.
+        scripts: the scripts, in any order. A script that is given twice is read twice.
+
+    Yields:
+        The problems.
     """
     for script in scripts:
         error = sources.syntax_error(script.file)

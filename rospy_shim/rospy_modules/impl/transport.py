@@ -37,7 +37,7 @@ class Transport:
         """Return a file number for select.
 
         Raises:
-            NotImplementedError: a derived class does not define it.
+            NotImplementedError: if a derived class does not define the method.
         """
         raise NotImplementedError
 
@@ -55,7 +55,7 @@ class Transport:
         """Send bytes.
 
         Raises:
-            NotImplementedError: a derived class does not define it.
+            NotImplementedError: if a derived class does not define the method.
         """
         raise NotImplementedError("must implement")
 
@@ -63,7 +63,7 @@ class Transport:
         """Return a description for reports.
 
         Raises:
-            NotImplementedError: a derived class does not define it.
+            NotImplementedError: if a derived class does not define the method.
         """
         raise NotImplementedError
 
@@ -94,7 +94,7 @@ class ProtocolHandler:
         """Connect to a publisher.
 
         Raises:
-            NotImplementedError: a derived class does not define it.
+            NotImplementedError: if a derived class does not define the method.
         """
         raise NotImplementedError(f"cannot connect to {pub_uri} for topic {topic}")
 
@@ -110,6 +110,6 @@ class ProtocolHandler:
         """Prepare for a subscriber.
 
         Raises:
-            NotImplementedError: a derived class does not define it.
+            NotImplementedError: if a derived class does not define the method.
         """
         raise NotImplementedError(f"cannot publish {topic} with {protocol}")

@@ -177,5 +177,5 @@ def _cell(path: str, kind: Kind, width: int) -> Row:
 
 
 def cut(text: str, width: int) -> str:
-    """Shorten a text to a width; dots mark the cut."""
+    """Shorten a text to a width in characters; dots mark the cut."""
     return text if len(text) <= width else text[: max(0, width - 1)] + DOTS if width > 0 else ""

@@ -521,7 +521,7 @@ class BridgeNode:
         return sum(each.client is client for each in self._offered.values())
 
     def withdraw(self, service: str) -> None:
-        """Withdraw a service; pending calls fail."""
+        """Withdraw a service. Pending calls get an error as their answer."""
         offered = self._offered.pop(service)
         for number in offered.calls.values():
             self._act("answer", service, number, False, b"the service has ended")
