@@ -127,7 +127,7 @@ def check_clean(root: Path, version: str) -> None:
 def check_version(root: Path, version: str) -> None:
     """Refuse an invalid version, or one that differs from the version in the code."""
     if not _VERSION.fullmatch(version):
-        raise UsageError(f"{version} is no version such as 0.1.0 or 0.2.0rc1")
+        raise UsageError(f"invalid version {version}; expected a version such as 0.1.0 or 0.2.0rc1")
     told = ["git", "grep", "-E", '^(__version__|version) *= *"', "--", *PACKAGES, "pyproject.toml", f":!{LIBRARIES}"]
     found = {line.partition(":")[0]: line.rsplit('"', 2)[1] for line in output(told, root).splitlines()}
     if list(found) != [VERSION_FILE]:

@@ -102,7 +102,7 @@ def main() -> int:
     arguments = parser.parse_args()
     unknown = {*arguments.names} - {*NAMES, ALL}
     if unknown:
-        parser.error(f"there is no add-on {', '.join(sorted(unknown))}; there are {', '.join(NAMES)}")
+        parser.error(f"unknown add-on {', '.join(sorted(unknown))}; expected {', '.join(NAMES)}")
     status = 0
     for name in arguments.names or NAMES:
         with tempfile.TemporaryDirectory() as folder:

@@ -253,7 +253,7 @@ class Nets:
         """Put a message of a peer on the bus unchanged."""
         size = get_size(packet) if len(packet) > PRIMARY_HEADER_SIZE else self.longest + 1
         if size > len(packet):
-            raise pr.Malformed(f"a packet of {len(packet)} bytes that says it has {size}")
+            raise pr.Malformed(f"the header of a packet of {len(packet)} bytes states {size}")
         filtered = through(peer, packet[:size])
         if filtered is not None:
             self._cfe.sb.transmit_msg(filtered, is_origination=False)

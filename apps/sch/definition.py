@@ -66,5 +66,5 @@ def message_image(messages: Mapping[int, bytes | bytearray]) -> TableImage:
     }
     unknown = [index for index in messages if index not in rows]
     if unknown:
-        raise UsageError(f"there is no message {unknown[0]}, only 1 to {pk.MAX_MESSAGES - 1}", field="messages")
+        raise UsageError(f"unknown message {unknown[0]}; expected 1 to {pk.MAX_MESSAGES - 1}", field="messages")
     return pk.MESSAGE_TABLE.image(rows)

@@ -58,7 +58,7 @@ def conv(value):
 def mc(name):
     found = roslib.message.get_message_class(name)
     if found is None:
-        raise RuntimeError("there is no message class " + name)
+        raise RuntimeError("unknown message class " + name)
     return found
 
 

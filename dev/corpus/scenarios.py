@@ -75,7 +75,7 @@ class Corpus(NamedTuple):
         """
         for name in ids:
             if name not in self.scenarios:
-                raise UsageError(f"there is no scenario {name}; the names are the ids in {FILE.name}", file=str(FILE))
+                raise UsageError(f"unknown scenario {name}; expected an id of {FILE.name}", file=str(FILE))
         return [self.scenarios[name] for name in ids] if ids else list(self.scenarios.values())
 
 

@@ -68,7 +68,7 @@ class Peers(NamedTuple):
         found = [peer for peer in self.files.values() if not names or peer.name.startswith(tuple(names))]
         for name in names:
             if not any(peer.name.startswith(name) for peer in found):
-                raise UsageError(f"there is no test file {name}; the names are in {FILE.name}", file=str(FILE))
+                raise UsageError(f"unknown test file {name}; expected a name in {FILE.name}", file=str(FILE))
         return found
 
 

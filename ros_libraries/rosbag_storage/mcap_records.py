@@ -147,7 +147,7 @@ class Body:
             name = self.text()
             found[name] = self.text()
         if self.at != end:
-            raise self.wrong("a map is longer than it says")
+            raise self.wrong("a map exceeds its stated length")
         return found
 
 
@@ -233,7 +233,7 @@ def unpacked(chunk: ChunkRecord, stored: bytes, place: int) -> bytes:
     if len(data) != chunk.size:
         raise ROSBagFormatException(f"a chunk has {len(data):,} bytes, not {chunk.size:,}, at byte {place:,}")
     if chunk.crc and zlib.crc32(data) != chunk.crc:
-        raise ROSBagFormatException(f"a chunk has another checksum than it says, at byte {place:,}")
+        raise ROSBagFormatException(f"the stated checksum of a chunk does not match, at byte {place:,}")
     return data
 
 

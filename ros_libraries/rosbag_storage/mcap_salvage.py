@@ -53,7 +53,7 @@ class McapSalvage(Salvage):
                 if start + size > end or op not in _AT_THE_TOP:
                     raise ROSBagFormatException(f"a record of the kind {op} does not fit, at byte {at:,}")
                 if not self._follows(data, start + size, end, _AT_THE_TOP):
-                    raise ROSBagFormatException(f"a record has another length than it says, at byte {at:,}")
+                    raise ROSBagFormatException(f"the stated length of a record does not match, at byte {at:,}")
                 if op == mcap.MESSAGE:
                     yield self._message(data, at, size)
                 else:
@@ -146,11 +146,11 @@ class McapSalvage(Salvage):
                 why = why or f"a chunk of {chunk.size:,} bytes is damaged"
                 self.losses[lost:] = [Loss(at, len(stored), f"{why}, at byte {at:,}")]
         if len(self.losses) == lost and (said[0] != said[1] or not ends):
-            self._lose(at, at, f"a chunk has another length than it says, at byte {at:,}")
+            self._lose(at, at, f"the stated length of a chunk does not match, at byte {at:,}")
         if wrong and len(self.losses) == lost:
-            self.losses.append(Loss(place, 0, f"a chunk has another checksum than it says, at byte {at:,}"))
+            self.losses.append(Loss(place, 0, f"the stated checksum of a chunk does not match, at byte {at:,}"))
         if not ends and chunk.kind != compression.NONE:
-            return self._resync(first, f"a chunk has another length than it says, at byte {at:,}")
+            return self._resync(first, f"the stated length of a chunk does not match, at byte {at:,}")
         return found
 
     def _walk(
@@ -178,7 +178,7 @@ class McapSalvage(Salvage):
                 if start + size > end:
                     raise ROSBagFormatException(f"a message is cut off, at byte {at:,}")
                 if not self._follows(data, start + size, end, kinds):
-                    raise ROSBagFormatException(f"a message has another length than it says, at byte {at:,}")
+                    raise ROSBagFormatException(f"the stated length of a message does not match, at byte {at:,}")
                 if op == mcap.MESSAGE:
                     message = self._message(data, at, size)
                     self.doubtful += is_doubtful

@@ -42,7 +42,7 @@ def _md5sum(type: str, texts: dict[str, str], around: frozenset[str]) -> str:
         elif text:
             found = _FIELD.match(text)
             if found is None:
-                raise ValueError(f"{text} is no field")
+                raise ValueError(f"invalid field {text}")
             kind, array, name = found.groups()
             if _BUILT_IN.fullmatch(kind) is None:
                 inner = _md5sum(_full_name(kind, type), texts, around | {type})

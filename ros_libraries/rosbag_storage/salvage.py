@@ -282,7 +282,7 @@ class BagSalvage(Salvage):
             lost = len(self.losses)
             found = yield from self._walk(data, record.data_at, stop, record.data_at)
             if found != stop and len(self.losses) == lost:
-                self._lose(record.at, record.at, f"a chunk has another length than it says, at byte {record.at:,}")
+                self._lose(record.at, record.at, f"the stated length of a chunk does not match, at byte {record.at:,}")
             return found
         stored = data[record.data_at : min(record.end, end)]
         unpacked, why = beginning_of(kind, stored)
@@ -294,7 +294,7 @@ class BagSalvage(Salvage):
             self.losses[lost:] = [Loss(record.at, min(record.end, end) - record.at, f"{why}, at byte {record.at:,}")]
         if record.end == end or _is_record(data, record.end):
             return record.end
-        return self._resync(record.data_at, "a chunk has another length than it says")
+        return self._resync(record.data_at, "the stated length of a chunk does not match")
 
     def _walk(
         self, data: Bytes, at: int, stop: int, place: int | None, is_doubtful: bool = False
@@ -319,7 +319,7 @@ class BagSalvage(Salvage):
                 if record.end > end:
                     raise ROSBagException(f"a message is cut off, at byte {at:,}")
                 if record.end not in (stop, end) and not _begins_record(data, record.end):
-                    raise ROSBagException(f"a message has another length than it says, at byte {at:,}")
+                    raise ROSBagException(f"the stated length of a message does not match, at byte {at:,}")
                 if record.op == records.OP_CONNECTION:
                     self._connect(data, record)
                 else:

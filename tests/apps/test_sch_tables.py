@@ -96,7 +96,7 @@ def test_definitions_that_cannot_be() -> None:
         schedule_image({0: [activity(1)] * 6})
     with pytest.raises(UsageError, match="begin with 1"):
         message_image({0: init(0x1808, 8)})
-    with pytest.raises(UsageError, match="no message 128"):
+    with pytest.raises(UsageError, match="unknown message 128"):
         message_image({128: init(0x1808, 8)})
     with pytest.raises(UsageError, match="at most 128 items"):
         message_image({1: bytes(129)})

@@ -162,7 +162,7 @@ def test_every_repository_of_the_corpus_has_a_commit() -> None:
     corpus = read_corpus()
     used = {repo for scenario in corpus.scenarios.values() for repo in scenario.repos}
     assert used == set(corpus.commits)
-    with pytest.raises(UsageError, match="no scenario nope"):
+    with pytest.raises(UsageError, match="unknown scenario nope"):
         corpus.chosen(["nope"])
 
 

@@ -84,7 +84,7 @@ def test_the_version_is_in_one_place(checkout: Path) -> None:
     check_version(checkout, "0.2.0")
     with pytest.raises(UsageError, match=r"says 0\.2\.0: write 0\.2\.1"):
         check_version(checkout, "0.2.1")
-    with pytest.raises(UsageError, match="no version such as"):
+    with pytest.raises(UsageError, match="expected a version such as"):
         check_version(checkout, "two")
     (checkout / "pyproject.toml").write_text('[project]\nversion = "0.2.0"\n', encoding="utf-8")
     with pytest.raises(UsageError, match=r"alone, and is in cfepy/__init__\.py, pyproject\.toml"):

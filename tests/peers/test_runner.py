@@ -129,7 +129,7 @@ def test_the_list_can_be_read_and_chosen_from() -> None:
     assert {peer.repo for peer in peers.files.values()} <= set(peers.commits)
     assert all(len(commit) == 40 for commit in peers.commits.values())
     assert {peer.name for peer in peers.chosen(["genmsg/"])} == {name for name in peers.files if "genmsg/" in name}
-    with pytest.raises(UsageError, match="there is no test file nowhere"):
+    with pytest.raises(UsageError, match="unknown test file nowhere"):
         peers.chosen(["nowhere"])
 
 
