@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from cfepy.cli.flight_add_ons import FlightAddOn
 from cfepy.cli.flight_options import HIGHEST_PORT
+from cfepy.cli.parser import shared_group
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -38,7 +39,7 @@ class RosMaster(FlightAddOn):
 
     @classmethod
     def add(cls, parser: argparse.ArgumentParser) -> None:
-        parser.add_argument_group("ROS on this computer").add_argument(
+        shared_group(parser, "ROS on this computer").add_argument(
             OPTION,
             type=master_of,
             metavar="URI",

@@ -79,11 +79,11 @@ def test_a_node_answers_at_its_uri(launch: str, capfd: pytest.CaptureFixture[str
 
 
 def test_cfepy_service_tells_of_it(launch: str, capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["service", "info", launch, "/count", "--for", "2"]) == 0
+    assert main(["rosservice", "info", launch, "/count", "--for", "2"]) == 0
     node, uri, kind, fields = capfd.readouterr().out.splitlines()
     assert (node, kind, fields) == ("Node: /server", "Type: ping/Count", "Args: first last")
     port = uri.removeprefix("URI: rosrpc://cfepy:")
     assert port.isdigit()
-    assert main(["service", "list", launch, "--for", "2", "--json", "-"]) == 0
+    assert main(["rosservice", "list", launch, "--for", "2", "--json", "-"]) == 0
     found = {each["service"]: each for each in json.loads(capfd.readouterr().out)}
     assert found["/count"]["args"] == ["first", "last"]

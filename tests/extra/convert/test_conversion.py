@@ -117,7 +117,7 @@ def test_two_names_on_one_id_are_told(package: Path, tmp_path: Path, capsys: pyt
 
     (mission / "mission.yaml").write_text(f"topics:\n  /other: {{msg_id: {msg_id_of('/pulse')}}}\n", encoding="utf-8")
     assert convert(package, tmp_path / "made", "--ids", str(mission)) == 2
-    assert "cfepy mids --lock" in capsys.readouterr().err
+    assert "cfepy graph --lock" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add this command to the parser of `cfepy`."""
     build = commands.add_parser(
         "build",
-        help="compile an application in C to a shared object and table files",
+        help="compile an application in C, and its tables",
+        examples=("cfepy build thermal", "cfepy build apps/hk -o my_mission/hk.so --cfs cFS"),
         description="Compile a cFS application, a folder with fsw/src, fsw/inc and fsw/tables, to NAME.so and its "
         "table files. No cFS tree is needed: cfepy has headers of cFE, OSAL and the PSP.",
         epilog="exit status: 0 built, 1 the compiler refused a file, 2 bad usage, nothing to build or no compiler",
@@ -39,7 +40,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--coverage", action="store_true", help="make the code count the lines that it executes, for gcov"
     )
     build.add_argument(
-        "--sanitize-thread", action="store_true", help="have the code tell its accesses to memory (-fsanitize=thread)"
+        "--sanitize-thread", action="store_true", help="compile with -fsanitize=thread, so that a run finds races"
     )
     build.add_argument(
         "--headers", action="store_true", help="print the folder of cfepy's headers, for an editor or another build"

@@ -43,10 +43,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     convert = commands.add_parser(
         "convert",
         help="make cFE applications of ROS nodes in C++",
+        examples=("cfepy convert check my_package", "cfepy convert my_package robot.launch -o flight"),
         description="Make applications for a cFS 7.0.0 mission tree, and a mission for cfepy, of the ROS nodes in C++ "
-        "of a launch file or a package. Their sources stay as they are. `cfepy convert check WORD` makes nothing, but "
-        "tells all that keeps nodes from being converted and what is to be known of them, by the rules of "
-        "docs/how_to/convertor.md.",
+        "of a launch file or a package. Their sources stay unchanged. `cfepy convert check WORD` writes nothing, and "
+        "reports the parts of nodes that cannot be converted, by the rules of docs/how_to/convertor.md.",
         epilog=_STATUS,
     )
     convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS)
