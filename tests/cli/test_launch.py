@@ -117,19 +117,19 @@ def test_what_is_shown(write_launch: Launch, capsys: pytest.CaptureFixture[str])
     )
     listener = '<node pkg="demo" type="listener.py" name="listener"/>'
     file = write_launch(f"{TALKER.format('', COUNT.format(5))}{respawned}{listener}")
-    assert main(["launch", file, "--for", "2"]) == 0
+    assert main(["launch", file, "--for", "2.55"]) == 0
     shown = capsys.readouterr().out
     assert shown.startswith("[talker] argv ")
     assert "CFE_" not in shown
     tables = [line.split() for line in shown.partition("\nTopics\n")[2].splitlines()]
-    assert ["/chatter", "4", "2.8", "0"] in tables  # the first one, before anybody had subscribed
+    assert ["/chatter", "4", "2.0", "0"] in tables  # the first one, before anybody had subscribed
     assert ["/b/chatter", "0", "0.0", "0", "no", "subscriber"] in tables
     assert ["/talker", "ended,", "exit", "status", "0", "0"] in tables
     assert ["/listener", "running", "0"] in tables
     assert ["/b/late", "running", "5"] in tables
     assert not any(row[:1] == ["/rosout"] for row in tables)
     assert "2.550 virtual s" in shown
-    assert main(["launch", file, "--for", "2", "--console"]) == 0
+    assert main(["launch", file, "--for", "2.55", "--console"]) == 0
     whole = capsys.readouterr().out
     assert whole.startswith("CFE_PSP: ")
     assert "\nApplications\n" in whole
