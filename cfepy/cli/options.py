@@ -82,9 +82,7 @@ def _add_schedule(parser: Options) -> None:
 
 
 def _add_script(parser: Options) -> None:
-    parser.add_argument(
-        "--script", metavar="FILE", help="send commands and check their effects, as a mission script says"
-    )
+    parser.add_argument("--script", metavar="FILE", help="send commands and check their effects, by a mission script")
 
 
 def _add_stop_on_failure(parser: Options) -> None:

@@ -31,7 +31,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         help="schedule of missions that a test gives none: fifo, random:SEED, pct:SEED:DEPTH, at:DECISION=CHOICE,...;"
         " of several missions in one test with ';' between them. Tests with @explore are run under this one alone",
     )
-    group.addoption("--cfepy-tasks", choices=["auto", "thread", "greenlet"], help="what missions' tasks run on")
+    group.addoption("--cfepy-tasks", choices=["auto", "thread", "greenlet"], help="kind of tasks of missions")
     stall = (
         "seconds of wall time after which a task that does not give up the CPU fails its test; 0: never (default: 10)"
     )
@@ -39,7 +39,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addini("cfepy_stall", f"as --cfepy-stall: {stall}", default="10")
     group.addoption("--cfepy-schedules", type=int, metavar="N", help="how many schedules each @explore goes through")
     group.addoption("--cfepy-record", metavar="DIR", help="keep journals of the missions of failed tests there")
-    group.addoption("--cfepy-example", metavar="CODE", help="the Hypothesis example to run, as a failure tells it")
+    group.addoption("--cfepy-example", metavar="CODE", help="the Hypothesis example to run, copied from a failure")
 
 
 def pytest_configure(config: pytest.Config) -> None:

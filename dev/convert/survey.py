@@ -191,7 +191,7 @@ def main() -> None:
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
     parser.add_argument("--json", type=Path, help="verdicts, read by --report")
-    parser.add_argument("--missing", type=Path, help="gets what would free the most nodes")
+    parser.add_argument("--missing", type=Path, help="write the missing features, most frequent first")
     parser.add_argument("--report", action="store_true", help=f"write the counts of --json into {DOCUMENT.name}")
     arguments = parser.parse_args()
     if arguments.report:

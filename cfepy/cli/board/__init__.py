@@ -22,7 +22,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     board = commands.add_parser(
         "board",
         help="list boards, show whether a mission fits, write a profile",
-        description="List boards, report what a mission needs of a board, or write the profile of your own board.",
+        description="List boards, report the needs of a mission, or write the profile of your own board.",
         examples=("cfepy board list", "cfepy board report capture --board rx64m"),
     )
     actions = board.add_subparsers(metavar="ACTION", required=True)
@@ -46,7 +46,7 @@ def _add_new(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
         help="write a profile from three measurements",
         examples=("cfepy board new mine.yaml --cpu-hz 120e6 --round-trip 8us --short 6us --long 20us",),
         description="Write a profile of a board, whose costs follow from three times that were measured on it; "
-        "docs/reference/board_profiles.md says how.",
+        "docs/reference/board_profiles.md explains it.",
     )
     new.add_argument("file", metavar="FILE.yaml", help="the profile to write; the board has the name of this file")
     new.add_argument("--cpu-hz", type=_cycles_of, required=True, metavar="HZ", help="processor clock, such as 120e6")

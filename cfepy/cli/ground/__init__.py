@@ -132,7 +132,7 @@ def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     console.add_argument(
         "--save-script",
         metavar="FILE",
-        help="write what was sent, with its times, as a script: `cfepy run MISSION --script FILE` repeats the run",
+        help="write the commands and their times as a script; `cfepy run MISSION --script FILE` repeats the run",
     )
     console.add_argument("--plain", action="store_true", help="lines of text, on a terminal too")
     add_run_options(console)

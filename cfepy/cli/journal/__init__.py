@@ -55,8 +55,8 @@ def _add_diff(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "diff",
         help="show where two runs differ first",
         examples=("cfepy diff good.cfepy bad.cfepy", "cfepy diff monday.trace tuesday.trace --lines 20"),
-        description="Show the first record in which two runs differ, what both did before it, and what else they "
-        "differ in. Journals are replayed for that, each with its own files.",
+        description="Show the first record in which two runs differ, the records before it, and other differences. "
+        "Journals are replayed for that, each with its own files.",
         epilog=_DIFF_STATUS,
     )
     diff.add_argument("one", metavar="A", help="a journal, or a file that `cfepy run --trace FILE` wrote")

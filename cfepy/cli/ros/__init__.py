@@ -94,7 +94,7 @@ def _add_rostest(commands: _Actions[argparse.ArgumentParser]) -> None:
         epilog=_TEST_STATUS,
     )
     add_mission(test, "words", metavar="WORD", nargs="+", help=_LAUNCH_WORDS)
-    test.add_argument("--text", "-t", action="store_true", help="show what the nodes and tests print")
+    test.add_argument("--text", "-t", action="store_true", help="show the output of nodes and tests")
     test.add_argument("--results", metavar="FILE", help="write the result of every test to a file, as JUnit XML")
     add_run_options(test, without=["seconds"])  # each test has its own time limit
     test.set_defaults(module="cfepy.cli.ros.rostest")

@@ -35,7 +35,7 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
             "cfepy run capture --for 20",
             "cfepy run my_mission --board rx64m --script checks.txt --record run.cfepy",
         ),
-        description="Run a mission in virtual time, and report what happened.",
+        description="Run a mission in virtual time, and print a report.",
         epilog=STATUS_HELP,
     )
     add_mission_or_node(run)

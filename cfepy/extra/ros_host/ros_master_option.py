@@ -43,8 +43,8 @@ class RosMaster(FlightAddOn):
             OPTION,
             type=master_of,
             metavar="URI",
-            help="with --realtime: be one graph with ROS on this computer. URI is that of a running roscore, such as "
-            "http://localhost:11311; serve or serve:PORT serves a ROS master for others",
+            help="join ROS on this computer; requires --realtime. URI is the address of a running roscore, such as "
+            "http://localhost:11311; serve or serve:PORT starts a ROS master for other nodes",
         )
 
     @classmethod

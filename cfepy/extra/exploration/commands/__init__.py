@@ -145,7 +145,7 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "cannot be read; 130 ended by Ctrl-C, after a report",
     )
     add_mission_or_node(sweep)
-    sweep.add_argument("-r", "--rate", metavar="HZ", help="VALUES in Hz, applied as `sweep:` in the mission file says")
+    sweep.add_argument("-r", "--rate", metavar="HZ", help="VALUES in Hz, applied by `sweep:` of the mission file")
     sweep.add_argument(
         "--board",
         dest="boards",
@@ -165,7 +165,7 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="VALUES of a ROS parameter (/arm/rate=20,50) or of a launch argument (rate=20,50)",
     )
     sweep.add_argument(
-        "--measure", action="append", default=[], metavar="TOPIC", help="measure this (default: as the mission says)"
+        "--measure", action="append", default=[], metavar="TOPIC", help="measure this (default: as in the mission file)"
     )
     add_run_options(sweep, without=["board", "seed", "settings"])
     _add_crew(sweep)
