@@ -18,7 +18,7 @@ import hashlib
 import json
 import os
 import re
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -149,13 +149,6 @@ def table(verdicts: list[Verdict]) -> str:
     lines += ["", "What refuses nodes in the host profile (a node may be refused by several rules):", ""]
     lines += ["| rule | nodes |", "|---|---|"]
     lines += [f"| {rule} | {count} |" for rule, count in sorted(rules.items(), key=lambda item: (-item[1], item[0]))]
-    by_repository: dict[str, list[Verdict]] = defaultdict(list)
-    for each in verdicts:
-        by_repository[each.repository].append(each)
-    lines += ["", "| repository | nodes | host | pool | strict |", "|---|---|---|---|---|"]
-    for name, those in sorted(by_repository.items(), key=lambda item: (-len(item[1]), item[0].lower())):
-        counts = (str(sum(not each.refused[profile.value] for each in those)) for profile in Profile)
-        lines.append(f"| {name} | {len(those)} | {' | '.join(counts)} |")
     return "\n".join(lines)
 
 
