@@ -22,6 +22,11 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     )
     build.add_argument("folder", metavar="FOLDER", nargs="?", help="the application's folder")
     add_output(build, "NAME.so in the application's folder; table files come beside it")
+    tables = build.add_mutually_exclusive_group()
+    text = "write all table files; by default a file with other contents stays"
+    tables.add_argument("--tables", dest="tables", action="store_const", const="write", default="keep", help=text)
+    text = "write no table files"
+    tables.add_argument("--no-tables", dest="tables", action="store_const", const="none", help=text)
     build.add_argument("--cfs", metavar="TREE", help="take the headers of this cFS tree in place of cfepy's")
     build.add_argument(
         "--defs", metavar="DIR", help="a folder of a mission's headers, which go before the application's own"
