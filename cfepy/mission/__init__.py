@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.mission.app_sources import tree_of
     from cfepy.mission.compiled_code import find_compiled
     from cfepy.mission.cpp_nodes import (
         ARENA_BYTES,
@@ -148,6 +149,7 @@ __all__ = [
     "spec_of",
     "spec_of_node",
     "spec_of_script",
+    "tree_of",
     "with_settings",
 ]
 
@@ -155,6 +157,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".app_sources": ("tree_of",),
             ".host_actions": (
                 "CALL",
                 "FILE",

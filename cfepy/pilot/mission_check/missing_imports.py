@@ -12,12 +12,12 @@ import importlib.util
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import cached_property
 from importlib.machinery import PathFinder
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.mission import app_sources as sources
+from cfepy.interpreter.cached import CachedProperty
+from cfepy.mission import tree_of
 from cfepy.pilot.mission_check.problem import MissionProblem
 from cfepy.pilot.mission_check.ros_files import NodeScript
 from cfepy.reading.marked_yaml import Mistakes
@@ -108,7 +108,7 @@ class _GivenToNode:
     def __call__(self, top: str) -> bool:
         return top in self._names or top in self._message_packages or self._has_settings(top)
 
-    @cached_property
+    @CachedProperty
     def _message_packages(self) -> frozenset[str]:
         from rospy_shim.types.msgs import Library, OnDisk, shipped
 
@@ -199,7 +199,7 @@ def imports_of(file: Path, folders: Sequence[str]) -> list[Import]:
     waiting, seen = [file], {file}
     while waiting and len(seen) <= MOST_FILES:
         here = waiting.pop()
-        for node, is_late in _import_statements(sources.tree_of(here)):
+        for node, is_late in _import_statements(tree_of(here)):
             for name in _names_of(node):
                 found[here, node.lineno, name] = Import(here, node.lineno, name, is_late)
             for source in _sources_of(node, here, folders):

@@ -1,4 +1,4 @@
-"""`rospy.impl.masterslave.ROSHandler`: its only object is found through `gc`, and gets changes of parameters, as on ROS.
+"""`rospy.impl.masterslave.ROSHandler`: programs find its only object through `gc`, and get changes of parameters.
 
 Duckietown's nodes look for it there. The expected calls are those of rospy 1.15 and rosmaster 1.15.
 """
