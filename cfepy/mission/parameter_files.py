@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.mistakes import each_of
 from cfepy.status import UsageError
 
 _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
@@ -34,13 +36,17 @@ def read_files(section: Marked) -> dict[str, Any]:
     return tree
 
 
+def _tree(entries: Mapping[str, Marked]) -> dict[str, Any]:
+    return dict(zip(entries, each_of(partial(_value, entry) for entry in entries.values()), strict=True))
+
+
 def read_tree(section: Marked) -> dict[str, Any]:
     """Return a mapping of names to values, checked.
 
     Raises:
         UsageError: if it is not a mapping, or has a value that ROS cannot carry.
     """
-    return {name: _value(entry) for name, entry in section.mapping().items()}
+    return _tree(section.mapping())
 
 
 def merged(tree: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
@@ -74,9 +80,9 @@ def _below(namespace: str, tree: dict[str, Any]) -> dict[str, Any]:
 def _value(entry: Marked) -> Any:
     value = entry.value
     if isinstance(value, dict):
-        return {name: _value(inner) for name, inner in value.items()}
+        return _tree(value)
     if isinstance(value, list):
-        return [_value(inner) for inner in value]
+        return each_of(partial(_value, inner) for inner in value)
     fault = _fault(value)
     if fault is not None:
         raise entry.fail(fault)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from cfepy.reading.input_files import open_input
 from cfepy.reading.input_limits import LAUNCH_INCLUDES_DEEP, LAUNCH_NAME, LAUNCH_WORK
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import FirstMistake, Mistakes
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from rospy_shim.roslaunch.document import Attributes, Tag, read_launch_tag, unused_arguments
@@ -235,7 +235,7 @@ def read(
         args: values of its arguments, `name:=value` on roslaunch's command line.
         packages: the packages for $(find).
         environ: the environment for $(env) and $(optenv); ROS_NAMESPACE is the namespace of all.
-        mistakes: receives errors; None raises the first error.
+        mistakes: receives errors; None raises the first error, as roslaunch does.
 
     Returns:
         The contents.
@@ -243,7 +243,7 @@ def read(
     Raises:
         UsageError: it cannot be read, or has an error.
     """
-    return _Reader(packages, environ, LaunchFindings(Mistakes() if mistakes is None else mistakes)).read(file, args)
+    return _Reader(packages, environ, LaunchFindings(FirstMistake() if mistakes is None else mistakes)).read(file, args)
 
 
 class _Reader:

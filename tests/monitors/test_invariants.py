@@ -219,7 +219,7 @@ def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -
             "unknown function or class",
         ),
         ("{x: {function: fine}}", "`function` requires `file`"),
-        ('{x: {topic: /count, holds: "True", whne: "True"}}', "unknown field; known fields are"),
+        ('{x: {topic: /count, holds: "True", whne: "True"}}', "unknown field; did you mean when?"),
     ],
 )
 def test_mistakes_are_told_with_their_place(folder: Path, text: str, error: str) -> None:

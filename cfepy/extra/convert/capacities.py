@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from cfepy.mission import ARRAY, MOST_ITEMS, TEXT, CppNodesConfig, CppNodesError, MissionSections, mission_environment
 from cfepy.pilot import MissionProblem, problem_of
 from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import together
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
@@ -70,8 +71,9 @@ def capacities_of(config: CppNodesConfig, library: Library) -> Capacities:
     Raises:
         CppNodesError: a type or field does not exist, or has a fixed length.
     """
-    for error in wrong_capacities(config, library):
-        raise error
+    wrong = wrong_capacities(config, library)
+    if wrong:
+        raise together(wrong)
     return Capacities(config.capacities, config.text, config.array)
 
 

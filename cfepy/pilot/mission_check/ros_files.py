@@ -18,7 +18,7 @@ from cfepy.mission import app_sources as sources
 from cfepy.nodes import CppNode
 from cfepy.pilot.mission_check.problem import MissionProblem, problem_of
 from cfepy.pilot.plan import built_node
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
@@ -57,7 +57,7 @@ def check_launch(
     """
     from rospy_shim.roslaunch.launch_plan import plan_of
 
-    mistakes = Mistakes(keep=True)
+    mistakes = Mistakes()
     plan = mistakes.attempt(
         partial(plan_of, file, args, environ, cwd=Path.cwd(), mistakes=mistakes, with_compiled=True)
     )
@@ -158,7 +158,7 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
     if not imports:
         return
     packages = Packages(script.file, script.environ)
-    library = Library([OnDisk(packages, Mistakes(keep=True))], base=shipped())
+    library = Library([OnDisk(packages, Mistakes())], base=shipped())
     for package, kind, names, line in imports:
         if _is_code(package, script, packages):
             continue

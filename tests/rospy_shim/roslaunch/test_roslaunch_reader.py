@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.parameters.values import DateTime
 from rospy_shim.roslaunch.launch_plan import plan_of
@@ -125,7 +125,7 @@ def test_cat_and_xacro_are_stood_in_for(tmp_path: Path) -> None:
 
 def collected(folder: Path, body: str, **args: str) -> list[tuple[str, int, str]]:
     """Return the errors of a launch file and its omitted parts: file, line, text."""
-    file, mistakes = folder / "x.launch", Mistakes(keep=True)
+    file, mistakes = folder / "x.launch", Mistakes()
     file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n", encoding="utf-8")
     remarks = read(file, args, Packages(file, {}), {}, mistakes).remarks
     errors = [
