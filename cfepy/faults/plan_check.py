@@ -26,7 +26,7 @@ from cfepy.ground import ROS
 from cfepy.mission import CORE_APPS, HOST, MissionSpec
 from cfepy.osal import FileSystem
 from cfepy.reading.plain_yaml import plain_yaml
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, expected
 from cfepy.status import OsalError, UsageError
 
 SEED_WORD = "seed:"
@@ -144,8 +144,7 @@ def _problems(fault: Fault, spec: MissionSpec, found: Found | None) -> Iterator[
 def _unknown(what: str, names: Iterable[str], known: Sequence[str]) -> Iterator[str]:
     for name in names:
         if not any(fnmatchcase(each, number_as_name(name)) for each in known):
-            hint = did_you_mean(name, known, f"known are {', '.join(known[:12]) or 'none'}")
-            yield f"unknown {what} {name}; {hint}"
+            yield f"unknown {what} {name}; {expected(name, known, subject='known are', last='and')}"
 
 
 def _unknown_file(path: str, spec: MissionSpec) -> Iterator[str]:
