@@ -14,7 +14,7 @@ from typing import Any
 
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import YAML_BYTES
-from cfepy.reading.mistakes import together
+from cfepy.reading.joined_errors import together
 from cfepy.reading.plain_yaml import YamlError, constructed, opened
 from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
@@ -146,8 +146,6 @@ class Marked:
 
 
 def _shown(value: Any) -> str:
-    from datetime import date
-
     if isinstance(value, Marked):
         return _shown(value.value)
     if isinstance(value, dict):
@@ -158,7 +156,7 @@ def _shown(value: Any) -> str:
         return "nothing"
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, date):
+    if type(value).__name__ in ("date", "datetime"):
         return f"the date {value}"
     return "bytes" if isinstance(value, bytes) else repr(value)
 

@@ -1,26 +1,24 @@
-"""Collecting the mistakes of a file or a command, so that its user sees all of them at once.
+"""Collecting the mistakes in a file or a command, so that its user sees all of them at once.
 
-A reader gets a `Mistakes`, adds each mistake that does not keep it from reading on, and returns what it could read.
+A reader gets a `Mistakes`, adds each mistake that does not keep it from reading on, and returns the rest of the file.
 `cfepy check` lists the collected mistakes. A run uses `collected`, which raises them together: a `UsageError` for the
 first one with all further ones in `others`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from copy import copy
-from typing import TYPE_CHECKING, TypeVar
+from collections.abc import Callable, Iterable, Iterator
+from typing import TypeVar
 
+from cfepy.reading.joined_errors import alone, together
+from cfepy.reading.marked_yaml import Marked
 from cfepy.status import UsageError
-
-if TYPE_CHECKING:
-    from cfepy.reading.marked_yaml import Marked
 
 T = TypeVar("T")
 
 
 class Mistakes:
-    """Mistakes of what is being read.
+    """Collector of the mistakes in a file or a command.
 
     Attributes:
         errors: the mistakes, each alone.
@@ -85,7 +83,7 @@ def collected(read: Callable[[Mistakes], T]) -> T:
         read: the reader.
 
     Raises:
-        UsageError: all its mistakes together, those of one file by line.
+        UsageError: all its mistakes together, sorted by line in each file.
     """
     mistakes = Mistakes()
     try:
@@ -108,39 +106,3 @@ def each_of(reads: Iterable[Callable[[], T]]) -> list[T]:
         UsageError: all their mistakes together.
     """
     return collected(lambda mistakes: [mistakes.attempt(read) for read in reads])  # type: ignore[misc]  # or it raises
-
-
-def together(errors: Sequence[UsageError]) -> UsageError:
-    """Return one error for several mistakes: the first one with the others in it.
-
-    Args:
-        errors: the mistakes, at least one. Those of one file are sorted by line.
-    """
-    apart = [each for error in errors for each in alone(error)]
-    if len(apart) == 1:
-        return apart[0]
-    files = list(dict.fromkeys(each.file for each in apart))
-    first, *others = sorted(apart, key=lambda each: (files.index(each.file), each.line or 0))
-    found = copy(first)  # of its own class
-    found.others = tuple(others)
-    return found
-
-
-def alone(error: UsageError) -> tuple[UsageError, ...]:
-    """Return an error and its further ones, each without the others."""
-    if not error.others:
-        return (error,)
-    first = copy(error)
-    first.others = ()
-    return (first, *error.others)
-
-
-def placed(error: UsageError, *, file: object | None = None, line: int | None = None) -> UsageError:
-    """Return an error, and its further ones, with a place in a file.
-
-    Args:
-        error: the error; its own file and lines are replaced.
-        file: the file.
-        line: the line, from 1.
-    """
-    return together([UsageError(each.text, file=file, line=line, field=each.field) for each in error.each])

@@ -19,7 +19,8 @@ from cfepy.mission import MissionSpec
 from cfepy.msg import Telemetry
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
-from cfepy.reading.mistakes import Mistakes, collected, placed
+from cfepy.reading.joined_errors import placed
+from cfepy.reading.mistakes import Mistakes, collected
 from cfepy.reading.suggestions import expected, listed
 from cfepy.script.conditions import (
     APP_STATES,

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 from cfepy.mission import ARRAY, MOST_ITEMS, TEXT, CppNodesConfig, CppNodesError, MissionSections, mission_environment
 from cfepy.pilot import MissionProblem, problem_of
+from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked
-from cfepy.reading.mistakes import together
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
