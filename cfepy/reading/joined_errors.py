@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from copy import copy
 
 from cfepy.status import UsageError
 
@@ -19,18 +18,25 @@ def together(errors: Sequence[UsageError]) -> UsageError:
         return apart[0]
     files = list(dict.fromkeys(each.file for each in apart))
     first, *others = sorted(apart, key=lambda each: (files.index(each.file), each.line or 0))
-    found = copy(first)  # of its own class
-    found.others = tuple(others)
-    return found
+    return _with_others(first, tuple(others))
 
 
 def alone(error: UsageError) -> tuple[UsageError, ...]:
     """Return an error and its further ones, each without the others."""
     if not error.others:
         return (error,)
-    first = copy(error)
-    first.others = ()
-    return (first, *error.others)
+    return (_with_others(error, ()), *error.others)
+
+
+def _with_others(error: UsageError, others: tuple[UsageError, ...]) -> UsageError:
+    """Return a copy of an error with other further ones.
+
+    `copy.copy` is not used: libraries such as tblib, which Dask loads, change it for exceptions.
+    """
+    found = type(error).__new__(type(error), *error.args)
+    found.__dict__.update(error.__dict__)
+    found.others = others
+    return found
 
 
 def placed(error: UsageError, *, file: object | None = None, line: int | None = None) -> UsageError:

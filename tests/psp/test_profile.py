@@ -110,6 +110,25 @@ def test_wrong_files_say_where(tmp_path: Path, text: str, message: str) -> None:
     assert str(caught.value).startswith(f"{tmp_path}/{message}")
 
 
+def test_all_mistakes_of_a_profile_are_raised_together(tmp_path: Path) -> None:
+    text = """\
+nam: x
+cpu_hz: fast
+sram:
+- {name: a, size: big, retained: 1}
+- {nme: b}
+ports: [{name: 1, address: x, size: -1}]
+limits: {sb_max_pipe: 3, os_max_tasks: many}
+memory_costs: {mutex: a, queue_slots: b}
+"""
+    with pytest.raises(UsageError) as caught:
+        load_profile(write(tmp_path, text))
+    fields = "nam cpu_hz sram[0].size sram[0].retained sram[1].nme ports[0].name ports[0].address ports[0].size "
+    fields += "limits.sb_max_pipe limits.os_max_tasks memory_costs.queue_slots"
+    assert [error.field for error in caught.value.each] == fields.split()
+    assert "nam: unknown field; did you mean name?" in str(caught.value)
+
+
 def test_unknown_boards() -> None:
     with pytest.raises(UsageError, match="unknown board 'vax'; expected gr716, linux, rx64m, scobc_a1, workstation or"):
         load_profile("vax")

@@ -105,6 +105,15 @@ def test_a_mistake_is_told_with_its_place(tmp_path: Path, line: str, said: str) 
     assert str(error.value).startswith(f"{tmp_path / 'script.txt'}:2: {said}")
 
 
+def test_all_wrong_steps_are_raised_together(tmp_path: Path) -> None:
+    text = "sned CFE_ES_NOOP\nsend CFE_ES_NOOP\nsend SAMPLE_APP_DISPLAY_PARAM ValU32=-1 ValU=2\nexpect app X Y\n"
+    with pytest.raises(UsageError) as error:
+        script(tmp_path, text)
+    found = [(each.line, each.field, each.text) for each in error.value.each]
+    assert [(line, field) for line, field, _ in found] == [(1, None), (3, "ValU32"), (3, "ValU"), (4, None)]
+    assert found[2][2] == "unknown field; did you mean ValU32? (SAMPLE_APP_DISPLAY_PARAM has ValU32, ValI16 and ValStr)"
+
+
 def test_times_do_not_go_back(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="at 2 is earlier than a step before, at 3"):
         script(tmp_path, "at 3 send CFE_ES_NOOP\nat 2 send CFE_ES_NOOP\n")
