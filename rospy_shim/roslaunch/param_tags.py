@@ -14,6 +14,7 @@ from typing import Any
 
 from cfepy.reading.input_files import read_limited, text_limited
 from cfepy.reading.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME
+from cfepy.reading.suggestions import listed
 from rospy_shim.parameters.values import marshalled
 from rospy_shim.roslaunch.document import Attributes, Tag
 from rospy_shim.roslaunch.model import Launch
@@ -129,7 +130,7 @@ def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) ->
     given = [source for source in _SOURCES if source in tag.attributes]
     name = attributes.required("name")
     if len(given) != 1:
-        attributes.wrong(f"must have exactly one of {', '.join(_SOURCES)}, not {' and '.join(given) or 'none'}")
+        attributes.wrong(f"must have exactly one of {listed(_SOURCES)}, not {' and '.join(given) or 'none'}")
         return
     value = _value(attributes, given[0])
     if name is None or attributes.failed:

@@ -181,6 +181,29 @@ def test_a_file_is_read_to_the_end(tmp_path: Path) -> None:
         assert said in texts
 
 
+def test_unknown_words_get_the_nearest_known_one(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>", encoding="utf-8")
+    found = collected(
+        tmp_path,
+        """\
+        <param name="a" value="$(find robt)"/>
+        <param name="b" value="$(agr x)"/>
+        <param name="c" value="1" type="flaot"/>
+        <param name="d" value="1" type="doubel"/>
+        <node pkg="p" type="t" name="n" output="scren" cwd="nod"/>
+        """,
+    )
+    assert [text for _, _, text in found] == [
+        "<param value>: unknown package 'robt'; did you mean robot?",
+        "<param value>: unknown substitution $(agr x); known are find, env, optenv, dirname, anon, arg, and eval "
+        "alone; did you mean arg?",
+        "<param value>: unknown type 'flaot'; expected str, string, int, double, bool, boolean, yaml or auto",
+        "<param value>: unknown type 'doubel'; did you mean double?",
+        "<node cwd>: invalid value 'nod'; did you mean node? (expected node, cwd, ROS_HOME or ros-root)",
+        "<node output>: invalid value 'scren'; did you mean screen? (expected screen or log)",
+    ]
+
+
 def test_what_a_mistake_brings_about_is_not_told(tmp_path: Path) -> None:
     found = collected(
         tmp_path,
