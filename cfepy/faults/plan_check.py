@@ -91,10 +91,11 @@ def seed_of(text: str) -> tuple[int, str]:
     """
     found = _SEED.fullmatch(text)
     if found is None or found[2] not in (None, *INTENSITIES):
-        names = ", ".join(INTENSITIES)
-        raise UsageError(
-            f"invalid value {text!r}; expected a file, seed:7, or seed:7:high (one of {names})", field="--faults"
+        intensity = (
+            "" if found is None else f"; {expected(found[2], INTENSITIES, subject='intensities are', last='and')}"
         )
+        text = f"invalid value {text!r}; expected a file, seed:7, or seed:7:high{intensity}"
+        raise UsageError(text, field="--faults")
     return int(found[1]), found[2] or MEDIUM
 
 

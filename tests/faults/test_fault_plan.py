@@ -99,6 +99,10 @@ def test_the_list_may_stand_alone(tmp_path: Path) -> None:
         ("- {fail: OS_QueuePutt}", 1, "did you mean os.queue_put?"),
         ("- {fail: queue_put}", 1, "invalid call"),
         ("- fail: os.write\n  status: OS_WRONG", 2, "unknown status"),
+        ("- fail: os.write\n  status: OS_QUEUE_FUL", 2, "unknown status 'OS_QUEUE_FUL'; did you mean OS_QUEUE_FULL?"),
+        ("- {fail: oss.write}", 1, "did you mean os.write?"),
+        ("- drop: /a\n  until: 2024-01-01", 2, "must be a number of seconds, such as 2.5, not the date 2024-01-01"),
+        ("- {drop: /a, form: B}", 1, "unknown option of drop; did you mean from?"),
         ("- {drop: 'udp:1', to: A}", 1, "to is not an option of faults of datagrams"),
         ("- {drop: ['udp:1', /a]}", 1, "messages cannot be combined with datagrams"),
         ("- {drop: /a, name: x}\n- {drop: /a, name: x}", 2, "the name 'x' is already used by another fault"),
@@ -116,6 +120,25 @@ def test_mistakes_say_where_and_what_to_do(tmp_path: Path, text: str, line: int,
         read_plan(path)
     assert says in str(caught.value)
     assert (caught.value.file, caught.value.line) == (str(path), line)
+
+
+def test_all_mistakes_of_a_plan_are_raised_together(tmp_path: Path) -> None:
+    text = """\
+faults:
+- {dorp: /a}
+- {drop: /b, evry: 2, count: x, probability: 3}
+- {crash: [3, B], at: [x, 1, y]}
+- {delay: /a}
+- {corrupt: /a, bytes: {a: 1, "2": 300}}
+- {drop: /a, name: n}
+- {drop: /a, name: n}
+fault: []
+"""
+    with pytest.raises(UsageError) as caught:
+        read_plan(write(tmp_path, text))
+    fields = "faults[0].dorp faults[1].evry faults[1].count faults[1].probability faults[2].crash[0] faults[2].at[0] "
+    fields += "faults[2].at[2] faults[3] faults[4].bytes.a faults[4].bytes.2 faults[6] fault"
+    assert [error.field for error in caught.value.each] == fields.split()
 
 
 def test_no_file_and_no_yaml(tmp_path: Path) -> None:
