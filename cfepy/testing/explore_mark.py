@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import wraps
+from inspect import signature
+from typing import ParamSpec, TypeVar
 
 import pytest
 
+from cfepy.reading.joined_errors import together
+from cfepy.reading.suggestions import expected
 from cfepy.schedules import Points, Schedule
 from cfepy.status import UsageError
 from cfepy.testing.missions import EXPLORE_MARK
 
 POLICIES = ("all", "random", "pct", "abreast")
+P = ParamSpec("P")
+T = TypeVar("T")
 BASE = "at"  # a schedule that has options, and is otherwise fifo
 
 
@@ -38,6 +45,22 @@ class Exploration:
     races: bool = False
 
 
+def _suggests_keywords(function: Callable[P, T]) -> Callable[P, T]:
+    """Report an unknown keyword argument of a function with the nearest known one."""
+    known = list(signature(function).parameters)
+
+    @wraps(function)
+    def checked(*args: P.args, **given: P.kwargs) -> T:
+        unknown = [name for name in given if name not in known]
+        if unknown:
+            hints = [(name, expected(name, known)) for name in unknown]
+            raise together([UsageError(f"unknown argument; {hint}", field=name) for name, hint in hints])
+        return function(*args, **given)
+
+    return checked
+
+
+@_suggests_keywords
 def explore(
     seeds: int = 200,
     policy: str | Sequence[str] = "all",
@@ -81,7 +104,7 @@ def explore(
     policies = (policy,) if isinstance(policy, str) else tuple(policy)
     for each in policies:
         if each not in POLICIES:
-            raise UsageError(f"unknown policy {each!r}; expected one of {', '.join(POLICIES)}", field="policy")
+            raise UsageError(f"unknown policy {each!r}; {expected(str(each), POLICIES)}", field="policy")
     if seeds < 1 or not policies:
         raise UsageError("must not be empty; give at least one", field="seeds" if policies else "policy")
     if depth is not None and depth < 1:

@@ -196,10 +196,15 @@ def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
 
 
 def test_wrong_arguments() -> None:
-    with pytest.raises(UsageError, match="unknown policy 'fancy'; expected one of all, random, pct"):
+    with pytest.raises(UsageError, match="unknown policy 'fancy'; expected all, random, pct or abreast"):
         explore(policy="fancy")
     with pytest.raises(UsageError, match="seeds"):
         explore(seeds=0)
+    misspelt: Any = explore
+    with pytest.raises(UsageError) as caught:
+        misspelt(polcy="all", hlod="1ms")
+    said = "polcy: unknown argument; did you mean policy?\nhlod: unknown argument; did you mean hold?"
+    assert str(caught.value) == said
     for wrong in ({"hold": "soon"}, {"start": "later"}, {"policy": "pct", "depth": 0}):
         with pytest.raises(UsageError):
             explore(**wrong)
