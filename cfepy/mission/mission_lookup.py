@@ -23,7 +23,7 @@ from cfepy.reading.input_limits import LINE_FILE_BYTES, XML_BYTES
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.reading.mistakes import Mistakes, collected
 from cfepy.reading.resources import shipped
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, expected, listed
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -70,7 +70,7 @@ def find_script(mission: str) -> Path:
     if file is not None:
         return file
     names = shipped_missions()
-    hint = did_you_mean(mission, [*names, *missions_near(path)], f"shipped missions are {', '.join(names)}")
+    hint = did_you_mean(mission, [*names, *missions_near(path)], f"shipped missions are {listed(names, 'and')}")
     text = (
         "unknown mission; expected a startup script, a launch file, a folder "
         f"with a {STARTUP_SCRIPT} or a shipped mission"
@@ -197,7 +197,13 @@ def cpp_nodes_source(said: str) -> str:
     """
     if said in PROFILES or (said.endswith((".yaml", ".yml")) and os.path.isfile(said)):
         return said
-    path = mission_file_of(find_script(said))
+    try:
+        path = mission_file_of(find_script(said))
+    except UsageError as error:
+        if error.file is not None and os.path.exists(error.file):
+            raise
+        hint = expected(said, [*PROFILES, "a YAML file", "a mission"])
+        raise UsageError(f"unknown profile {said!r}; {hint}", field="--cpp-nodes") from None
     if path is None:
         raise UsageError("requires a mission with a mission file", file=said, field="--cpp-nodes")
     return str(path)
