@@ -131,7 +131,7 @@ def test_mistakes_are_told_at_once(flight: Flight) -> None:
         flight.publish("/jump", number=1)
     with pytest.raises(ExpectationError, match="unknown service /rest; did you mean /reset"):
         flight.call_service("/rest")
-    with pytest.raises(UsageError, match="number: unknown field; near it are data"):
+    with pytest.raises(UsageError, match="number: unknown field; it has data"):
         flight.expect_message("/count", number=3)
     with pytest.raises(UsageError, match="invalid event type 'INFO'"):
         flight.expect_event(type="INFO")

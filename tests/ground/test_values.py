@@ -94,6 +94,12 @@ def test_a_mistake_names_the_field_and_what_to_write(word: str, said: str) -> No
     assert str(error.value).startswith(said)
 
 
+def test_all_wrong_fields_are_raised_together() -> None:
+    with pytest.raises(UsageError) as error:
+        packet_of(COMMAND, ["Cuont=1", "Ratio=x", "Masks=1,2,3,4", "Inner"])
+    assert [each.field for each in error.value.each] == ["Cuont", "Ratio", "Masks", None]
+
+
 def test_a_field_is_given_once() -> None:
     with pytest.raises(UsageError, match="Count: is given twice"):
         packet_of(COMMAND, ["Count=1", "Count=2"])

@@ -23,7 +23,7 @@ from cfepy.pilot.mission_check.problem import MissionProblem, problems_of, with_
 from cfepy.psp import BoardProfile, load_profile
 from cfepy.reading.marked_yaml import Marked
 from cfepy.reading.mistakes import Mistakes
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
 
@@ -120,7 +120,7 @@ def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem
 
 
 def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> MissionProblem:
-    hint = did_you_mean(app, apps, f"the startup script has {', '.join(apps) or 'none'}")
+    hint = expected(app, apps, subject="the startup script has", last="and")
     return MissionProblem(place.file, place.line, f"{field}: unknown application {app}; {hint}")
 
 

@@ -19,7 +19,7 @@ from cfepy.nodes import CppNode
 from cfepy.pilot.mission_check.problem import MissionProblem, problem_of
 from cfepy.pilot.plan import built_node
 from cfepy.reading.mistakes import Mistakes
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, expected
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
         parts = {f"{name}{part}" for name in known for part in ("Request", "Response") if kind == "srv"}
         for name in names:
             if name not in known and name not in parts and not name.startswith("_"):
-                hint = did_you_mean(name, known, f"it has {', '.join(known) or 'none'}")
+                hint = expected(name, known, subject="it has", last="and")
                 yield MissionProblem(script.file, line, f"package {package} has no {kind} {name}; {hint}")
 
 
