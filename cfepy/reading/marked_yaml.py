@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import YAML_BYTES
 from cfepy.reading.joined_errors import together
 from cfepy.reading.plain_yaml import YamlError, constructed, opened
@@ -180,7 +180,7 @@ def load(path: Path, *, handed: bool = False) -> Marked:
     try:
         text = text_limited(path, YAML_BYTES, handed=handed)
     except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+        raise unreadable(path, error) from None
     except UnicodeDecodeError:
         raise UsageError("is not UTF-8 text", file=path) from None
     try:

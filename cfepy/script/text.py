@@ -17,7 +17,7 @@ from typing import NamedTuple
 from cfepy.ground import EVENT_TYPES, Dictionary, Topic, int_of, number_of, packet_of, topic_id, unknown_field
 from cfepy.mission import MissionSpec
 from cfepy.msg import Telemetry
-from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.reading.joined_errors import placed
 from cfepy.reading.mistakes import Mistakes, collected
@@ -204,7 +204,7 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
     try:
         text = text_limited(path, LINE_FILE_BYTES, handed=True)
     except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+        raise unreadable(path, error) from None
     except UnicodeError:
         raise UsageError("is not UTF-8 text", file=path) from None
     return parse_script(text, path, spec, dictionary)
