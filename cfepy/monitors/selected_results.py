@@ -59,6 +59,8 @@ def _selected_result(name: str, entry: Marked, mistakes: Mistakes) -> SelectedRe
     fields = dict(mistakes.fields(entry, ("compare", "ignore"))) if is_mapping else {"compare": entry}
     ignored = mistakes.items(fields["ignore"]) if "ignore" in fields else []
     paths = [mistakes.attempt(partial(_path, item)) for item in ignored]
+    if "compare" not in fields and mistakes.errors:
+        raise mistakes.errors.pop()  # its key may be misspelt
     if "compare" not in fields:
         raise entry.fail("missing compare; add it, such as `compare: last`")
     compare = fields["compare"].text()

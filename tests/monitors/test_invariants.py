@@ -182,7 +182,10 @@ def test_an_expression_that_fails_says_why(folder: Path) -> None:
 
 def test_packets_are_named_as_in_the_dictionary(folder: Path) -> None:
     text = 'alive: {packet: CFE_ES_HK_TML, holds: "msg.CommandCounter == 0"}'
-    with pytest.raises(UsageError, match="unknown telemetry packet CFE_ES_HK_TML; did you mean CFE_ES_HK_TLM"):
+    with pytest.raises(
+        UsageError,
+        match=r"mission.yaml:\d+: invariants.alive: unknown telemetry packet CFE_ES_HK_TML; did you mean CFE_ES_HK_TLM",
+    ):
         held(folder, text)
     found = held(folder, 'events: {packet: CFE_EVS_LONG_EVENT_MSG, holds: "msg.PacketID.EventType < 3"}')
     assert found["events"].judged > 5
