@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import partial
 from itertools import product
 
 from cfepy.extra.exploration.sweep import Point
 from cfepy.mission import MissionSpec
+from cfepy.psp import load_profile
+from cfepy.reading.mistakes import each_of
 from cfepy.status import UsageError
 
 MOST_POINTS = 100_000
@@ -120,9 +123,10 @@ def points_of(
         seeds: seeds of all random values.
 
     Raises:
-        UsageError: the mission does not define the target of a rate, a varied parameter is also that target, or there
-            are too many points.
+        UsageError: a board does not exist, the mission does not define the target of a rate, a varied parameter is also
+            that target, or there are too many points.
     """
+    each_of(partial(load_profile, board) for board in boards if board is not None)
     sets = spec.sweep.rate
     if rates and not sets:
         text = "missing target of --rate; add `sweep: {rate: [/node/rate]}` to the mission file, or use --set"

@@ -61,6 +61,15 @@ def test_points_change_the_plan() -> None:
     assert "--board linux" in command
 
 
+def test_unknown_boards_are_reported_before_the_sweep() -> None:
+    with pytest.raises(UsageError) as caught:
+        points_of(read_mission("lab"), [None, "rx64n", "linux", "linxu"], [], [], [0])
+    assert [error.text.partition("?")[0] for error in caught.value.each] == [
+        "unknown board 'rx64n'; did you mean rx64m",
+        "unknown board 'linxu'; did you mean linux",
+    ]
+
+
 def test_a_rate_that_sets_nothing() -> None:
     with pytest.raises(UsageError, match="missing target of --rate"):
         points_of(read_mission("lab"), [None], [50], [], [0])
