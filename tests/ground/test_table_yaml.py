@@ -173,6 +173,14 @@ rows:
     assert [error.field for error in caught.value.each] == fields.split()
 
 
+def test_all_wrong_types_of_a_layout_are_raised_together(tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text("table: X.Y\nlayout: {A: u24, B: flaot, C: u8, D: [{E: i3}, 2]}\nrows: []", encoding="utf-8")
+    with pytest.raises(UsageError) as caught:
+        table_yaml.read(path, find)
+    assert [error.field for error in caught.value.each] == ["layout.A", "layout.B", "layout.D[0].E"]
+
+
 def test_misspelt_keys_of_a_table_are_not_missing_too(tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
     path.write_text("tabel: APP.Plan\nrow: []", encoding="utf-8")

@@ -11,16 +11,17 @@ See docs/how_to/tables_and_parameters.md for the format. Errors give file, line 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from cfepy.fs import DESCRIPTION_SIZE, SUBTYPE_TBL_IMG, FileHeader, TableHeader
-from cfepy.ground.cfe_files.table_file import HEADER_FIELDS, ROW, Find, TableContents, cut, one_nan
+from cfepy.ground.cfe_files.table_file import HEADER_FIELDS, ROW, Find, KnownTables, TableContents, cut, one_nan
 from cfepy.msg import Layout
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.reading.mistakes import Mistakes, collected, each_of
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from cfepy.tbl import PROCESSOR_ID, SPACECRAFT_ID, TableType
 from cfepy.tbl.packets import FULL_NAME_SIZE
@@ -110,7 +111,7 @@ def _table(root: Marked, find: Find, mistakes: Mistakes) -> TableContents:
     if "." not in name or not 0 < len(name) < FULL_NAME_SIZE:
         raise said["table"].fail(f"must be APP.Table with at most {FULL_NAME_SIZE - 1} characters, not {name!r}")
     kind = own_type(said) or find(name)
-    image = _image(said, kind, offset or 0)
+    image = _image(said, kind, offset or 0, find.types if isinstance(find, KnownTables) else ())
     table = TableHeader(name, len(image), offset or 0, reserved or 0)
     file = TableContents(header, table, image, after, kind)
     return file.marked() if wants_mark else file
@@ -128,7 +129,7 @@ def own_type(said: dict[str, Marked]) -> TableType | None:
 
 def _layout(marked: Marked, name: str) -> Layout:
     parts = marked.mapping()
-    types = each_of(partial(_field_type, kind, field) for field, kind in parts.items())
+    types = each_of(partial(_checked_type, kind, field) for field, kind in parts.items())
     fields = list(zip(parts, types, strict=True))
     if not fields:
         raise marked.fail("has no fields; add at least one, such as `Name: u16`")
@@ -137,6 +138,16 @@ def _layout(marked: Marked, name: str) -> Layout:
     except UsageError as error:
         wrong = marked.value.get((error.field or "").rpartition(".")[2], marked)
         raise wrong.fail(error.text) from None
+
+
+def _checked_type(marked: Marked, name: str) -> Any:
+    """Return the type of one field of a layout."""
+    kind = _field_type(marked, name)
+    try:
+        Layout(name, [(name, kind)])
+    except UsageError as error:
+        raise marked.fail(error.text) from None
+    return kind
 
 
 def _field_type(marked: Marked, name: str) -> Any:
@@ -185,14 +196,16 @@ def _hex(marked: Marked | None) -> bytes:
         raise marked.fail("must be hexadecimal digits, two for each byte") from None
 
 
-def _image(said: dict[str, Marked], kind: TableType | None, offset: int) -> bytes:
+def _image(said: dict[str, Marked], kind: TableType | None, offset: int, known: Iterable[str]) -> bytes:
     if "data" in said:
         if "rows" in said:
             raise said["data"].fail("cannot be combined with `rows`; remove one of them")
         image = _hex(said["data"])
     elif kind is None:
-        text = f"unknown table {said['table'].value}; name its mission with --mission, or add a `layout`"
-        raise said["table"].fail(text)
+        name = said["table"].value
+        hint = did_you_mean(name, known, before="; ")
+        remedy = f"{' Otherwise' if hint else ';'} name its mission with --mission, or add a `layout`"
+        raise said["table"].fail(f"unknown table {name}{hint}{remedy}")
     else:
         size = _number(said, "bytes", max(0, kind.size - offset))
         image = cut(_packed(said.get("rows"), kind), offset, size)
