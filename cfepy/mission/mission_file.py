@@ -189,6 +189,8 @@ def _topic(name: str, entry: Marked, mistakes: Mistakes) -> TopicConfig:
         mistakes.add(entry.fail(f'invalid topic name {name!r}; it must begin with "/"'))
     fields = dict(mistakes.fields(entry, ("msg_id", "raw")))
     is_raw = mistakes.attempt(fields["raw"].flag) if "raw" in fields else False
+    if "msg_id" not in fields and mistakes.errors:
+        raise mistakes.errors.pop()  # its key may be misspelt
     if "msg_id" not in fields:
         raise entry.fail("missing msg_id; add it, such as `msg_id: 0x0901`")
     msg_id = fields["msg_id"].value
@@ -238,6 +240,8 @@ def _bridged(topic: str, entry: Marked, mistakes: Mistakes) -> BridgedPacket:
         return BridgedPacket(str(entry.value))
     fields = dict(mistakes.fields(entry, ("packet", "raw")))
     is_raw = mistakes.attempt(fields["raw"].flag) if "raw" in fields else False
+    if "packet" not in fields and mistakes.errors:
+        raise mistakes.errors.pop()  # its key may be misspelt
     if "packet" not in fields:
         raise entry.fail("missing packet; add it, such as `packet: CFE_ES_HK_TLM`")
     return BridgedPacket(str(fields["packet"].value), bool(is_raw))

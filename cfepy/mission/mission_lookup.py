@@ -104,7 +104,9 @@ def _check_kind(path: Path) -> None:
         raise UsageError("is a program, not a mission; use `cfepy node` to run a ROS node alone", file=path)
     is_text = b"\0" not in data and any(mark in data for mark in (b"!", b"CFE_"))
     if path.suffix not in LAUNCH_FILES and data.strip() and not is_text:
-        raise UsageError("is not a startup script or a launch file", file=path)
+        is_mission_file = path.name == MISSION_FILE and os.path.isfile(path.parent / STARTUP_SCRIPT)
+        hint = f"; give the mission's folder {path.parent}" if is_mission_file else ""
+        raise UsageError(f"is not a startup script or a launch file{hint}", file=path)
 
 
 def mission_file_of(script: Path) -> Path | None:
