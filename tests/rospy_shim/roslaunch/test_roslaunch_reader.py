@@ -191,6 +191,7 @@ def test_unknown_words_get_the_nearest_known_one(tmp_path: Path) -> None:
         <param name="c" value="1" type="flaot"/>
         <param name="d" value="1" type="doubel"/>
         <node pkg="p" type="t" name="n" output="scren" cwd="nod"/>
+        <node pkg="p" tpye="t" name="m"/>
         """,
     )
     assert [text for _, _, text in found] == [
@@ -201,6 +202,8 @@ def test_unknown_words_get_the_nearest_known_one(tmp_path: Path) -> None:
         "<param value>: unknown type 'doubel'; did you mean double?",
         "<node cwd>: invalid value 'nod'; did you mean node? (expected node, cwd, ROS_HOME or ros-root)",
         "<node output>: invalid value 'scren'; did you mean screen? (expected screen or log)",
+        "<node> has no attribute 'tpye'; it is ignored, did you mean type?",
+        "<node>: missing 'type'; write type=\"...\" instead of tpye=",
     ]
 
 
