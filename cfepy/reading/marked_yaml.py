@@ -44,7 +44,7 @@ class Marked:
 
     def fail(self, text: str) -> UsageError:
         """Return the error to raise about this value; `text` describes the mistake and the remedy."""
-        return UsageError(text, file=self.file, line=self.line, field=self.field or None)
+        return UsageError(text, file=self.file, line=self.line or None, field=self.field or None)
 
     def mapping(self, known: Iterable[str] | None = None) -> dict[str, Marked]:
         """Return the value as a mapping, empty if there is no value.
