@@ -40,6 +40,7 @@ def test_a_good_mission(tmp_path: Path) -> None:
     [
         ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry must have 8 fields, not 7"),
         ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "missing code for /cf/nothere.so"),
+        ("CFE_APP, hkk, HK_AppMain, HK2, 60, 16384, 0, 0;", "add it, or correct the name; did you mean hk?"),
         ("CFE_APP, hk, HK_AppMian, HK2, 60, 16384, 0, 0;", "has no function HK_AppMian; did you mean HK_AppMain?"),
         ("CFE_APP, hk, , HK2, 60, 16384, 0, 0;", "the application never runs, and the start waits for it; write"),
         (
