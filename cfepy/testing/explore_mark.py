@@ -2,23 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import wraps
-from inspect import signature
-from typing import ParamSpec, TypeVar
 
 import pytest
 
-from cfepy.reading.joined_errors import together
 from cfepy.reading.suggestions import expected
 from cfepy.schedules import Points, Schedule
 from cfepy.status import UsageError
+from cfepy.testing.keywords import suggests_keywords
 from cfepy.testing.missions import EXPLORE_MARK
 
 POLICIES = ("all", "random", "pct", "abreast")
-P = ParamSpec("P")
-T = TypeVar("T")
 BASE = "at"  # a schedule that has options, and is otherwise fifo
 
 
@@ -45,22 +40,7 @@ class Exploration:
     races: bool = False
 
 
-def _suggests_keywords(function: Callable[P, T]) -> Callable[P, T]:
-    """Report an unknown keyword argument of a function with the nearest known one."""
-    known = list(signature(function).parameters)
-
-    @wraps(function)
-    def checked(*args: P.args, **given: P.kwargs) -> T:
-        unknown = [name for name in given if name not in known]
-        if unknown:
-            hints = [(name, expected(name, known)) for name in unknown]
-            raise together([UsageError(f"unknown argument; {hint}", field=name) for name, hint in hints])
-        return function(*args, **given)
-
-    return checked
-
-
-@_suggests_keywords
+@suggests_keywords
 def explore(
     seeds: int = 200,
     policy: str | Sequence[str] = "all",

@@ -185,8 +185,8 @@ def _check_fields(given: Iterable[str], known: Iterable[str], owner: str) -> Non
     names = list(known)
     unknown = [name for name in given if name not in names]
     if unknown:
-        hints = [(name, expected(name, names, subject=f"{owner} has", last="and")) for name in unknown]
-        raise together([UsageError(f"unknown field; {hint}", field=name) for name, hint in hints])
+        hints = [(name, expected(name, names)) for name in unknown]
+        raise together([UsageError(f"unknown field of {owner}; {hint}", field=name) for name, hint in hints])
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> bytes:

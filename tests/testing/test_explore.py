@@ -210,6 +210,22 @@ def test_wrong_arguments() -> None:
             explore(**wrong)
 
 
+def test_a_misspelt_option_of_a_mission_gets_the_nearest_one(suite: Suite) -> None:
+    result = suite(
+        """
+        def test_it(mission):
+            mission("talk", scheduel="fifo", sed=3)
+        """
+    )
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "*UsageError: scheduel: unknown argument; did you mean schedule?",
+            "*sed: unknown argument; did you mean seed?",
+        ]
+    )
+
+
 def test_a_decorator_without_parentheses_is_told() -> None:
     bare: Any = explore
     with pytest.raises(UsageError, match=r"@explore: requires parentheses: write @explore\(\)"):
