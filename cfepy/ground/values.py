@@ -75,7 +75,7 @@ def unknown_field(owner: str, paths: Iterable[str], path: str) -> UsageError:
     known = list(dict.fromkeys(re.sub(_INDICES, "", each) for each in paths))
     if not known:
         return UsageError(f"{owner} has no fields", field=path)
-    return UsageError(f"unknown field; {expected(path, known, subject=f'{owner} has', last='and')}", field=path)
+    return UsageError(f"unknown field of {owner}; {expected(path, known)}", field=path)
 
 
 def _packed(cell: Cell, text: str) -> bytes:

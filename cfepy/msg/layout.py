@@ -289,8 +289,8 @@ class Layout:
         prefix = f"{path}." if path else ""
         if not value.keys() <= self._fields.keys():
             unknown = next(name for name in value if name not in self._fields)
-            hint = expected(str(unknown), self._fields, subject=f"{self.name} has", last="and")
-            raise UsageError(f"unknown field; {hint}", field=f"{prefix}{unknown}")
+            hint = expected(str(unknown), self._fields)
+            raise UsageError(f"unknown field of {self.name}; {hint}", field=f"{prefix}{unknown}")
         for field, kind in self._fields.items():
             yield from kind.flatten(value[field] if field in value else kind.zero(), prefix + field)
 

@@ -88,7 +88,7 @@ def test_what_is_wrong_is_told_and_the_session_goes_on(console: Console) -> None
         "cannot be read: No such file or directory",
         "invalid factor 'x'",
         "invalid condition 'bus'; expected event, tlm, app, file or console",
-        "ValU: unknown field; did you mean ValU32? (SAMPLE_APP_DISPLAY_PARAM has ValU32, ValI16 and ValStr); "
+        "ValU: unknown field of SAMPLE_APP_DISPLAY_PARAM; did you mean ValU32? (expected ValU32, ValI16 or ValStr); "
         "ValI16: must be an integer, not 'x'",
     ):
         assert f"FAILED {text}" in output

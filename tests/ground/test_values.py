@@ -73,8 +73,8 @@ def test_the_packet_is_the_commands_own() -> None:
 @pytest.mark.parametrize(
     ("word", "said"),
     [
-        ("Cuont=1", "Cuont: unknown field; did you mean Count?"),
-        ("Inner=1", "Inner: unknown field; did you mean Inner.Id?"),
+        ("Cuont=1", "Cuont: unknown field of APP_SET; did you mean Count?"),
+        ("Inner=1", "Inner: unknown field of APP_SET; did you mean Inner.Id?"),
         ("Inner", "invalid field value 'Inner'; expected FIELD=VALUE"),
         ("Count=300", "Count: 300 does not fit u8"),
         ("Count=-1", "Count: -1 does not fit u8"),
@@ -84,7 +84,7 @@ def test_the_packet_is_the_commands_own() -> None:
         ("On=maybe", "On: must be true or false, not 'maybe'"),
         ("Masks=1,2,3,4", "Masks: must have at most 3 items, not 4"),
         ("Masks=1,x", "Masks[1]: must be an integer, not 'x'"),
-        ("Masks[3]=1", "Masks[3]: unknown field; did you mean Masks?"),
+        ("Masks[3]=1", "Masks[3]: unknown field of APP_SET; did you mean Masks?"),
         ("Inner.Name=muchtoolong", "Inner.Name: must have at most 8 bytes, not 11: 'muchtoolong'"),
     ],
 )

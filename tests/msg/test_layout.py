@@ -108,7 +108,7 @@ def test_a_mapping_and_keywords_go_together() -> None:
         ({"At": [7]}, r"At\[0\]: must be a mapping"),
         ({"At": 7}, "At: must be a list, not 7"),
         ({"Real": 1e300}, "Real: 1e.300 does not fit f32"),
-        ({"Nope": 1}, "Nope: unknown field; T has Id, Name, At and Real"),
+        ({"Nope": 1}, "Nope: unknown field of T; expected Id, Name, At or Real"),
     ],
 )
 def test_bad_values_name_their_field(values: dict[str, Any], text: str) -> None:

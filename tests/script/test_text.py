@@ -86,7 +86,7 @@ def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
         ("expect event CFE_ES 3 EROR", "invalid type of event 'EROR'; did you mean ERROR?"),
         ('expect event CFE_ES 3 "No-op', 'unclosed quote: "No-op'),
         ("expect tlm SAMPLE_APP_HK", "unknown telemetry packet SAMPLE_APP_HK; did you mean SAMPLE_APP_HK_TLM?"),
-        ("expect tlm SAMPLE_APP_HK_TLM Counter == 1", "Counter: unknown field; "),
+        ("expect tlm SAMPLE_APP_HK_TLM Counter == 1", "Counter: unknown field of SAMPLE_APP_HK_TLM; "),
         ("expect tlm SAMPLE_APP_HK_TLM CommandCounter = 1", "invalid sign '='; expected ==, !=, <, <=, > or >="),
         ("expect tlm SAMPLE_APP_HK_TLM CommandCounter ==", "unexpected end of line; the value is missing"),
         ("expect tlm SAMPLE_APP_HK_TLM CommandCounter == x", "CommandCounter: invalid number 'x'"),
@@ -111,7 +111,10 @@ def test_all_wrong_steps_are_raised_together(tmp_path: Path) -> None:
         script(tmp_path, text)
     found = [(each.line, each.field, each.text) for each in error.value.each]
     assert [(line, field) for line, field, _ in found] == [(1, None), (3, "ValU32"), (3, "ValU"), (4, None)]
-    assert found[2][2] == "unknown field; did you mean ValU32? (SAMPLE_APP_DISPLAY_PARAM has ValU32, ValI16 and ValStr)"
+    assert (
+        found[2][2]
+        == "unknown field of SAMPLE_APP_DISPLAY_PARAM; did you mean ValU32? (expected ValU32, ValI16 or ValStr)"
+    )
 
 
 def test_times_do_not_go_back(tmp_path: Path) -> None:
