@@ -157,4 +157,5 @@ def _unknown_file(path: str, spec: MissionSpec) -> Iterator[str]:
     except OsalError as error:
         yield error.text
         return
-    yield f"the file {path} does not exist before the boot{did_you_mean(path, names, before='; ')}"
+    hint = did_you_mean(path, names, "name a file of the mission, such as /cf/hk_cpy_tbl.tbl")
+    yield f"the file {path} does not exist before the boot; {hint}"

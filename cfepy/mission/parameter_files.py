@@ -111,7 +111,8 @@ def _fault(value: Any) -> str | None:
     if isinstance(value, bool | float | str | bytes):
         return None
     if not isinstance(value, int):
-        what = "nothing" if value is None else f"a {type(value).__name__}"
+        kind = type(value).__name__.removesuffix("time")  # a datetime is a date for the user
+        what = "nothing" if value is None else f"a {kind}"
         return f"must be a value that ROS parameters can have, not {what}; put text in quotes"
     if _INT_MIN <= value <= _INT_MAX:
         return None
