@@ -1,4 +1,4 @@
-"""Texts that are not YAML: the error has the line, and what to do."""
+"""Texts that are not YAML: the error has the line and the remedy."""
 
 from __future__ import annotations
 
