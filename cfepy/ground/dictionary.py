@@ -25,7 +25,7 @@ from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemet
 from cfepy.reading.contained_files import is_contained
 from cfepy.reading.input_files import open_input
 from cfepy.reading.resources import shipped
-from cfepy.reading.suggestions import did_you_mean, expected
+from cfepy.reading.suggestions import did_you_mean, expected, listed
 from cfepy.status import CfeError, UsageError
 from cfepy.tbl import TableType
 
@@ -176,7 +176,8 @@ class Dictionary:
 
     def _unknown(self, what: str, name: str, known: Iterable[str]) -> UsageError:
         unread = "".join(f"; {problem}" for problem in self.problems)
-        return UsageError(f"unknown {what} {name}{did_you_mean(name, known, before='; ', most=3)}{unread}")
+        hint = did_you_mean(name, known, f"expected {listed(known)}", most=3)
+        return UsageError(f"unknown {what} {name}; {hint}{unread}")
 
 
 def _read(entry: Command | Telemetry | Topic | None, packet: bytes, decoded: Decoded) -> Decoded:
