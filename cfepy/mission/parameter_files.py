@@ -8,12 +8,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from functools import partial
 from pathlib import Path
 from typing import Any
 
+from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked, load
-from cfepy.reading.mistakes import each_of
 from cfepy.status import UsageError
 
 _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
@@ -36,17 +35,17 @@ def read_files(section: Marked) -> dict[str, Any]:
     return tree
 
 
-def _tree(entries: Mapping[str, Marked]) -> dict[str, Any]:
-    return dict(zip(entries, each_of(partial(_value, entry) for entry in entries.values()), strict=True))
-
-
 def read_tree(section: Marked) -> dict[str, Any]:
     """Return a mapping of names to values, checked.
 
     Raises:
         UsageError: if it is not a mapping, or has a value that ROS cannot carry.
     """
-    return _tree(section.mapping())
+    entries = section.mapping()
+    try:
+        return {name: _value(entry) for name, entry in entries.items()}
+    except UsageError:
+        raise together(list(_errors_in(section))) from None
 
 
 def merged(tree: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
@@ -80,13 +79,25 @@ def _below(namespace: str, tree: dict[str, Any]) -> dict[str, Any]:
 def _value(entry: Marked) -> Any:
     value = entry.value
     if isinstance(value, dict):
-        return _tree(value)
+        return {name: _value(inner) for name, inner in value.items()}
     if isinstance(value, list):
-        return each_of(partial(_value, inner) for inner in value)
+        return [_value(inner) for inner in value]
     fault = _fault(value)
     if fault is not None:
         raise entry.fail(fault)
     return value
+
+
+def _errors_in(entry: Marked) -> Iterator[UsageError]:
+    """Yield the errors about all values inside an entry that ROS cannot carry."""
+    value = entry.value
+    if isinstance(value, dict | list):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from _errors_in(inner)
+        return
+    fault = _fault(value)
+    if fault is not None:
+        yield entry.fail(fault)
 
 
 def checked(value: Any) -> Any:
