@@ -71,7 +71,7 @@ def unreadable(path: str | Path, error: OSError) -> UsageError:
     if error.errno == ENOENT:
         wanted = Path(path)
         near = like(wanted.name, _names_near(wanted))
-        hint = f"; did you mean {wanted.parent / near[0]}?" if near else ""
+        hint = f"; did you mean {wanted.parent / near[0]}?" if near else "; check the path"
     return UsageError(f"cannot be read: {error.strerror}{hint}", file=path)
 
 

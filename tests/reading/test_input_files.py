@@ -131,7 +131,7 @@ def test_a_missing_file_gets_the_name_of_a_similar_one(tmp_path: Path) -> None:
     assert caught.value.text == f"cannot be read: No such file or directory; did you mean {tmp_path / 'board.yaml'}?"
     with pytest.raises(UsageError) as caught:
         load(tmp_path / "none" / "board.yaml")
-    assert caught.value.text == "cannot be read: No such file or directory"
+    assert caught.value.text == "cannot be read: No such file or directory; check the path"
 
 
 def test_inputs_are_opened_by_the_helper_alone() -> None:

@@ -99,11 +99,12 @@ def seeds_of(text: str, option: str) -> list[int]:
         UsageError: a value is not a whole number.
     """
     steps = ",".join(f"{part}:1" if ".." in part and ":" not in part else part for part in text.split(","))
-    values = values_of(steps, option)
     try:
-        return [int(value) for value in values]
-    except ValueError:
-        raise UsageError(f"invalid seeds {text!r}; expected numbers, or a range such as 0..9", field=option) from None
+        return [int(value) for value in values_of(steps, option)]
+    except ValueError:  # a UsageError is one; it would name a range with a step, which the user did not write
+        raise UsageError(
+            f"invalid seeds {text!r}; expected numbers, or a rising range such as 0..9", field=option
+        ) from None
 
 
 def points_of(

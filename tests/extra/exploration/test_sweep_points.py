@@ -46,8 +46,9 @@ def test_no_rate(text: str) -> None:
 
 def test_seeds() -> None:
     assert seeds_of("0..3,7", "--seed") == [0, 1, 2, 3, 7]
-    with pytest.raises(UsageError, match="invalid seeds"):
-        seeds_of("1.5", "--seed")
+    for wrong in ("1.5", "a..b", "9..0"):
+        with pytest.raises(UsageError, match=f"invalid seeds '{wrong}'; expected numbers, or a rising range"):
+            seeds_of(wrong, "--seed")
 
 
 def test_points_change_the_plan() -> None:
