@@ -47,7 +47,8 @@ class Mistakes:
         """
         inner = Mistakes()
         found = inner.attempt(lambda: read(inner))
-        self.errors += inner.errors
+        for error in inner.errors:
+            self.add(error)
         return None if inner.errors else found
 
     def mapping(self, entry: Marked) -> dict[str, Marked]:
