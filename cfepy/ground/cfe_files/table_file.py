@@ -158,7 +158,8 @@ def take_apart(data: bytes, find: Find, file: str) -> TableContents:
     try:
         header, table, image = read_table_file(data)
     except CfeError as error:
-        raise UsageError(f"is not a table file: {error.text}", file=file) from None
+        text = f"is not a table file: {error.text}; give a file that cFE or `cfepy tbl build` wrote"
+        raise UsageError(text, file=file) from None
     size = table.num_bytes
     return TableContents(header, table, image[:size], image[size:], find(table.table_name))
 
