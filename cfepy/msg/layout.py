@@ -319,7 +319,7 @@ class Layout:
             try:
                 struct.pack("<" + code, leaf)
             except (struct.error, OverflowError):
-                return UsageError(f"{leaf!r} does not fit {_name_of_code(code)}", field=path)
+                return UsageError(f"{leaf!r} does not fit {_name_of_code(code)}{_range_of(code)}", field=path)
         return UsageError(f"the values do not fit {self.name}")
 
     def __repr__(self) -> str:
@@ -371,6 +371,15 @@ def _named(names: ValueNames, text: str, path: str) -> int:
 
 def _name_of_code(code: str) -> str:
     return next((name for name, (known, _) in _SCALARS.items() if known == code), f"char[{code[:-1]}]")
+
+
+def _range_of(code: str) -> str:
+    """Return the range of an integer for an error; empty for another type."""
+    if code not in "bBhHiIqQ":
+        return ""
+    bits = 8 * struct.calcsize(f"<{code}")
+    lowest, highest = (0, (1 << bits) - 1) if code.isupper() else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+    return f"; expected {lowest} to {highest}"
 
 
 SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])

@@ -73,7 +73,7 @@ class Words:
         self.source = line[:at].strip()
         rest = line[at:].strip()
         if rest and not rest.startswith("#"):
-            raise UsageError(f"unclosed quote: {rest}")
+            raise UsageError(f'unclosed quote: {rest}; end the text with "')
 
     def __bool__(self) -> bool:
         return bool(self._words)

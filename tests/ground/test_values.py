@@ -77,7 +77,7 @@ def test_the_packet_is_the_commands_own() -> None:
         ("Inner=1", "Inner: unknown field of APP_SET; did you mean Inner.Id?"),
         ("Inner", "invalid field value 'Inner'; expected FIELD=VALUE"),
         ("Count=300", "Count: 300 does not fit u8"),
-        ("Count=-1", "Count: -1 does not fit u8"),
+        ("Count=-1", "Count: -1 does not fit u8; expected 0 to 255"),
         ("Count=1.5", "Count: must be an integer, not '1.5'"),
         ("Count=", "Count: must be an integer, not ''"),
         ("Ratio=x", "Ratio: must be a number, not 'x'"),

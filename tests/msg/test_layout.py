@@ -98,7 +98,7 @@ def test_a_mapping_and_keywords_go_together() -> None:
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ({"Id": 256}, "Id: 256 does not fit u8"),
+        ({"Id": 256}, "Id: 256 does not fit u8; expected 0 to 255"),
         ({"Id": "x"}, "Id: must be a number, not 'x'"),
         ({"Id": 1.5}, "Id: must be an integer, not 1.5"),
         ({"Name": "12345"}, "Name: must have at most 4 bytes, not 5"),
