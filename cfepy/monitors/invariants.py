@@ -135,7 +135,7 @@ def _invariant(name: str, entry: Marked, mistakes: Mistakes) -> Invariant:
         selection or Selection(),
         when=predicate("when"),
         holds=predicate("holds"),
-        answer=mistakes.attempt(partial(_answer, entry, fields)) if is_known else None,
+        answer=mistakes.whole(partial(_answer, entry, fields)) if is_known else None,
         again_ns=mistakes.attempt(partial(_again, fields["again"])) if "again" in fields else None,
         eventually=predicate("eventually"),
         file=file,
@@ -175,19 +175,20 @@ def _packet(entry: Marked) -> str:
     return entry.text()
 
 
-def _answer(entry: Marked, fields: Mapping[str, Marked]) -> Answer | None:
+def _answer(entry: Marked, fields: Mapping[str, Marked], mistakes: Mistakes) -> Answer | None:
     if "within" not in fields:
         if "then" in fields:
             raise fields["then"].fail("requires `within`; add it, such as `within: 0.5 s`")
         return None
     if "then" not in fields:
         raise entry.fail("`within` requires `then`; add it, such as `then: {topic: /name}`")
-    then = fields["then"].mapping((*SOURCE_FIELDS, "holds"))
-    selection = read_selection(then)
-    if selection == Selection():
-        raise fields["then"].fail("missing message; add `topic: /name` or `packet: NAME`")
-    holds = Predicate.read(then["holds"], (*NAMES, CAUSE)) if "holds" in then else None
-    return Answer(selection, holds, fields["within"].time())
+    within_ns = mistakes.attempt(fields["within"].time)
+    then = dict(mistakes.fields(fields["then"], (*SOURCE_FIELDS, "holds")))
+    holds = mistakes.attempt(partial(Predicate.read, then["holds"], (*NAMES, CAUSE))) if "holds" in then else None
+    selection = mistakes.attempt(partial(read_selection, then))
+    if selection == Selection() and not mistakes.errors:  # otherwise its key may be misspelt
+        mistakes.add(fields["then"].fail("missing message; add `topic: /name` or `packet: NAME`"))
+    return Answer(selection or Selection(), holds, within_ns or 0)
 
 
 def _again(entry: Marked) -> int:

@@ -87,7 +87,7 @@ topics: {/a: {msg_id: big, rawe: true, raw: 3}}
 params: {a: null, b: {c: null}}
 params_from: [1]
 deadlines: {apps: {B: {response: 2, periode: 3}}}
-invariants: {x: {topic: a, holds: "1 +", after: soon}}
+invariants: {x: {topic: a, holds: "1 +", after: soon}, y: {topic: /a, within: x, then: {topc: /a, holds: "mg"}}}
 results: {/a: {compare: lst, ignore: [a b, c d]}}
 """
     mistakes = Mistakes()
@@ -95,6 +95,7 @@ results: {/a: {compare: lst, ignore: [a b, c d]}}
     fields = "nodes.A.keys[0] nodes.A.keys[1] nodes.A.compute.f nodes.A.compute.g topics./a.rawe topics./a.raw "
     fields += "topics./a.msg_id params.a params.b.c params_from[0] "
     fields += "invariants.x.topic invariants.x.holds invariants.x.after "
+    fields += "invariants.y.within invariants.y.then.topc invariants.y.then.holds "
     fields += "results./a.ignore[0] results./a.ignore[1] results./a.compare "
     fields += "deadlines.apps.B.periode deadlines.apps.B.response"
     assert [error.field for error in mistakes.errors] == fields.split()
