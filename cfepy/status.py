@@ -7,7 +7,12 @@ keeps its own.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from cfepy.writing.escapes import visible, visible_line
+
+MOST_TOLD = 20
+"""The most errors of one file that a text for the user lists."""
 
 
 def _signed(status: int) -> int:
@@ -327,20 +332,41 @@ class UsageError(ValueError):
         file: path of the file with the error.
         line: line number in that file, counted from 1.
         field: the field with the error, e.g. "limits.sb_max_pipes".
+        others: further errors, found at the same time.
 
-    `str()` gives the text for the user, with control characters escaped.
+    `str()` gives the text for the user, with control characters escaped: a line for each error, at most `MOST_TOLD`.
     """
 
     def __init__(
-        self, text: str, *, file: object | None = None, line: int | None = None, field: str | None = None
+        self,
+        text: str,
+        *,
+        file: object | None = None,
+        line: int | None = None,
+        field: str | None = None,
+        others: Iterable[UsageError] = (),
     ) -> None:
         super().__init__(text)
         self.text = text
         self.file = None if file is None else str(file)
         self.line = line
         self.field = field
+        self.others = tuple(others)
+
+    @property
+    def each(self) -> tuple[UsageError, ...]:
+        """This error, and the further ones."""
+        return (self, *self.others)
 
     def __str__(self) -> str:
+        lines = [each.alone for each in self.each]
+        if len(lines) > MOST_TOLD:
+            lines[MOST_TOLD:] = [f"and {len(lines) - MOST_TOLD} more"]
+        return "\n".join(lines)
+
+    @property
+    def alone(self) -> str:
+        """The text for the user, without further errors."""
         place = ":".join(visible_line(part) for part in (self.file, self.line) if part is not None)
         field = "" if self.field is None else visible_line(self.field)
         return ": ".join(part for part in (place, field, visible(self.text)) if part)

@@ -15,10 +15,12 @@ from typing import NamedTuple
 
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.fs import FileCategory, parse_input_file_name
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import CFE_ES_BAD_ARGUMENT, CFE_ES_ERR_APP_CREATE, CfeError
 
 CFE_APP = "CFE_APP"
 CFE_LIB = "CFE_LIB"
+KINDS = (CFE_APP, CFE_LIB)
 
 EXCEPTION_RESTART_APP = 0
 EXCEPTION_PROC_RESTART = 1
@@ -144,8 +146,7 @@ def check(data: bytes, longest: int = LONGEST) -> list[Note]:
     """
     found: list[Note] = []
     for raw in _split(data):
-        error = _error_in(raw, longest)
-        found += [] if error is None else [Note(raw.line, error)]
+        found += [Note(raw.line, error) for error in _errors_in(raw, longest)]
         found += [Note(raw.line, text, is_warning=True) for text in _remarks(raw, longest)]
     return found
 
@@ -194,17 +195,13 @@ def _parse_entry(raw: _Raw, longest: int) -> StartupEntry | BadLine:
         path = parse_input_file_name(file, FileCategory.DYNAMIC_MODULE)
     except CfeError as error:
         text = f"{_PARSE}Invalid ES Startup script file name: {file}"
-        return _bad(raw, f"the file name cannot be used: {error.text}", text, error.status)
-    if kind not in (CFE_APP, CFE_LIB):
+        return _bad(raw, _wrong_file(error), text, error.status)
+    if kind not in KINDS:
         text = f"{_PARSE}Unexpected EntryType {kind} in startup file."
-        return _bad(raw, f"the first field must be {CFE_APP} or {CFE_LIB}, not {kind!r}", text, CFE_ES_ERR_APP_CREATE)
+        return _bad(raw, _wrong_kind(kind), text, CFE_ES_ERR_APP_CREATE)
     log_text = _loading(kind, path, name)
     if len(name) >= MAX_NAME_LEN:
-        reason = (
-            f"the name {name!r} must have at most {MAX_NAME_LEN - 1} characters, "
-            f"not {len(name)}; cFE does not report this"
-        )
-        return _bad(raw, reason, log_text, CFE_ES_BAD_ARGUMENT)
+        return _bad(raw, _wrong_name(name), log_text, CFE_ES_BAD_ARGUMENT)
     return StartupEntry(
         kind=kind,
         file=file,
@@ -218,6 +215,19 @@ def _parse_entry(raw: _Raw, longest: int) -> StartupEntry | BadLine:
         line=raw.line,
         log_text=log_text,
     )
+
+
+def _wrong_file(error: CfeError) -> str:
+    return f"the file name cannot be used: {error.text}"
+
+
+def _wrong_kind(kind: str) -> str:
+    return f"the first field must be {CFE_APP} or {CFE_LIB}, not {kind!r}{did_you_mean(kind, KINDS, before='; ')}"
+
+
+def _wrong_name(name: str) -> str:
+    length = f"must have at most {MAX_NAME_LEN - 1} characters, not {len(name)}"
+    return f"the name {name!r} {length}; cFE does not report this"
 
 
 def _loading(kind: str, path: str, name: str) -> str:
@@ -249,22 +259,43 @@ def _too_few(raw: _Raw, tokens: int) -> BadLine:
     return _bad(raw, reason, text)
 
 
-def _error_in(raw: _Raw, longest: int) -> str | None:
-    """Return why an entry is invalid, or None."""
+def _errors_in(raw: _Raw, longest: int) -> Iterator[str]:
+    """Yield the reasons why an entry is invalid. cFE itself stops at the first one."""
     if not raw.ended:
-        return f"the last entry is ignored, because its ';' is missing: {raw.text}"
+        yield f"the last entry is ignored, because its ';' is missing: {raw.text}"
+        return
     entry = _parse_entry(raw, longest)
-    return entry.explanation if isinstance(entry, BadLine) else None
+    if not isinstance(entry, BadLine):
+        return
+    fields = raw.text.split(",")
+    if len(fields) != MAX_TOKENS or len(raw.text) > longest:
+        yield entry.explanation
+        return
+    kind, file, _, name = fields[:4]
+    try:
+        parse_input_file_name(file, FileCategory.DYNAMIC_MODULE)
+    except CfeError as error:
+        yield _wrong_file(error)
+    if kind not in KINDS:
+        yield _wrong_kind(kind)
+    if len(name) >= MAX_NAME_LEN:
+        yield _wrong_name(name)
 
 
 def _remarks(raw: _Raw, longest: int) -> Iterator[str]:
     """Yield remarks on parts of an entry that cFE interprets differently than they are written."""
     if raw.dropped:
         yield "the entry has characters that are not ASCII; cFE ignores them"
-    entry = _parse_entry(raw, longest) if raw.ended else None
-    if not isinstance(entry, StartupEntry):
-        return
     fields = raw.text.split(",")
+    if not raw.ended or len(fields) != MAX_TOKENS or len(raw.text) > longest:
+        return
+    entry = _parse_entry(raw, longest)
+    if isinstance(entry, StartupEntry):
+        yield from _remarks_on_names(entry, fields)
+    yield from _remarks_on_numbers(fields)
+
+
+def _remarks_on_names(entry: StartupEntry, fields: list[str]) -> Iterator[str]:
     what = "application" if entry.kind == CFE_APP else "library"
     if not entry.name:
         yield (
@@ -278,6 +309,9 @@ def _remarks(raw: _Raw, longest: int) -> Iterator[str]:
         )
     if len(fields[2]) >= MAX_NAME_LEN:
         yield f"the symbol {fields[2]!r} is cut to {entry.symbol!r}"
+
+
+def _remarks_on_numbers(fields: list[str]) -> Iterator[str]:
     for what, field in (("priority", fields[4]), ("stack size", fields[5]), ("exception action", fields[7])):
         if not _PLAIN_NUMBER.fullmatch(field):
             yield f"invalid {what} {field!r}, which cFE reads as {strtoul(field)}; write a number, such as 60 or 0x3C"

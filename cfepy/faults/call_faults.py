@@ -71,7 +71,9 @@ def _call_name(target: str) -> str:
             return f"{service}.{_WORD.sub('_', target.removeprefix(prefix)).lower()}"
     service, dot, method = target.removeprefix("cfe.").partition(".")
     if not dot or service not in _classes() or not method or method.startswith("_"):
-        text = f"invalid call {target!r}; write it as OS_QueuePut or os.queue_put, with one of {', '.join(_classes())}"
+        hint = did_you_mean(service, _classes(), before="; ", form=f"{{}}.{method}") if dot else ""
+        known = ", ".join(_classes())
+        text = f"invalid call {target!r}; write it as OS_QueuePut or os.queue_put, with one of {known}{hint}"
         raise UsageError(text)
     return f"{service}.{method}"
 
@@ -91,5 +93,7 @@ def status_of(call: str, name: str | None) -> int:
         return USUAL.get(call, usual if call.startswith(("os.", "psp.")) else codes.CFE_STATUS_EXTERNAL_RESOURCE_FAIL)
     found = getattr(codes, name, None)
     if not isinstance(found, int) or not name.startswith(("CFE_", "OS_")):
-        raise UsageError(f"unknown status {name!r}; expected a name such as OS_QUEUE_FULL or CFE_SB_BUF_ALOC_ERR")
+        names = [each for each in vars(codes) if each.startswith(("CFE_", "OS_"))]
+        hint = did_you_mean(name, names, "expected a name such as OS_QUEUE_FULL or CFE_SB_BUF_ALOC_ERR")
+        raise UsageError(f"unknown status {name!r}; {hint}")
     return codes.to_signed(found)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,8 @@ from cfepy.faults.call_faults import call_name, status_of
 from cfepy.faults.kinds import KINDS, FaultKind
 from cfepy.faults.timing import When
 from cfepy.reading.marked_yaml import Marked, load
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.mistakes import Mistakes, collected, each_of
+from cfepy.reading.suggestions import did_you_mean, expected, listed
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -123,42 +125,55 @@ def read_marked(root: Marked) -> FaultPlan:
     Raises:
         UsageError: if there is a mistake in it.
     """
+    return collected(partial(_plan, root))
+
+
+def _plan(root: Marked, mistakes: Mistakes) -> FaultPlan:
     section = root
     if not isinstance(root.value, list):
-        sections = root.mapping(("faults",))
+        sections = dict(mistakes.fields(root, ("faults",)))
         if "faults" not in sections:
+            if mistakes.errors:
+                raise mistakes.errors.pop()  # it may have a misspelt key
             raise root.fail("missing faults; write `faults:` and a list of faults, such as `- drop: /odom`")
         section = sections["faults"]
     faults: list[Fault] = []
-    names: dict[str, int] = {}
+    names: set[str] = set()
     for item in section.items():
-        fault = _fault(item, faults)
+        fault = mistakes.whole(partial(_fault, item, faults))
+        if fault is None:
+            continue
         if fault.name in names:
-            raise item.fail(f"the name {fault.name!r} is already used by another fault; choose another name")
-        names[fault.name] = item.line
+            mistakes.add(item.fail(f"the name {fault.name!r} is already used by another fault; choose another name"))
+        names.add(fault.name)
         faults.append(fault)
     return FaultPlan(tuple(faults), str(root.file))
 
 
-def _fault(item: Marked, before: list[Fault]) -> Fault:
+def _fault(item: Marked, before: list[Fault], mistakes: Mistakes) -> Fault:
     fields = dict(item.mapping())
     kind_name = _kind_of(item, fields)
     kind = KINDS[kind_name]
-    target = _target(kind, fields.pop(kind_name))
-    name = fields.pop("name").text() if "name" in fields else _free_name(kind_name, before)
-    _check_options(item, kind_name, kind, fields)
+    target = mistakes.attempt(partial(_target, kind, fields.pop(kind_name))) or ()
+    name = mistakes.attempt(fields.pop("name").text) if "name" in fields else None
+    known = _known_options(kind_name, kind, fields, mistakes)
     when = When()
     options: dict[str, Any] = {}
-    for option, value in fields.items():
-        read = READERS[option](value)
+    for option, value in known.items():
+        read = mistakes.attempt(partial(READERS[option], value))
+        if read is None:
+            continue
         if option in kinds.OCCASIONS:
             when = replace(when, **{WHEN.get(option, option): read})
         else:
             options[option] = read
+    if mistakes.errors:
+        raise mistakes.errors.pop()  # the combination of wrong options means nothing
+    _check_combination(item, kind_name, kind, known, mistakes)
     if when.until_ns is not None and when.until_ns <= when.after_ns:
-        raise fields["until"].fail("must be later than `after`, otherwise the fault never happens")
+        mistakes.add(fields["until"].fail("must be later than `after`, otherwise the fault never happens"))
     _check_datagram(item, target, options)
-    return Fault(kind_name, target, name, when, options, item.line)
+    return Fault(kind_name, target, name or _free_name(kind_name, before), when, options, item.line)
 
 
 def _kind_of(item: Marked, fields: dict[str, Marked]) -> str:
@@ -167,9 +182,11 @@ def _kind_of(item: Marked, fields: dict[str, Marked]) -> str:
         raise item.fail(f"{found[0]} cannot be combined with {found[1]}; write two faults")
     if found:
         return found[0]
-    hints = [did_you_mean(name, KINDS) for name in fields]
-    hint = next(filter(None, hints), f"write one of {', '.join(KINDS)}, such as `drop: /odom`")
-    raise item.fail(f"missing kind of fault; {hint}")
+    hints = [(name, did_you_mean(name, KINDS)) for name in fields]
+    for name, hint in hints:
+        if hint:
+            raise fields[name].fail(f"unknown kind of fault {name!r}; {hint}")
+    raise item.fail(f"missing kind of fault; write one of {listed(KINDS)}, such as `drop: /odom`")
 
 
 def _free_name(kind: str, before: list[Fault]) -> str:
@@ -180,18 +197,22 @@ def _free_name(kind: str, before: list[Fault]) -> str:
     return f"{kind}-{number}"
 
 
-def _check_options(item: Marked, name: str, kind: FaultKind, fields: dict[str, Marked]) -> None:
+def _known_options(name: str, kind: FaultKind, fields: dict[str, Marked], mistakes: Mistakes) -> dict[str, Marked]:
     for option, value in fields.items():
         if option not in kind.options:
-            hint = did_you_mean(option, kind.options, f"it takes name, {', '.join(kind.options)}")
-            raise value.fail(f"unknown option of {name}; {hint}")
+            hint = expected(option, ["name", *kind.options], subject="it takes", last="and")
+            mistakes.add(value.fail(f"unknown option of {name}; {hint}"))
+    return {option: value for option, value in fields.items() if option in kind.options}
+
+
+def _check_combination(item: Marked, name: str, kind: FaultKind, fields: dict[str, Marked], mistakes: Mistakes) -> None:
     if kind.needed and not any(option in fields for option in kind.needed):
-        wanted = kind.needed[0] if len(kind.needed) == 1 else f"one of {', '.join(kind.needed)}"
-        raise item.fail(f"{name} requires {wanted}, such as `{kind.needed[0]}: {EXAMPLES[kind.needed[0]]}`")
+        wanted = listed(kind.needed)
+        mistakes.add(item.fail(f"{name} requires {wanted}, such as `{kind.needed[0]}: {EXAMPLES[kind.needed[0]]}`"))
     for group in ALTERNATIVES:
         said = [option for option in group if option in fields]
         if len(said) > 1 and (group[0] != "at" or said[0] == "at"):
-            raise fields[said[1]].fail(f"cannot be combined with {said[0]}; write two faults")
+            mistakes.add(fields[said[1]].fail(f"cannot be combined with {said[0]}; write two faults"))
 
 
 def _check_datagram(item: Marked, target: tuple[str, ...], options: dict[str, Any]) -> None:
@@ -208,7 +229,7 @@ def _target(kind: FaultKind, entry: Marked) -> tuple[str, ...]:
     items = entry.items() if isinstance(entry.value, list) else [entry]
     if not items or (len(items) > 1 and kind.strikes not in (kinds.MESSAGE, kinds.APP)):
         raise entry.fail("missing target" if not items else "takes one target; write several faults")
-    return tuple(_one_target(kind.strikes, item) for item in items)
+    return tuple(each_of(partial(_one_target, kind.strikes, item) for item in items))
 
 
 def _one_target(strikes: str, item: Marked) -> str:
@@ -217,12 +238,12 @@ def _one_target(strikes: str, item: Marked) -> str:
     if strikes == kinds.MESSAGE and isinstance(item.value, int) and not isinstance(item.value, bool):
         return f"0x{item.integer(1, 0xFFFF):04X}"
     if not isinstance(item.value, str) or not item.value:
-        raise item.fail(f"must be the name of the {strikes} as text, not {item.plain()!r}")
+        raise item.fail(f"must be the name of the {strikes} as text, not {item.shown()}")
     choices = {kinds.SIGNAL: kinds.SIGNALS, kinds.MEMORY: kinds.MEMORIES, kinds.RESET: kinds.RESETS}.get(strikes)
     if choices is not None:
         return _choice(choices)(item)
     if strikes == kinds.FILE and not item.value.startswith("/"):
-        raise item.fail(f"must be a path of the virtual file system, such as /cf/hk_cpy_tbl.tbl, not {item.value!r}")
+        raise item.fail(f"must be a path of the virtual file system, such as /cf/hk_cpy_tbl.tbl, not {item.shown()}")
     if strikes == kinds.CALL:
         _checked(item, call_name)
     return item.value
@@ -241,14 +262,14 @@ def _checked(item: Marked, check: Callable[[str], object]) -> str:
 def _number(item: Marked, least: float, most: float, what: str) -> float:
     value = item.value
     if isinstance(value, bool) or not isinstance(value, int | float) or not least <= value <= most or not value:
-        raise item.fail(f"must be {what}, not {item.plain()!r}")
+        raise item.fail(f"must be {what}, not {item.shown()}")
     return value
 
 
 def _seconds(item: Marked) -> int:
     value = item.value
     if isinstance(value, bool) or not isinstance(value, int | float) or not 0 <= value <= LONGEST_S:
-        raise item.fail(f"must be a number of seconds, such as 2.5, not {item.plain()!r}")
+        raise item.fail(f"must be a number of seconds, such as 2.5, not {item.shown()}")
     return round(value * NS_PER_S)
 
 
@@ -260,11 +281,15 @@ def _duration(item: Marked) -> int:
 
 
 def _instants(item: Marked) -> tuple[int, ...]:
-    return tuple(_seconds(each) for each in item.items()) if isinstance(item.value, list) else (_seconds(item),)
+    return tuple(each_of(partial(_seconds, each) for each in _several(item)))
 
 
 def _numbers(item: Marked) -> tuple[int, ...]:
-    return tuple(e.integer(1) for e in item.items()) if isinstance(item.value, list) else (item.integer(1),)
+    return tuple(each_of(partial(each.integer, 1) for each in _several(item)))
+
+
+def _several(item: Marked) -> list[Marked]:
+    return item.items() if isinstance(item.value, list) else [item]
 
 
 def _range(item: Marked) -> tuple[int, int]:
@@ -284,17 +309,15 @@ def _bytes(item: Marked) -> dict[int, int]:
     """Return positions and values, such as {16: 0xFF}; keys of YAML mappings are texts here."""
     if not isinstance(item.value, dict) or not item.value:
         raise item.fail('must be a mapping of positions to bytes, such as {"16": 0xFF}')
-    found = {}
-    for key, value in item.value.items():
-        try:
-            found[int(key, 0)] = value.integer(0, 255)
-        except ValueError as error:
-            raise (
-                error
-                if isinstance(error, UsageError)
-                else value.fail(f"invalid position {key!r}; expected a whole number")
-            ) from None
-    return found
+    return dict(each_of(partial(_byte, key, value) for key, value in item.value.items()))
+
+
+def _byte(key: str, value: Marked) -> tuple[int, int]:
+    try:
+        position = int(key, 0)
+    except ValueError:
+        raise value.fail(f"invalid position {key!r}; expected a whole number") from None
+    return position, value.integer(0, 255)
 
 
 def _fields(item: Marked) -> dict[str, Any]:
@@ -306,7 +329,7 @@ def _fields(item: Marked) -> dict[str, Any]:
 def _choice(choices: tuple[str, ...]) -> Callable[[Marked], str]:
     def read(item: Marked) -> str:
         if item.value not in choices:
-            raise item.fail(f"must be one of {', '.join(choices)}, not {item.plain()!r}")
+            raise item.fail(f"invalid value {item.shown()}; {expected(str(item.value), choices)}")
         return str(item.value)
 
     return read

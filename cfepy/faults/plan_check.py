@@ -26,7 +26,7 @@ from cfepy.ground import ROS
 from cfepy.mission import CORE_APPS, HOST, MissionSpec
 from cfepy.osal import FileSystem
 from cfepy.reading.plain_yaml import plain_yaml
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, expected
 from cfepy.status import OsalError, UsageError
 
 SEED_WORD = "seed:"
@@ -91,10 +91,11 @@ def seed_of(text: str) -> tuple[int, str]:
     """
     found = _SEED.fullmatch(text)
     if found is None or found[2] not in (None, *INTENSITIES):
-        names = ", ".join(INTENSITIES)
-        raise UsageError(
-            f"invalid value {text!r}; expected a file, seed:7, or seed:7:high (one of {names})", field="--faults"
+        intensity = (
+            "" if found is None else f"; {expected(found[2], INTENSITIES, subject='intensities are', last='and')}"
         )
+        text = f"invalid value {text!r}; expected a file, seed:7, or seed:7:high{intensity}"
+        raise UsageError(text, field="--faults")
     return int(found[1]), found[2] or MEDIUM
 
 
@@ -144,8 +145,7 @@ def _problems(fault: Fault, spec: MissionSpec, found: Found | None) -> Iterator[
 def _unknown(what: str, names: Iterable[str], known: Sequence[str]) -> Iterator[str]:
     for name in names:
         if not any(fnmatchcase(each, number_as_name(name)) for each in known):
-            hint = did_you_mean(name, known, f"known are {', '.join(known[:12]) or 'none'}")
-            yield f"unknown {what} {name}; {hint}"
+            yield f"unknown {what} {name}; {expected(name, known, subject='known are', last='and')}"
 
 
 def _unknown_file(path: str, spec: MissionSpec) -> Iterator[str]:
@@ -157,4 +157,5 @@ def _unknown_file(path: str, spec: MissionSpec) -> Iterator[str]:
     except OsalError as error:
         yield error.text
         return
-    yield f"the file {path} does not exist before the boot{did_you_mean(path, names, before='; ')}"
+    hint = did_you_mean(path, names, "name a file of the mission, such as /cf/hk_cpy_tbl.tbl")
+    yield f"the file {path} does not exist before the boot; {hint}"

@@ -13,7 +13,7 @@ from typing import Any
 from cfepy.flight.log import FlightLog, Here, Packet
 from cfepy.ground import EVENT_TYPES, DecodedEvent
 from cfepy.monitors import Heard
-from cfepy.reading.suggestions import like
+from cfepy.reading.suggestions import expected, like, listed
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -48,7 +48,7 @@ def event(
         UsageError: if there is no such type of event.
     """
     if kind is not None and kind not in EVENT_TYPES:
-        raise UsageError(f"invalid event type {kind!r}; expected one of {', '.join(EVENT_TYPES)}", field="type")
+        raise UsageError(f"invalid event type {kind!r}; {expected(kind, EVENT_TYPES)}", field="type")
 
     def meets(each: DecodedEvent) -> bool:
         return (
@@ -96,7 +96,7 @@ def message(log: FlightLog, here: Here, topic: str, check: Check | None, fields:
             return f"{counted(len(read), 'message')}, the last: {last}"
         names = log.topics.names
         near = like(topic, names, NEAR) or names
-        return f"no message on {topic}; there were some on {', '.join(near)}" if near else "no message on any topic"
+        return f"no message on {topic}; there were some on {listed(near, 'and')}" if near else "no message on any topic"
 
     return Wanted(f"message on {topic}{_conditions(check, fields)}", find, instead)
 
@@ -116,7 +116,7 @@ def telemetry(
     def instead() -> str:
         if not read:
             names = log.telemetry_names()
-            return f"no {name}; there was {', '.join(names)}" if names else "no telemetry at all"
+            return f"no {name}; there was {listed(names, 'and')}" if names else "no telemetry at all"
         shown = ", ".join(f"{path} was {_value(read[-1], path)!r}" for path in fields) or _short(read[-1])
         return f"{shown} in the last of {counted(len(read), 'packet')}, at {read[-1].at:.3f}"
 
@@ -194,8 +194,8 @@ def _value(thing: Any, path: str) -> Any:
             thing = getattr(thing, name)
     except (KeyError, AttributeError):
         known = list(thing.flat) if isinstance(thing, Packet) else getattr(thing, "__slots__", [])
-        near = like(path, known, NEAR) or known
-        raise UsageError(f"unknown field; near it are {', '.join(near)}", field=path) from None
+        hint = expected(path, known, subject="it has", last="and")
+        raise UsageError(f"unknown field; {hint}", field=path) from None
     return thing
 
 

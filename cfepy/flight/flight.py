@@ -28,7 +28,7 @@ from cfepy.ground import DecodedEvent, Topic, library_of, table_type, topics_of
 from cfepy.mission import CALL, FILE, PACKET, PARAM, PUBLISH, HostCall, Mission, receivers
 from cfepy.msg import get_msg_id
 from cfepy.pilot import Flown, RunPlan, takeoff
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, listed
 from cfepy.rtos import Policy, Stopwatch
 from cfepy.script.conditions import seconds
 from cfepy.status import UsageError
@@ -141,7 +141,7 @@ class RosSide:
 def near(name: str, known: Iterable[str]) -> str:
     """Return a hint for an unknown name: similar names, or all."""
     names = list(known)
-    return did_you_mean(name, names, f"there are {', '.join(names) or 'none'}", most=LIKE_IT)
+    return did_you_mean(name, names, f"there are {listed(names, 'and')}", most=LIKE_IT)
 
 
 class Flight(Run):

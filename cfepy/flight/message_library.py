@@ -8,6 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from cfepy.ground import unknown_field
+from cfepy.reading.joined_errors import together
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -86,6 +88,9 @@ def filled(library: Library, kind: str, fields: Mapping[str, Any]) -> Any:
     from rospy_shim.types.genpy.arguments import ArgumentFiller
 
     message = library.message_class(kind)()
+    unknown = [unknown_field(kind, message.__slots__, name) for name in fields if name not in message.__slots__]
+    if unknown:
+        raise together(unknown)
     try:
         ArgumentFiller(library.message_class).fill_message_args(message, [dict(fields)])
     except Exception as error:  # any error of genpy for values that do not fit

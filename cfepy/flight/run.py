@@ -20,6 +20,7 @@ from cfepy.ground import DecodedEvent, Dictionary, Series, SeriesSet
 from cfepy.mission import Mission, endless_waits
 from cfepy.monitors import Heard
 from cfepy.pilot import AppResult, Flown, Results, RunPlan, TopicResult, mark, problems_of
+from cfepy.reading.suggestions import did_you_mean, listed
 from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible
 
@@ -178,7 +179,7 @@ class Run:
         found = self.packets(name)
         if not found:
             names = self.log.telemetry_names()
-            instead = f"only {', '.join(names)}" if names else "no telemetry"
+            instead = f"only {listed(names, 'and')}" if names else "no telemetry"
             raise self._failure(f"telemetry {self.dictionary.telemetry_of(name).name} until now", instead)
         return found[-1]
 
@@ -203,7 +204,10 @@ class Run:
         ros = self.mission.ros
         known = [] if ros is None else [*ros.graph.nodes, *(f"/{end.name}" for end in ros.ended.values())]
         if not found and f"/{name}" not in known:
-            raise self._failure(f"a node {node}", ", ".join(dict.fromkeys(known)) or "no node")
+            near = did_you_mean(f"/{name}", known, before="; ")
+            raise self._failure(
+                f"a node {node}", f"{listed(dict.fromkeys(known), 'and')}{near}" if known else "no node"
+            )
         return found
 
     def app(self, name: str) -> App:
@@ -215,7 +219,8 @@ class Run:
         es = self.mission.cfe.es
         history = es.history.get(name)
         if history is None:
-            raise self._failure(f"an application {name}", ", ".join(es.history))
+            near = did_you_mean(name, es.history, before="; ")
+            raise self._failure(f"an application {name}", f"{listed(es.history, 'and')}{near}")
         state = next((STATE_NAMES[app.state] for app in es.apps if app.name == name), "GONE")
         return App(name, state, history.restarts, history.deaths, history.last_error)
 

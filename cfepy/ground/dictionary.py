@@ -27,7 +27,7 @@ from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemet
 from cfepy.reading.contained_files import is_contained
 from cfepy.reading.input_files import open_input
 from cfepy.reading.resources import shipped
-from cfepy.reading.suggestions import did_you_mean, known_as
+from cfepy.reading.suggestions import did_you_mean, expected, known_as, listed
 from cfepy.status import CfeError, UsageError
 from cfepy.tbl import TableType
 
@@ -197,7 +197,8 @@ class Dictionary:
 
     def _unknown(self, what: str, name: str, known: Iterable[str]) -> UsageError:
         unread = "".join(f"; {problem}" for problem in self.problems)
-        return UsageError(f"unknown {what} {name}{did_you_mean(name, known, before='; ', most=3)}{unread}")
+        hint = did_you_mean(name, known, f"expected {listed(known)}", most=3)
+        return UsageError(f"unknown {what} {name}; {hint}{unread}")
 
 
 def _read(entry: Command | Telemetry | Topic | None, packet: bytes, decoded: Decoded) -> Decoded:
@@ -300,11 +301,8 @@ def table_type(name: str, mission: str | None) -> TableType:
     found = [kind for kind in known.values() if kind.own_name == name]
     if len(found) == 1:
         return found[0]
-    which = (
-        f"did you mean {' or '.join(kind.name for kind in found)}?"
-        if found
-        else f"known tables are {', '.join(sorted(known))}"
-    )
+    several = f"did you mean {' or '.join(kind.name for kind in found)}?"
+    which = several if found else expected(name, sorted(known), subject="known tables are", last="and")
     raise UsageError("; ".join([f"unknown table {name!r}", which, *problems]))
 
 

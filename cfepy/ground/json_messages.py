@@ -7,6 +7,7 @@ import binascii
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from cfepy.reading.suggestions import expected
 from rospy_shim.types.genpy import Duration, Time
 
 _BYTES = ("uint8", "char")
@@ -36,7 +37,7 @@ def _message(class_of: Callable[[str], Any], kind: str, value: Any, path: str) -
     types = dict(zip(message.__slots__, message._slot_types, strict=True))
     for name, each in value.items():
         if name not in types:
-            raise ValueError(f"{path}: unknown field {name!r}")
+            raise ValueError(f"{path}: unknown field {name!r}; {expected(name, types)}")
         setattr(message, name, _value(class_of, types[name], each, f"{path}.{name}"))
     return message
 

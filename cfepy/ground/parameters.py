@@ -13,7 +13,7 @@ from typing import Any
 from cfepy.mission import STARTUP_SCRIPT, Mission, MissionSpec, read_mission
 from cfepy.mission.parameter_files import read_tree
 from cfepy.psp import load_profile
-from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_files import read_limited, unreadable
 from cfepy.reading.input_limits import TABLE_BYTES
 from cfepy.reading.marked_yaml import load
 from cfepy.status import UsageError
@@ -131,7 +131,7 @@ def _contents(path: Path) -> dict[str, bytes]:
             return {str(path): read_limited(path, TABLE_BYTES, handed=True)}
         contents = {str(each): read_limited(each, TABLE_BYTES) for each in sorted(path.rglob(f"*{TABLE_SUFFIX}"))}
     except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+        raise unreadable(path, error) from None
     found = {name: data for name, data in contents.items() if files.is_parameters(data)}
     if not found:
         raise UsageError("contains no file of a parameter table", file=path)

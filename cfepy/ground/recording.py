@@ -23,6 +23,7 @@ from cfepy.ground.json_packets import PACKETS
 from cfepy.ground.mcap_writer import COMPRESSIONS, McapWriter
 from cfepy.mission import described
 from cfepy.reading.input_files import open_input
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -242,7 +243,7 @@ def rewrite(file: str, output: str, compression: str | None = None, strict: bool
         raise UsageError("must end with .bag or .mcap", file=output, field="--output")
     chosen = compression or "none"
     if chosen not in KINDS[kind]:
-        text = f"unknown compression {chosen} for a file {kind}; expected {', '.join(KINDS[kind])}"
+        text = f"unknown compression {chosen} for a file {kind}; {expected(chosen, KINDS[kind])}"
         raise UsageError(text, field="--compression")
     part = f"{output}.part"
     try:

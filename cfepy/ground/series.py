@@ -24,7 +24,7 @@ from cfepy.ground.topics import topics_of
 from cfepy.ground.values import unknown_field
 from cfepy.mission import Mission, PacketWatch, Seen, TopicMessage, TopicWatch, matches
 from cfepy.msg import TLM_HEADER_SIZE, Command, Telemetry, get_fcn_code, get_header_size, get_msg_time
-from cfepy.reading.suggestions import like
+from cfepy.reading.suggestions import expected
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
@@ -275,11 +275,8 @@ class SeriesSet:
         known = sorted({*self._series, *self._silent})
         if not known:
             return UsageError("no message was sent there or on any other topic", file=word)
-        near = like(names[0], known, likeness=0.5)
-        shown = [*near, *(name for name in known if name not in near)]
-        more = ", ..." if len(shown) > SHOWN_NAMES else ""
-        hint = f"did you mean {near[0]}? " if near else ""
-        return UsageError(f"unknown topic or packet; {hint}known are {', '.join(shown[:SHOWN_NAMES])}{more}", file=word)
+        hint = expected(names[0], known, subject="known are", last="and", likeness=0.5)
+        return UsageError(f"unknown topic or packet; {hint}", file=word)
 
     def add(self, series: Series) -> None:
         """Add a series, replacing one with its name."""

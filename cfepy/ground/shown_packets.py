@@ -13,11 +13,14 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
-from cfepy.ground.dictionary import dictionary_of
+from cfepy.ground.dictionary import Dictionary, dictionary_of
+from cfepy.ground.topics import Topic
 from cfepy.mission import UNIX_AT_CFE_EPOCH, MissionSpec
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Layout, Telemetry
+from cfepy.reading.mistakes import each_of
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.types.msgs import from_full_text, message_class
@@ -206,11 +209,8 @@ class ShownPackets:
     def _read(self, spec: MissionSpec) -> None:
         bridge = spec.ros.bridge
         dictionary = dictionary_of(spec)
-        for topic, (packet, is_raw) in bridge.publish.items():
-            try:
-                found = dictionary.telemetry_of(packet)
-            except UsageError as error:
-                raise UsageError(error.text, file=spec.script, field=f"ros_bridge.publish.{topic}") from None
+        packets = each_of(partial(_declared, dictionary, spec, topic) for topic in bridge.publish)
+        for (topic, (_, is_raw)), found in zip(bridge.publish.items(), packets, strict=True):
             if isinstance(found, Telemetry) and found.payload.size and not is_raw:
                 serialize = PacketSerializer(found.payload).message
                 self.packets[topic] = ShownPacket(found.msg_id, type_of(found.name, found.payload), serialize)
@@ -227,6 +227,15 @@ class ShownPackets:
             return None
         fields = {"callerid": APPLICATIONS, "latching": "0", "md5sum": kind.md5sum, "topic": topic}
         return {**fields, "type": kind.name, "message_definition": kind.definition}
+
+
+def _declared(dictionary: Dictionary, spec: MissionSpec, topic: str) -> Telemetry | Topic:
+    """Return the packet that a topic of the bridge shows."""
+    try:
+        return dictionary.telemetry_of(spec.ros.bridge.publish[topic].packet)
+    except UsageError as error:
+        file = spec.mission_file or spec.script
+        raise UsageError(error.text, file=file, field=f"ros_bridge.publish.{topic}") from None
 
 
 def _plain_type(name: str) -> PacketType:

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Any
 
 from cfepy.msg import Cell, Command, Layout, ValueNames, command
-from cfepy.reading.suggestions import did_you_mean, known_as
+from cfepy.reading.mistakes import each_of
+from cfepy.reading.suggestions import expected, known_as
 from cfepy.status import UsageError
 
 _TRUTH = {"true": 1, "false": 0, "1": 1, "0": 0}
@@ -26,12 +27,13 @@ def packet_of(declared: Command, words: Iterable[str]) -> bytes:
         words: numbers as in Python (0x10, -3, 2.5), texts as they are, arrays with commas between their items.
 
     Raises:
-        UsageError: if there is no such field, or a value does not fit; `field` is the field's path.
+        UsageError: for all unknown fields and values that do not fit; `field` is the field's path.
     """
     payload = bytearray(declared.payload.size)
     cells = {cell.path: cell for cell in declared.payload.cells()}
     given: set[str] = set()
-    for word in words:
+
+    def set_field(word: str) -> None:
         path, equals, text = word.partition("=")
         if not equals:
             raise UsageError(f"invalid field value {word!r}; expected FIELD=VALUE")
@@ -41,6 +43,8 @@ def packet_of(declared: Command, words: Iterable[str]) -> bytes:
         given.add(path)
         for cell, item in _targets(declared.name, cells, path, text):
             payload[cell.offset : cell.offset + cell.size] = _packed(cell, item)
+
+    each_of(partial(set_field, word) for word in words)
     return bytes(command(declared.msg_id, declared.code or 0, bytes(payload)))
 
 
@@ -72,8 +76,7 @@ def unknown_field(owner: str, paths: Iterable[str], path: str) -> UsageError:
     known = list(dict.fromkeys(re.sub(_INDICES, "", each) for each in paths))
     if not known:
         return UsageError(f"{owner} has no fields", field=path)
-    hint = did_you_mean(path, known, before="; ")
-    return UsageError(f"unknown field{hint or ';'} {owner} has {', '.join(known)}", field=path)
+    return UsageError(f"unknown field of {owner}; {expected(path, known)}", field=path)
 
 
 def _packed(cell: Cell, text: str) -> bytes:

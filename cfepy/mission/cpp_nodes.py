@@ -11,7 +11,9 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
 PROFILES = ("host", "pool", "strict")
@@ -72,7 +74,7 @@ def read_cpp_nodes(section: Marked, mistakes: Mistakes) -> CppNodesConfig:
 
 def _profile(entry: Marked) -> str:
     if entry.value not in PROFILES:
-        raise entry.fail(f"unknown profile {entry.plain()!r}; expected one of {', '.join(PROFILES)}")
+        raise entry.fail(f"unknown profile {entry.shown()}; {expected(str(entry.value), PROFILES)}")
     return str(entry.value)
 
 

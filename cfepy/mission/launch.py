@@ -168,8 +168,9 @@ def launch_file(words: Sequence[str]) -> tuple[Path, dict[str, str]]:
         return file.resolve(), args
     found = launch_file_of_package(" ".join(names))
     if found is None:
-        hint = did_you_mean(names[-1], files_near(file, LAUNCH_FILES), before="; ")
-        raise UsageError(f"launch file not found{hint}", file=" ".join(names))
+        what_to_do = "give the path of one, or a package and the name of one in it"
+        hint = did_you_mean(names[-1], files_near(file, LAUNCH_FILES), what_to_do)
+        raise UsageError(f"launch file not found; {hint}", file=" ".join(names))
     return found, args
 
 

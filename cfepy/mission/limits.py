@@ -15,7 +15,8 @@ from cfepy.config.platform import IDENTITIES, PlatformConfig
 from cfepy.ids import SERIAL_MAX
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.psp import LIMIT_NAMES, BoardProfile, Limit, read_limit
-from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes, each_of
 from cfepy.status import UsageError
 
 NODES = "nodes"
@@ -83,8 +84,7 @@ class MissionLimits:
             more = {} if board.sram_size else _WORKSTATION
             room = {name: value for name, value in {**room, **more}.items() if name not in board.limits}
         own = {**_at_least(room, board), **self.values}
-        for name, value in own.items():
-            self._check(name, value, board)
+        each_of(partial(self._check, name, value, board) for name, value in own.items())
         return board.config(base).with_limits(own)
 
     def _check(self, name: str, value: Limit, board: BoardProfile) -> None:

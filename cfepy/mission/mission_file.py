@@ -1,6 +1,6 @@
 """The mission file: a table of its sections and their readers.
 
-`read_mission_file` reads the file once. Before a run it raises the first mistake; `cfepy check` collects all of them.
+`read_mission_file` reads the file once. It collects all mistakes, for a run as for `cfepy check`.
 docs/reference/mission_file.md describes the file. The sections with rules for a run (`DEMANDS`) are kept unread;
 `cfepy.monitors.run_rules` reads them.
 """
@@ -22,7 +22,8 @@ from cfepy.mission.spec import CompiledConfig
 from cfepy.mission.sweep_section import SweepConfig, read_sweep
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
-from cfepy.reading.marked_yaml import Marked, Mistakes, load
+from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.mistakes import Mistakes, each_of
 
 DEMANDS = ("invariants", "results", "deadlines", "inversions")
 """Sections with rules for a run."""
@@ -105,8 +106,7 @@ def read_launches(section: Marked, mistakes: Mistakes) -> tuple[LaunchFile, ...]
         section: the list; paths are relative to the folder of its file.
         mistakes: collects missing files and unknown keys.
     """
-    items = mistakes.attempt(section.items) or []
-    found = (mistakes.attempt(partial(_launch, item)) for item in items)
+    found = (mistakes.attempt(partial(_launch, item)) for item in mistakes.items(section))
     return tuple(each for each in found if each is not None)
 
 
@@ -129,9 +129,7 @@ def read_compiled(section: Marked, mistakes: Mistakes) -> CompiledConfig:
         section: its value.
         mistakes: collects unknown keys, and values that are neither true nor false.
     """
-    said = {
-        name: mistakes.attempt(partial(_truth, value)) for name, value in mistakes.fields(section, _COMPILED_FIELDS)
-    }
+    said = {name: mistakes.attempt(value.flag) for name, value in mistakes.fields(section, _COMPILED_FIELDS)}
     return CompiledConfig(**{name: value for name, value in said.items() if value is not None})
 
 
@@ -176,7 +174,7 @@ def read_topics(section: Marked, mistakes: Mistakes) -> dict[str, TopicConfig]:
     topics: dict[str, TopicConfig] = {}
     by_id: dict[int, str] = {}
     for name, entry in mistakes.mapping(section).items():
-        topic = mistakes.attempt(partial(_topic, name, entry))
+        topic = mistakes.whole(partial(_topic, name, entry))
         if topic is None:
             continue
         topics[name] = topic
@@ -186,16 +184,20 @@ def read_topics(section: Marked, mistakes: Mistakes) -> dict[str, TopicConfig]:
     return topics
 
 
-def _topic(name: str, entry: Marked) -> TopicConfig:
+def _topic(name: str, entry: Marked, mistakes: Mistakes) -> TopicConfig:
     if not name.startswith("/"):
-        raise entry.fail(f'invalid topic name {name!r}; it must begin with "/"')
-    fields = entry.mapping(["msg_id", "raw"])
+        mistakes.add(entry.fail(f'invalid topic name {name!r}; it must begin with "/"'))
+    fields = dict(mistakes.fields(entry, ("msg_id", "raw")))
+    is_raw = mistakes.attempt(fields["raw"].flag) if "raw" in fields else False
+    if "msg_id" not in fields and mistakes.errors:
+        raise mistakes.errors.pop()  # its key may be misspelt
     if "msg_id" not in fields:
         raise entry.fail("missing msg_id; add it, such as `msg_id: 0x0901`")
     msg_id = fields["msg_id"].value
     if not isinstance(msg_id, int) or not 0 < msg_id <= HIGHEST_VALID_MSG_ID:
-        raise fields["msg_id"].fail(f"must be a number from 1 to 0x{HIGHEST_VALID_MSG_ID:X}, not {msg_id!r}")
-    return TopicConfig(name, msg_id, _truth(fields["raw"]) if "raw" in fields else False)
+        shown = fields["msg_id"].shown()
+        raise fields["msg_id"].fail(f"must be a number from 1 to 0x{HIGHEST_VALID_MSG_ID:X}, not {shown}")
+    return TopicConfig(name, msg_id, bool(is_raw))
 
 
 MOST_CLOCK_HZ = 1000
@@ -214,32 +216,35 @@ def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
     for name, part in mistakes.fields(section, ("publish", "subscribe", "clock")):
         if name == "publish":
             for topic, entry in mistakes.mapping(part).items():
-                packet = mistakes.attempt(partial(_bridged, topic, entry))
+                packet = mistakes.whole(partial(_bridged, topic, entry))
                 if packet is not None:
                     publish[topic] = packet
         elif name == "clock":
             clock_hz = mistakes.attempt(partial(_clock_hz, part)) or 0
         else:
-            heard = [mistakes.attempt(partial(_global_topic, item)) for item in mistakes.attempt(part.items) or ()]
+            heard = [mistakes.attempt(partial(_global_topic, item)) for item in mistakes.items(part)]
             subscribe = [each for each in heard if each is not None]
     return RosBridge(publish, tuple(subscribe), clock_hz)
 
 
 def _clock_hz(entry: Marked) -> int:
     if type(entry.value) is not int or not 1 <= entry.value <= MOST_CLOCK_HZ:
-        raise entry.fail(f"must be a rate of /clock in Hz from 1 to {MOST_CLOCK_HZ}, not {entry.value!r}")
+        raise entry.fail(f"must be a rate of /clock in Hz from 1 to {MOST_CLOCK_HZ}, not {entry.shown()}")
     return entry.value
 
 
-def _bridged(topic: str, entry: Marked) -> BridgedPacket:
+def _bridged(topic: str, entry: Marked, mistakes: Mistakes) -> BridgedPacket:
     if not topic.startswith("/"):
-        raise entry.fail(f'invalid topic name {topic!r}; it must begin with "/"')
+        mistakes.add(entry.fail(f'invalid topic name {topic!r}; it must begin with "/"'))
     if not isinstance(entry.value, dict):
         return BridgedPacket(str(entry.value))
-    fields = entry.mapping(("packet", "raw"))
+    fields = dict(mistakes.fields(entry, ("packet", "raw")))
+    is_raw = mistakes.attempt(fields["raw"].flag) if "raw" in fields else False
+    if "packet" not in fields and mistakes.errors:
+        raise mistakes.errors.pop()  # its key may be misspelt
     if "packet" not in fields:
         raise entry.fail("missing packet; add it, such as `packet: CFE_ES_HK_TLM`")
-    return BridgedPacket(str(fields["packet"].value), _truth(fields["raw"]) if "raw" in fields else False)
+    return BridgedPacket(str(fields["packet"].value), bool(is_raw))
 
 
 def _global_topic(entry: Marked) -> str:
@@ -258,25 +263,27 @@ def _namespace(entry: Marked) -> str:
 
 def _keys(entry: Marked) -> tuple[str | float, ...]:
     """Return the keys typed at a node's terminal."""
-    keys = tuple(item.value for item in entry.items())
-    for item, key in zip(entry.items(), keys, strict=True):
-        if isinstance(key, bool) or not isinstance(key, str | int | float) or (not isinstance(key, str) and key < 0):
-            raise item.fail(f"must be a text to type or a number of seconds to wait, not {key!r}")
-    return keys
+    return tuple(each_of(partial(_key, item) for item in entry.items()))
 
 
-def _truth(entry: Marked) -> bool:
-    """Return a value that is true or false."""
-    if not isinstance(entry.value, bool):
-        raise entry.fail(f"must be true or false, not {entry.value!r}")
-    return entry.value
+def _key(item: Marked) -> str | float:
+    key = item.value
+    if isinstance(key, bool) or not isinstance(key, str | int | float) or (not isinstance(key, str) and key < 0):
+        raise item.fail(f"must be a text to type or a number of seconds to wait, not {item.shown()}")
+    return key
+
+
+def _computing(entry: Marked) -> dict[str, int]:
+    """Return the computing times of callbacks in ns, by name."""
+    parts = entry.mapping()
+    return dict(zip(parts, each_of(value.time for value in parts.values()), strict=True))
 
 
 def _release(entry: Marked) -> str:
     """Return a release of cFE."""
     if not isinstance(entry.value, str) or entry.value not in RELEASES:
         choice = " or ".join(f'"{name}"' for name in RELEASES)
-        raise entry.fail(f"unknown release of cFE {entry.value!r}; expected {choice}")
+        raise entry.fail(f"unknown release of cFE {entry.shown()}; expected {choice}")
     return entry.value
 
 
@@ -296,12 +303,12 @@ _NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "params_from": read_files,
     "args": lambda entry: tuple(str(item.value) for item in entry.items()),
     "env": _texts,
-    "ordered_sets": _truth,
+    "ordered_sets": Marked.flag,
     "keys": _keys,
-    "compute": lambda entry: {name: value.time() for name, value in entry.mapping().items()},
-    "respawn": _truth,
+    "compute": _computing,
+    "respawn": Marked.flag,
     "respawn_delay": Marked.time,
-    "required": _truth,
+    "required": Marked.flag,
 }
 """The readers of the fields of a node, which return the values of `NodeConfig`."""
 
@@ -322,7 +329,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "topics": read_topics,
     "params": _single(read_tree),
     "params_from": _single(read_files),
-    "ordered_sets": _single(_truth),
+    "ordered_sets": _single(Marked.flag),
     "connection_delay": _single(Marked.time),
     "ros_bridge": read_bridge,
     "launch": read_launches,

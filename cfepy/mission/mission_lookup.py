@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,9 +20,10 @@ from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import ROSCORE_PARAMS, RosConfig
 from cfepy.reading.input_files import beginning_of, read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES, XML_BYTES
-from cfepy.reading.marked_yaml import Mistakes, load
+from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.mistakes import Mistakes, collected
 from cfepy.reading.resources import shipped
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, expected, listed
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -68,7 +70,7 @@ def find_script(mission: str) -> Path:
     if file is not None:
         return file
     names = shipped_missions()
-    hint = did_you_mean(mission, [*names, *missions_near(path)], f"shipped missions are {', '.join(names)}")
+    hint = did_you_mean(mission, [*names, *missions_near(path)], f"shipped missions are {listed(names, 'and')}")
     text = (
         "unknown mission; expected a startup script, a launch file, a folder "
         f"with a {STARTUP_SCRIPT} or a shipped mission"
@@ -102,7 +104,9 @@ def _check_kind(path: Path) -> None:
         raise UsageError("is a program, not a mission; use `cfepy node` to run a ROS node alone", file=path)
     is_text = b"\0" not in data and any(mark in data for mark in (b"!", b"CFE_"))
     if path.suffix not in LAUNCH_FILES and data.strip() and not is_text:
-        raise UsageError("is not a startup script or a launch file", file=path)
+        is_mission_file = path.name == MISSION_FILE and os.path.isfile(path.parent / STARTUP_SCRIPT)
+        hint = f"; give the mission's folder {path.parent}" if is_mission_file else ""
+        raise UsageError(f"is not a startup script or a launch file{hint}", file=path)
 
 
 def mission_file_of(script: Path) -> Path | None:
@@ -144,7 +148,7 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
     """Return a mission with the content of its mission file; without such a file its readers are not loaded."""
     from cfepy.mission.mission_file import read_mission_file
 
-    said = read_mission_file(path, Mistakes())
+    said = collected(partial(read_mission_file, path))
     spec = replace(
         spec,
         name=spec.name if said.name is None else said.name,
@@ -180,7 +184,7 @@ def read_sections(mission: str) -> MissionSections:
     path = (
         named if named.suffix in (".yaml", ".yml") and os.path.isfile(named) else mission_file_of(find_script(mission))
     )
-    return MissionSections() if path is None else read_mission_file(path, Mistakes())
+    return MissionSections() if path is None else collected(partial(read_mission_file, path))
 
 
 def cpp_nodes_source(said: str) -> str:
@@ -195,7 +199,13 @@ def cpp_nodes_source(said: str) -> str:
     """
     if said in PROFILES or (said.endswith((".yaml", ".yml")) and os.path.isfile(said)):
         return said
-    path = mission_file_of(find_script(said))
+    try:
+        path = mission_file_of(find_script(said))
+    except UsageError as error:
+        if error.file is not None and os.path.exists(error.file):
+            raise
+        hint = expected(said, [*PROFILES, "a YAML file", "a mission"])
+        raise UsageError(f"unknown profile {said!r}; {hint}", field="--cpp-nodes") from None
     if path is None:
         raise UsageError("requires a mission with a mission file", file=said, field="--cpp-nodes")
     return str(path)
@@ -215,7 +225,7 @@ def cpp_nodes_of(said: str) -> CppNodesConfig:
         return CppNodesConfig(profile=source)
     from cfepy.mission.mission_file import read_mission_file
 
-    sections = read_mission_file(Path(source), Mistakes())
+    sections = collected(partial(read_mission_file, Path(source)))
     if "cpp_nodes" not in sections.places:
         raise UsageError("the section cpp_nodes is missing", file=source, field="--cpp-nodes")
     return sections.cpp_nodes
@@ -231,20 +241,25 @@ def read_lock(path: Path, ros: RosConfig) -> RosConfig:
     Raises:
         UsageError: if it is not a lock file, or has a duplicate MsgId.
     """
-    sections = load(path).mapping(("topics", "services"))
+    return collected(partial(_locked, load(path), ros))
+
+
+def _locked(root: Marked, ros: RosConfig, mistakes: Mistakes) -> RosConfig:
     by_id = {topic.msg_id: topic.name for topic in ros.topics.values()}
     found: dict[str, dict[str, int]] = {"topics": {}, "services": {}}
-    for title, section in sections.items():
-        for name, entry in section.mapping().items():
+    for title, section in mistakes.fields(root, ("topics", "services")):
+        for name, entry in mistakes.mapping(section).items():
             if title == "topics" and name in ros.topics:
                 continue  # the mission file has a newer choice
-            msg_id = entry.integer(1, HIGHEST_VALID_MSG_ID)
+            msg_id = mistakes.attempt(partial(entry.integer, 1, HIGHEST_VALID_MSG_ID))
+            if msg_id is None:
+                continue
             if msg_id in by_id:
                 text = (
                     f"the MsgId 0x{msg_id:04X} is already used by {by_id[msg_id]}; remove "
                     "one of them, and lock the mission again"
                 )
-                raise entry.fail(text)
+                mistakes.add(entry.fail(text))
             by_id[msg_id] = name
             found[title][name] = msg_id
     return replace(ros, locked_topics=found["topics"], locked_services=found["services"])

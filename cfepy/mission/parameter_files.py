@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.status import UsageError
 
@@ -40,7 +41,11 @@ def read_tree(section: Marked) -> dict[str, Any]:
     Raises:
         UsageError: if it is not a mapping, or has a value that ROS cannot carry.
     """
-    return {name: _value(entry) for name, entry in section.mapping().items()}
+    entries = section.mapping()
+    try:
+        return {name: _value(entry) for name, entry in entries.items()}
+    except UsageError:
+        raise together(list(_errors_in(section))) from None
 
 
 def merged(tree: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
@@ -83,6 +88,18 @@ def _value(entry: Marked) -> Any:
     return value
 
 
+def _errors_in(entry: Marked) -> Iterator[UsageError]:
+    """Yield the errors about all values inside an entry that ROS cannot carry."""
+    value = entry.value
+    if isinstance(value, dict | list):
+        for inner in value.values() if isinstance(value, dict) else value:
+            yield from _errors_in(inner)
+        return
+    fault = _fault(value)
+    if fault is not None:
+        yield entry.fail(fault)
+
+
 def checked(value: Any) -> Any:
     """Return a plain value if ROS can carry it.
 
@@ -105,7 +122,8 @@ def _fault(value: Any) -> str | None:
     if isinstance(value, bool | float | str | bytes):
         return None
     if not isinstance(value, int):
-        what = "nothing" if value is None else f"a {type(value).__name__}"
+        kind = type(value).__name__.removesuffix("time")  # a datetime is a date for the user
+        what = "nothing" if value is None else f"a {kind}"
         return f"must be a value that ROS parameters can have, not {what}; put text in quotes"
     if _INT_MIN <= value <= _INT_MAX:
         return None

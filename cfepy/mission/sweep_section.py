@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +35,7 @@ def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
     """
     said: dict[str, tuple[str, ...]] = {}
     for name, entry in mistakes.fields(section, ("rate", "topics")):
-        items = mistakes.attempt(entry.items) or []
+        items = mistakes.items(entry)
         texts = [mistakes.attempt(item.text) for item in items]
         said[name] = tuple(text for text in texts if text)
         for item, text in zip(items, texts, strict=True):

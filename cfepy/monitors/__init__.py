@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from cfepy.monitors.durations import RESPONSE, WAIT, LongestWatch, Measure
     from cfepy.monitors.inversions import InversionWatch
     from cfepy.monitors.liveness import Lack, Limits, LivenessWatch
-    from cfepy.monitors.observed_messages import Heard, MessageWatch
+    from cfepy.monitors.observed_messages import Heard, MessageWatch, unknown_packets
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
     from cfepy.monitors.race_watch import RaceWatch
@@ -59,6 +59,7 @@ __all__ = [
     "read_demands",
     "short",
     "shortened",
+    "unknown_packets",
 ]
 
 if not TYPE_CHECKING:  # type checkers see only the names above
@@ -90,6 +91,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".observed_messages": (
                 "Heard",
                 "MessageWatch",
+                "unknown_packets",
             ),
             ".observer": (
                 "Observer",

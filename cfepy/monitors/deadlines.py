@@ -13,7 +13,9 @@ from functools import partial
 from typing import NamedTuple
 
 from cfepy.msg import is_valid_msg_id
-from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes
+from cfepy.reading.suggestions import listed
 from cfepy.units import NS_PER_S, TIME_UNITS, time_text
 
 APP_FIELDS = ("response", "period", "jitter", "task")
@@ -85,37 +87,42 @@ def read_deadlines(section: Marked, mistakes: Mistakes) -> Deadlines:
     parts = dict(mistakes.fields(section, ("apps", "topics")))
     apps = mistakes.mapping(parts["apps"]) if "apps" in parts else {}
     topics = mistakes.mapping(parts["topics"]) if "topics" in parts else {}
-    of_apps = [mistakes.attempt(partial(_app_deadline, name, entry)) for name, entry in apps.items()]
-    of_topics = [mistakes.attempt(partial(_topic_deadline, name, entry)) for name, entry in topics.items()]
+    of_apps = [mistakes.whole(partial(_app_deadline, name, entry)) for name, entry in apps.items()]
+    of_topics = [mistakes.whole(partial(_topic_deadline, name, entry)) for name, entry in topics.items()]
     return Deadlines(
         tuple(each for each in of_apps if each is not None), tuple(each for each in of_topics if each is not None)
     )
 
 
-def _app_deadline(app: str, entry: Marked) -> AppDeadline:
-    fields = entry.mapping(APP_FIELDS)
-    if "response" not in fields and "period" not in fields:
-        raise entry.fail("missing response or period; add one, such as `response: 2 ms`")
-    if "jitter" in fields and "period" not in fields:
-        raise fields["jitter"].fail("requires a period; add it, such as `period: 10 ms`")
-    if "period" in fields and "jitter" not in fields:
-        raise entry.fail("missing jitter of the period; add it, such as `jitter: 1 ms`")
+def _app_deadline(app: str, entry: Marked, mistakes: Mistakes) -> AppDeadline:
+    fields = dict(mistakes.fields(entry, APP_FIELDS))
+    if not mistakes.errors:  # otherwise a field is missing because its name is wrong
+        _check_combination(entry, fields, mistakes)
     return AppDeadline(
         app,
-        response_ns=_time(fields.get("response")),
-        period_ns=_time(fields.get("period")),
-        jitter_ns=_time(fields.get("jitter"), zero=True) or 0,
-        task=fields["task"].text() if "task" in fields else None,
+        response_ns=mistakes.attempt(partial(_time, fields.get("response"))),
+        period_ns=mistakes.attempt(partial(_time, fields.get("period"))),
+        jitter_ns=mistakes.attempt(partial(_jitter, fields.get("jitter"))) or 0,
+        task=mistakes.attempt(fields["task"].text) if "task" in fields else None,
     )
 
 
-def _topic_deadline(name: str, entry: Marked) -> TopicDeadline:
-    fields = entry.mapping(TOPIC_FIELDS)
-    if not fields:
-        raise entry.fail(f"requires one of {', '.join(TOPIC_FIELDS)}, such as `latency: 5 ms`")
+def _check_combination(entry: Marked, fields: Mapping[str, Marked], mistakes: Mistakes) -> None:
+    if "response" not in fields and "period" not in fields:
+        mistakes.add(entry.fail("missing response or period; add one, such as `response: 2 ms`"))
+    elif "jitter" in fields and "period" not in fields:
+        mistakes.add(fields["jitter"].fail("requires a period; add it, such as `period: 10 ms`"))
+    elif "period" in fields and "jitter" not in fields:
+        mistakes.add(entry.fail("missing jitter of the period; add it, such as `jitter: 1 ms`"))
+
+
+def _topic_deadline(name: str, entry: Marked, mistakes: Mistakes) -> TopicDeadline:
+    fields = dict(mistakes.fields(entry, TOPIC_FIELDS))
+    if not fields and not mistakes.errors:
+        raise entry.fail(f"requires {listed(TOPIC_FIELDS)}, such as `latency: 5 ms`")
     if name.startswith("0x"):
-        _check_msg_id(name, entry)
-    found = TopicDeadline(name, *(_time(fields.get(each)) for each in TOPIC_FIELDS))
+        mistakes.attempt(partial(_check_msg_id, name, entry))
+    found = TopicDeadline(name, *(mistakes.attempt(partial(_time, fields.get(each))) for each in TOPIC_FIELDS))
     if found.longest_ns is not None and found.shortest_ns is not None and found.longest_ns < found.shortest_ns:
         raise fields["at_least_every"].fail("must not be shorter than at_most_every")
     return found
@@ -130,6 +137,10 @@ def _check_msg_id(name: str, entry: Marked) -> None:
         raise entry.fail("is not a MsgId; write one such as 0x0883, or the name of a topic or packet")
 
 
+def _jitter(entry: Marked | None) -> int:
+    return _time(entry, zero=True) or 0
+
+
 def _time(entry: Marked | None, zero: bool = False) -> int | None:
     """Return a time with its unit, in ns.
 
@@ -140,7 +151,7 @@ def _time(entry: Marked | None, zero: bool = False) -> int | None:
         return None
     match = _TIME.fullmatch(entry.value) if isinstance(entry.value, str) else None
     if match is None:
-        raise entry.fail(f"must be a time with a unit, such as 500 us, 2.5 ms, 1 s or 50 Hz, not {entry.plain()!r}")
+        raise entry.fail(f"must be a time with a unit, such as 500 us, 2.5 ms, 1 s or 50 Hz, not {entry.shown()}")
     number, unit = float(match[1]), match[2]
     found = round(number * TIME_UNITS[unit]) if unit in TIME_UNITS else round(NS_PER_S / max(number, 1e-9))
     if not (0 if zero else 1) <= found <= LONGEST_NS:

@@ -14,7 +14,7 @@ from typing import Any
 from cfepy.attachment import Attachment
 from cfepy.mission import Mission, MissionSpec, Processor, app_traceback, described, matches
 from cfepy.monitors.invariants import CAUSE, Answer, Invariant, Selection, code_of
-from cfepy.monitors.observed_messages import Heard, MessageWatch
+from cfepy.monitors.observed_messages import Heard, MessageWatch, unknown_packets
 from cfepy.monitors.predicate import LATEST, short
 from cfepy.monitors.record import InvariantRecord, InvariantRecords, Violation
 from cfepy.sb import SoftwareBus
@@ -229,7 +229,8 @@ class InvariantWatch(Attachment):
         try:
             self._messages = MessageWatch(spec, self._take, topics, packets)
         except UsageError as error:
-            raise UsageError(error.text, file=spec.mission_file, field="invariants") from None
+            named = [(each.name, packet) for each in self._invariants for packet in each.packets]
+            raise unknown_packets(spec, "invariants", named) or error from None
         self._mission: Mission | None = None
         self._now_ns = 0  # when the processor was created
         self._records = InvariantRecords()

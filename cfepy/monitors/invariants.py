@@ -19,7 +19,9 @@ from cfepy.monitors.predicate import LATEST, Predicate
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import PYTHON_BYTES
-from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes, each_of
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
 NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
@@ -106,33 +108,39 @@ def read_invariants(section: Marked, mistakes: Mistakes) -> tuple[Invariant, ...
         mistakes: collects unknown keys, missing keys and invalid values.
     """
     entries = mistakes.mapping(section).items()
-    found = (mistakes.attempt(partial(_invariant, name, entry)) for name, entry in entries)
+    found = (mistakes.whole(partial(_invariant, name, entry)) for name, entry in entries)
     return tuple(each for each in found if each is not None)
 
 
-def _invariant(name: str, entry: Marked) -> Invariant:
-    fields = entry.mapping(FIELDS)
+def _invariant(name: str, entry: Marked, mistakes: Mistakes) -> Invariant:
+    fields = dict(mistakes.fields(entry, FIELDS))
     kinds = [each for each in KINDS if each in fields]
-    if len(kinds) != 1:
+    is_known = not mistakes.errors  # otherwise a field is missing because its name is wrong
+    if len(kinds) > 1 or (not kinds and is_known):
         said = f"has {' and '.join(kinds)}; write one of them" if kinds else "missing condition"
         text = 'give `holds: "msg.data < 3"`, `file` and `function`, `within` and `then`, `again`, or `eventually`'
-        raise entry.fail(f"{said}; {text}")
-    selection = read_selection(fields)
-    if selection == Selection() and "function" not in fields:
-        raise entry.fail("missing message; add `topic: /name` or `packet: NAME`")
-    file, function = _function(entry, fields)
+        mistakes.add(entry.fail(f"{said}; {text}"))
+    selection = mistakes.attempt(partial(read_selection, fields))
+    if selection == Selection() and "function" not in fields and is_known:
+        mistakes.add(entry.fail("missing message; add `topic: /name` or `packet: NAME`"))
+    code = mistakes.attempt(partial(_function, entry, fields)) if is_known else None
+    file, function = code or (None, "")
+
+    def predicate(field: str) -> Predicate | None:
+        return mistakes.attempt(partial(Predicate.read, fields[field], NAMES)) if field in fields else None
+
     return Invariant(
         name,
         f"{entry.file.name}:{entry.line}",
-        selection,
-        when=Predicate.read(fields["when"], NAMES) if "when" in fields else None,
-        holds=Predicate.read(fields["holds"], NAMES) if "holds" in fields else None,
-        answer=_answer(entry, fields),
-        again_ns=_again(fields["again"]) if "again" in fields else None,
-        eventually=Predicate.read(fields["eventually"], NAMES) if "eventually" in fields else None,
+        selection or Selection(),
+        when=predicate("when"),
+        holds=predicate("holds"),
+        answer=mistakes.whole(partial(_answer, entry, fields)) if is_known else None,
+        again_ns=mistakes.attempt(partial(_again, fields["again"])) if "again" in fields else None,
+        eventually=predicate("eventually"),
         file=file,
         function=function,
-        after_ns=fields["after"].time() if "after" in fields else 0,
+        after_ns=(mistakes.attempt(fields["after"].time) or 0) if "after" in fields else 0,
     )
 
 
@@ -142,8 +150,10 @@ def read_selection(fields: Mapping[str, Marked]) -> Selection:
     Raises:
         UsageError: if a topic does not start with "/", or a MsgId is invalid.
     """
-    topics = [_topic(each) for each in _list(fields.get("topic"))]
-    return Selection(tuple(topics), tuple(_packet(each) for each in _list(fields.get("packet"))))
+    topics = [partial(_topic, each) for each in _list(fields.get("topic"))]
+    packets = [partial(_packet, each) for each in _list(fields.get("packet"))]
+    found = each_of([*topics, *packets])
+    return Selection(tuple(found[: len(topics)]), tuple(found[len(topics) :]))
 
 
 def _list(entry: Marked | None) -> list[Marked]:
@@ -165,19 +175,20 @@ def _packet(entry: Marked) -> str:
     return entry.text()
 
 
-def _answer(entry: Marked, fields: Mapping[str, Marked]) -> Answer | None:
+def _answer(entry: Marked, fields: Mapping[str, Marked], mistakes: Mistakes) -> Answer | None:
     if "within" not in fields:
         if "then" in fields:
             raise fields["then"].fail("requires `within`; add it, such as `within: 0.5 s`")
         return None
     if "then" not in fields:
         raise entry.fail("`within` requires `then`; add it, such as `then: {topic: /name}`")
-    then = fields["then"].mapping((*SOURCE_FIELDS, "holds"))
-    selection = read_selection(then)
-    if selection == Selection():
-        raise fields["then"].fail("missing message; add `topic: /name` or `packet: NAME`")
-    holds = Predicate.read(then["holds"], (*NAMES, CAUSE)) if "holds" in then else None
-    return Answer(selection, holds, fields["within"].time())
+    within_ns = mistakes.attempt(fields["within"].time)
+    then = dict(mistakes.fields(fields["then"], (*SOURCE_FIELDS, "holds")))
+    holds = mistakes.attempt(partial(Predicate.read, then["holds"], (*NAMES, CAUSE))) if "holds" in then else None
+    selection = mistakes.attempt(partial(read_selection, then))
+    if selection == Selection() and not mistakes.errors:  # otherwise its key may be misspelt
+        mistakes.add(fields["then"].fail("missing message; add `topic: /name` or `packet: NAME`"))
+    return Answer(selection or Selection(), holds, within_ns or 0)
 
 
 def _again(entry: Marked) -> int:
@@ -202,8 +213,8 @@ def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None,
     if broken is not None:
         raise UsageError(f"is not Python: {broken[1]}", file=file, line=broken[0])
     if not sources.defines(file, name):
-        functions = ", ".join(sources.functions_and_classes_of(file)) or "none"
-        raise fields["function"].fail(f"unknown function or class {name!r}; {file.name} has {functions}")
+        hint = expected(name, sources.functions_and_classes_of(file), subject=f"{file.name} has")
+        raise fields["function"].fail(f"unknown function or class {name!r}; {hint}")
     return file, name
 
 

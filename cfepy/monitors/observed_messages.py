@@ -5,14 +5,16 @@ It observes the Software Bus without changing anything: no subscription, no virt
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from cfepy.attachment import Attachment
 from cfepy.ground import Dictionary, MessageDecoder, dictionary_of
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen, TopicMessage, TopicWatch
 from cfepy.msg import Command, get_fcn_code
+from cfepy.reading.joined_errors import together
 from cfepy.sb import SoftwareBus
+from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
 
@@ -73,6 +75,33 @@ class Heard:
         return self._message
 
 
+def unknown_packets(spec: MissionSpec, section: str, packets: Iterable[tuple[str, str]]) -> UsageError | None:
+    """Return one error about all packets of a section that the mission does not have, or None.
+
+    Args:
+        spec: the mission.
+        section: the section of its mission file.
+        packets: the entries of the section, each with the packet that it names.
+    """
+    dictionary = dictionary_of(spec)
+    places = spec.demands[section].mapping() if section in spec.demands else {}
+    errors = []
+    for entry, packet in packets:
+        try:
+            _declared(dictionary, packet)
+        except UsageError as error:
+            plain = UsageError(error.text, file=spec.mission_file, field=f"{section}.{entry}")
+            errors.append(places[entry].fail(error.text) if entry in places else plain)
+    return together(errors) if errors else None
+
+
+def _declared(dictionary: Dictionary, name: str) -> tuple[int, int | None]:
+    """Return the MsgId of a packet, and the function code of a command."""
+    found: Any = dictionary.commands.get(name)
+    found = dictionary.telemetry_of(name) if found is None else found
+    return found.msg_id, found.code if isinstance(found, Command) else None
+
+
 class MessageWatch(Attachment):
     """Passes on messages when they are sent.
 
@@ -98,7 +127,7 @@ class MessageWatch(Attachment):
         self._decoder = MessageDecoder()
         self._names: dict[int, dict[int | None, str]] = {}
         for name in packets:
-            msg_id, code = self._declared(name)
+            msg_id, code = _declared(self._dictionary, name)
             self._names.setdefault(msg_id, {})[code] = name
         self._watches: list[TopicWatch | PacketWatch] = []
         if topics:
@@ -116,12 +145,6 @@ class MessageWatch(Attachment):
         self._mission = mission
         for each in self._watches:
             each.begin(mission)
-
-    def _declared(self, name: str) -> tuple[int, int | None]:
-        """Return the MsgId of a packet, and the function code of a command."""
-        found: Any = self._dictionary.commands.get(name)
-        found = self._dictionary.telemetry_of(name) if found is None else found
-        return found.msg_id, found.code if isinstance(found, Command) else None
 
     def _take_message(self, message: TopicMessage) -> None:
         self._take(Heard.of(message, self._decoder))

@@ -16,6 +16,7 @@ from typing import Any
 
 from cfepy.interpreter.syntax_trees import parsed_input
 from cfepy.reading.input_limits import EXPRESSION_CHARACTERS, EXPRESSION_DEPTH
+from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked
 from cfepy.reading.suggestions import did_you_mean
 
@@ -108,11 +109,15 @@ def _check_names(entry: Marked, tree: ast.AST, names: tuple[str, ...]) -> None:
     bound = {node.id for node in ast.walk(tree) if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store)}
     bound |= {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
     known = {*names, *_LIBRARY, *bound, *dir(builtins)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and node.id not in known:
-            known_here = f"known names are {', '.join(names)} and Python's built-in names"
-            hint = did_you_mean(node.id, [*names, *_LIBRARY, *sorted(bound)], known_here)
-            raise entry.fail(f"unknown name {node.id!r}; {hint}")
+    used = dict.fromkeys(node.id for node in ast.walk(tree) if isinstance(node, ast.Name))
+    unknown = [name for name in used if name not in known]
+    if not unknown:
+        return
+    known_here = f"known names are {', '.join(names)} and Python's built-in names"
+    plain = [name for name in dir(builtins) if name.islower() and not name.startswith("_")]
+    similar = [*names, *_LIBRARY, *sorted(bound), *plain]
+    hints = [(name, did_you_mean(name, similar, known_here)) for name in unknown]
+    raise together([entry.fail(f"unknown name {name!r}; {hint}") for name, hint in hints])
 
 
 def _asked(tree: ast.AST) -> Iterator[str]:

@@ -1,19 +1,21 @@
 """Rules of a mission file for a run: `invariants`, `results`, `deadlines` and `inversions`, and their monitors.
 
-The mission stores these sections unread (`MissionSpec.demands`). The table of their readers is here; a run raises the
-first mistake, and `cfepy check` collects all.
+The mission stores these sections unread (`MissionSpec.demands`). The table of their readers is here; a run and
+`cfepy check` report all their mistakes.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment
 from cfepy.mission import MissionSpec
 from cfepy.monitors.deadlines import Deadlines, read_deadlines
-from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes, collected
 
 if TYPE_CHECKING:
     from cfepy.monitors.invariants import Invariant
@@ -56,7 +58,7 @@ def demands_of(spec: MissionSpec) -> Demands:
     Raises:
         UsageError: if there is a mistake in its mission file.
     """
-    return read_demands(spec.demands, Mistakes())
+    return collected(partial(read_demands, spec.demands))
 
 
 def judges_of(spec: MissionSpec) -> list[Attachment]:

@@ -8,7 +8,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from cfepy.reading.marked_yaml import Marked, Mistakes
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
 LAST, SEQUENCE, ANY_ORDER, COUNT = "last", "sequence", "any order", "count"
@@ -47,18 +49,23 @@ def read_selected_results(section: Marked, mistakes: Mistakes) -> tuple[Selected
         mistakes: collects unknown keys and invalid values.
     """
     entries = mistakes.mapping(section).items()
-    found = (mistakes.attempt(partial(_selected_result, name, entry)) for name, entry in entries)
+    found = (mistakes.whole(partial(_selected_result, name, entry)) for name, entry in entries)
     return tuple(each for each in found if each is not None)
 
 
-def _selected_result(name: str, entry: Marked) -> SelectedResult:
+def _selected_result(name: str, entry: Marked, mistakes: Mistakes) -> SelectedResult:
     """Return one result: how it is compared, or a mapping with `compare` and `ignore`."""
-    fields = entry.mapping(("compare", "ignore")) if isinstance(entry.value, dict) else {"compare": entry}
+    is_mapping = isinstance(entry.value, dict)
+    fields = dict(mistakes.fields(entry, ("compare", "ignore"))) if is_mapping else {"compare": entry}
+    ignored = mistakes.items(fields["ignore"]) if "ignore" in fields else []
+    paths = [mistakes.attempt(partial(_path, item)) for item in ignored]
+    if "compare" not in fields and mistakes.errors:
+        raise mistakes.errors.pop()  # its key may be misspelt
     if "compare" not in fields:
         raise entry.fail("missing compare; add it, such as `compare: last`")
     compare = fields["compare"].text()
     if compare not in COMPARISONS:
-        raise fields["compare"].fail(f"must be one of {', '.join(COMPARISONS)}, not {compare!r}")
+        raise fields["compare"].fail(f"unknown comparison {compare!r}; {expected(compare, COMPARISONS)}")
     if compare == FILE and not name.startswith("/"):
         raise entry.fail(f"invalid file {name!r}; expected a path in the mission's file system, such as /ram/log.txt")
     if compare == OUTPUT and name.startswith("/"):
@@ -67,7 +74,7 @@ def _selected_result(name: str, entry: Marked) -> SelectedResult:
         return SelectedResult(name, compare)
     if compare not in OF_MESSAGES:
         raise fields["ignore"].fail(f"is only valid for messages, and {name} has no fields")
-    return SelectedResult(name, compare, tuple(_path(item) for item in fields["ignore"].items()))
+    return SelectedResult(name, compare, tuple(path for path in paths if path))
 
 
 def _path(item: Marked) -> str:

@@ -20,7 +20,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 from cfepy.msg.header import Packet
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import FEW, did_you_mean, expected, listed
 from cfepy.reading.texts import from_bytes, to_bytes
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
 
@@ -66,10 +66,15 @@ class ValueNames:
         total = 0
         for part in text.split("+") if self.flags else [text]:
             if part.upper() not in self.values:
-                hint = did_you_mean(part, self.values, f"expected one of {self}")
-                raise UsageError(f"unknown value {part!r}; {hint}")
+                raise UsageError(f"unknown value {part!r}; {self._expected(part)}")
             total |= self.values[part.upper()]
         return total
+
+    def _expected(self, name: str) -> str:
+        hint = did_you_mean(name, self.values)
+        if len(self.values) > FEW:
+            return hint or f"expected {listed(self.values)}"
+        return f"{hint} (expected one of {self})" if hint else f"expected one of {self}"
 
     def text(self, number: int) -> str:
         """Return the name of a value, or the number if it has none."""
@@ -284,7 +289,8 @@ class Layout:
         prefix = f"{path}." if path else ""
         if not value.keys() <= self._fields.keys():
             unknown = next(name for name in value if name not in self._fields)
-            raise UsageError(f"unknown field; {self.name} has {', '.join(self._fields)}", field=prefix + unknown)
+            hint = expected(str(unknown), self._fields)
+            raise UsageError(f"unknown field of {self.name}; {hint}", field=f"{prefix}{unknown}")
         for field, kind in self._fields.items():
             yield from kind.flatten(value[field] if field in value else kind.zero(), prefix + field)
 
@@ -313,7 +319,7 @@ class Layout:
             try:
                 struct.pack("<" + code, leaf)
             except (struct.error, OverflowError):
-                return UsageError(f"{leaf!r} does not fit {_name_of_code(code)}", field=path)
+                return UsageError(f"{leaf!r} does not fit {_name_of_code(code)}{_range_of(code)}", field=path)
         return UsageError(f"the values do not fit {self.name}")
 
     def __repr__(self) -> str:
@@ -332,7 +338,10 @@ def _parse_type(kind: Any, path: str) -> _Type:
         return _Array(kind[0], kind[1])
     match = _TYPE.fullmatch(kind)
     if match is None or match[1] not in {*_SCALARS, "char"}:
-        raise UsageError(f"invalid type {kind!r}; expected {', '.join(_SCALARS)}, char[N] or a Layout", field=path)
+        hint = did_you_mean(kind, [*_SCALARS, "char[N]"], before="; ")
+        raise UsageError(
+            f"invalid type {kind!r}; expected {', '.join(_SCALARS)}, char[N] or a Layout{hint}", field=path
+        )
     counts = [int(count) for count in re.findall(r"\d+", match[2])]
     parsed: _Type = _Text(counts.pop() if counts else 1) if match[1] == "char" else _Scalar(*_SCALARS[match[1]])
     for count in reversed(counts):
@@ -362,6 +371,15 @@ def _named(names: ValueNames, text: str, path: str) -> int:
 
 def _name_of_code(code: str) -> str:
     return next((name for name, (known, _) in _SCALARS.items() if known == code), f"char[{code[:-1]}]")
+
+
+def _range_of(code: str) -> str:
+    """Return the range of an integer for an error; empty for another type."""
+    if code not in "bBhHiIqQ":
+        return ""
+    bits = 8 * struct.calcsize(f"<{code}")
+    lowest, highest = (0, (1 << bits) - 1) if code.isupper() else (-(1 << (bits - 1)), (1 << (bits - 1)) - 1)
+    return f"; expected {lowest} to {highest}"
 
 
 SYS_TIME = Layout("CFE_TIME_SysTime_t", [("Seconds", "u32"), ("Subseconds", "u32")])

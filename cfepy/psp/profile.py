@@ -5,14 +5,18 @@ A profile is a file, boards/<name>.yaml. A number that is 0 or missing means "no
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields
+from functools import partial
 from pathlib import Path
+from typing import Any
 
 from cfepy.config.platform import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, NOT_LIMITS, PlatformConfig
 from cfepy.ids import SERIAL_MAX
 from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.mistakes import Mistakes, collected, each_of
 from cfepy.reading.resources import shipped
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import expected, listed
 from cfepy.rtos import CpuCosts
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S, PS_PER_NS
@@ -152,14 +156,20 @@ def load_profile(name_or_path: str | Path) -> BoardProfile:
     Raises:
         UsageError: if the board does not exist or its file is wrong; the error names file, line and field.
     """
-    root = load(_find(name_or_path))
-    entries = root.mapping([known.name for known in fields(BoardProfile)])
-    if "name" not in entries:
-        raise root.fail("missing name; a board profile starts with `name: ...`")
-    numbers = {key: _number(key, entries[key]) for key in entries if key in _NUMBERS}
-    texts = {key: entries[key].text() for key in ("name", "description") if key in entries}
-    parts = {key: read(entries[key]) for key, read in _PARTS.items() if key in entries}
-    return BoardProfile(**texts, **numbers, **parts)  # type: ignore[arg-type]  # keys and types are of the fields
+    return collected(partial(_profile, load(_find(name_or_path))))
+
+
+def _profile(root: Marked, mistakes: Mistakes) -> BoardProfile:
+    entries = dict(mistakes.fields(root, [known.name for known in fields(BoardProfile)]))
+    if "name" not in entries and not mistakes.errors:  # otherwise it may have a misspelt key
+        mistakes.add(root.fail("missing name; a board profile starts with `name: ...`"))
+    found: dict[str, Any] = {}
+    for key, entry in entries.items():
+        if key in _NUMBERS:
+            found[key] = mistakes.attempt(partial(_number, key, entry))
+        else:
+            found[key] = mistakes.attempt(partial(_PARTS.get(key, Marked.text), entry))
+    return BoardProfile(**{"name": "", **found})
 
 
 def _find(name_or_path: str | Path) -> Path:
@@ -168,8 +178,7 @@ def _find(name_or_path: str | Path) -> Path:
         return path
     boards = available_boards()
     if str(name_or_path) not in boards:
-        otherwise = f"expected one of {', '.join(boards)}, or the path of a .yaml file"
-        hint = did_you_mean(str(name_or_path), boards, otherwise)
+        hint = expected(str(name_or_path), [*boards, "the path of a .yaml file"])
         raise UsageError(f"unknown board {str(name_or_path)!r}; {hint}", field="board")
     return shipped("boards") / f"{path}.yaml"
 
@@ -186,15 +195,15 @@ def _size(entry: Marked) -> int:
         return entry.integer(highest=MOST_BYTES)
     count, _, unit = entry.value.partition(" ")
     if not count.isdecimal() or unit not in _UNITS:
-        raise entry.fail(f"must be bytes or a number with {', '.join(_UNITS)}, such as 512 KiB, not {entry.value!r}")
+        raise entry.fail(f"must be bytes or a number with {listed(_UNITS)}, such as 512 KiB, not {entry.shown()}")
     size = int(count) * _UNITS[unit]
     if size > MOST_BYTES:
-        raise entry.fail(f"must be at most {MOST_BYTES // _UNITS['MiB']} MiB, not {entry.value!r}")
+        raise entry.fail(f"must be at most {MOST_BYTES // _UNITS['MiB']} MiB, not {entry.shown()}")
     return size
 
 
 def _sram(entry: Marked) -> tuple[MemoryRegion, ...]:
-    return tuple(_region(item) for item in entry.items())
+    return tuple(each_of(partial(_region, item) for item in entry.items()))
 
 
 def _region(entry: Marked) -> MemoryRegion:
@@ -202,12 +211,12 @@ def _region(entry: Marked) -> MemoryRegion:
     for needed in ("name", "size"):
         if needed not in parts:
             raise entry.fail(f"missing {needed}; write a region as {{name: ecc, size: 512 KiB}}")
-    retained = parts.get("retained")
-    return MemoryRegion(parts["name"].text(), _size(parts["size"]), retained is not None and retained.flag())
+    readers = {"name": Marked.text, "size": _size, "retained": Marked.flag}
+    return MemoryRegion(**_each(readers, parts))
 
 
 def _ports(entry: Marked) -> tuple[PortRange, ...]:
-    return tuple(_port_range(item) for item in entry.items())
+    return tuple(each_of(partial(_port_range, item) for item in entry.items()))
 
 
 def _port_range(entry: Marked) -> PortRange:
@@ -215,11 +224,28 @@ def _port_range(entry: Marked) -> PortRange:
     for needed in ("name", "address", "size"):
         if needed not in parts:
             raise entry.fail(f"missing {needed}; write ports as {{name: gpio, address: 0x8C000, size: 64}}")
-    return PortRange(parts["name"].text(), parts["address"].integer(highest=MOST_BYTES), _size(parts["size"]))
+    readers = {"name": Marked.text, "address": _address, "size": _size}
+    return PortRange(**_each(readers, parts))
+
+
+def _address(entry: Marked) -> int:
+    return entry.integer(highest=MOST_BYTES)
+
+
+def _each(readers: Mapping[str, Callable[[Marked], Any]], parts: Mapping[str, Marked]) -> dict[str, Any]:
+    """Return the values of the parts, each read by the reader of its name."""
+    return dict(zip(parts, each_of(partial(readers[name], part) for name, part in parts.items()), strict=True))
 
 
 def _limits(entry: Marked) -> dict[str, Limit]:
-    return {name: read_limit(name, item) for name, item in entry.mapping(LIMIT_NAMES).items()}
+    return collected(partial(_read_limits, entry))
+
+
+def _read_limits(entry: Marked, mistakes: Mistakes) -> dict[str, Limit]:
+    found = (
+        (name, mistakes.attempt(partial(read_limit, name, item))) for name, item in mistakes.fields(entry, LIMIT_NAMES)
+    )
+    return {name: value for name, value in found if value is not None}
 
 
 def read_limit(name: str, entry: Marked) -> Limit:
@@ -247,7 +273,12 @@ def read_limit(name: str, entry: Marked) -> Limit:
 
 def _memory_costs(entry: Marked) -> MemoryCosts:
     parts = entry.mapping([known.name for known in fields(MemoryCosts)])
-    return MemoryCosts(**{name: item.integer() for name, item in parts.items()})
+    return MemoryCosts(**_each(dict.fromkeys(parts, Marked.integer), parts))
 
 
-_PARTS = {"sram": _sram, "ports": _ports, "limits": _limits, "memory_costs": _memory_costs}
+_PARTS: Mapping[str, Callable[[Marked], Any]] = {
+    "sram": _sram,
+    "ports": _ports,
+    "limits": _limits,
+    "memory_costs": _memory_costs,
+}

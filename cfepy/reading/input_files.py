@@ -13,9 +13,11 @@ from __future__ import annotations
 import os
 import re
 import stat
+from errno import ENOENT
 from io import BufferedReader
 from pathlib import Path
 
+from cfepy.reading.suggestions import like
 from cfepy.status import UsageError
 
 _DESCRIPTOR = re.compile(r"/dev/stdin|/dev/fd/\d+|/proc/self/fd/\d+")
@@ -56,6 +58,28 @@ def open_input(path: str | Path, *, handed: bool = False) -> BufferedReader:
 def _check_kind(found: os.stat_result, path: str | Path) -> None:
     if not stat.S_ISREG(found.st_mode) and not stat.S_ISDIR(found.st_mode):  # reading a folder fails later, as usual
         raise UsageError("is a device or a pipe, not a file; name a file", file=path)
+
+
+def unreadable(path: str | Path, error: OSError) -> UsageError:
+    """Return the error to raise about a file that cannot be read, with the name of a similar file if it is missing.
+
+    Args:
+        path: the file.
+        error: the error of the operating system.
+    """
+    hint = ""
+    if error.errno == ENOENT:
+        wanted = Path(path)
+        near = like(wanted.name, _names_near(wanted))
+        hint = f"; did you mean {wanted.parent / near[0]}?" if near else "; check the path"
+    return UsageError(f"cannot be read: {error.strerror}{hint}", file=path)
+
+
+def _names_near(path: Path) -> list[str]:
+    try:
+        return sorted(os.listdir(path.parent))
+    except (OSError, ValueError):
+        return []
 
 
 def read_limited(path: str | Path, most: int, *, handed: bool = False) -> bytes:

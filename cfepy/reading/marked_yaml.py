@@ -1,26 +1,29 @@
 """YAML with the line of every value, so that errors can name it.
 
 `load` returns a tree of `Marked`. It refuses a file that is not YAML, exceeds a limit (`cfepy.reading.plain_yaml`), has
-a duplicate key, or has a key that is not text. A reader of the tree reports mistakes to `Mistakes`, which raises the
-first one or collects all.
+a duplicate key, or has a key that is not text. A reader of the tree collects mistakes in
+`cfepy.reading.mistakes.Mistakes`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
-from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import YAML_BYTES
+from cfepy.reading.joined_errors import together
 from cfepy.reading.plain_yaml import YamlError, constructed, opened
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS
 
 MOST = (1 << 62) - 1  # the largest time in ns
 MOST_SECONDS = 1e9
-T = TypeVar("T")
+MOST_SHOWN = 80
+"""Characters of a value in an error."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +44,7 @@ class Marked:
 
     def fail(self, text: str) -> UsageError:
         """Return the error to raise about this value; `text` describes the mistake and the remedy."""
-        return UsageError(text, file=self.file, line=self.line, field=self.field or None)
+        return UsageError(text, file=self.file, line=self.line or None, field=self.field or None)
 
     def mapping(self, known: Iterable[str] | None = None) -> dict[str, Marked]:
         """Return the value as a mapping, empty if there is no value.
@@ -50,21 +53,27 @@ class Marked:
             known: the allowed keys; None for any.
 
         Raises:
-            UsageError: if it is not a mapping or has an unknown key.
+            UsageError: if it is not a mapping, or for all unknown keys together.
         """
         if self.value is None:
             return {}
         if not isinstance(self.value, dict):
-            raise self.fail(f"must be a mapping of names to values, not {self.plain()!r}")
-        allowed = None if known is None else tuple(known)
-        for name, item in self.value.items():
-            if allowed is not None and name not in allowed:
-                raise item.unknown(allowed)
+            raise self.fail(f"must be a mapping of names to values, not {self.shown()}")
+        if known is not None:
+            allowed = tuple(known)
+            unknown = [item.unknown(name, allowed) for name, item in self.value.items() if name not in allowed]
+            if unknown:
+                raise together(unknown)
         return self.value
 
-    def unknown(self, known: Iterable[str]) -> UsageError:
-        """Return the error to raise about an unknown key."""
-        return self.fail(f"unknown field; known fields are {', '.join(known)}")
+    def unknown(self, name: str, known: Iterable[str]) -> UsageError:
+        """Return the error to raise about the unknown key of this value.
+
+        Args:
+            name: the key.
+            known: the allowed keys.
+        """
+        return self.fail(f"unknown field; {expected(name, known)}")
 
     def items(self) -> list[Marked]:
         """Return the value as a list, empty if there is no value.
@@ -75,7 +84,7 @@ class Marked:
         if self.value is None:
             return []
         if not isinstance(self.value, list):
-            raise self.fail(f"must be a list, not {self.plain()!r}")
+            raise self.fail(f"must be a list, not {self.shown()}")
         return self.value
 
     def integer(self, lowest: int = 0, highest: int = MOST) -> int:
@@ -85,7 +94,7 @@ class Marked:
             UsageError: if it is not.
         """
         if not isinstance(self.value, int) or isinstance(self.value, bool) or self.value < lowest:
-            raise self.fail(f"must be a whole number of at least {lowest}, not {self.plain()!r}")
+            raise self.fail(f"must be a whole number of at least {lowest}, not {self.shown()}")
         if self.value > highest:
             raise self.fail(f"must be at most {highest}, not {self.value}")
         return self.value
@@ -97,7 +106,7 @@ class Marked:
             UsageError: if it is not text.
         """
         if not isinstance(self.value, str):
-            raise self.fail(f"must be text, not {self.plain()!r}; put it in quotes")
+            raise self.fail(f"must be text, not {self.shown()}; put it in quotes")
         return self.value
 
     def flag(self) -> bool:
@@ -107,7 +116,7 @@ class Marked:
             UsageError: if it is neither.
         """
         if not isinstance(self.value, bool):
-            raise self.fail(f"must be true or false, not {self.plain()!r}")
+            raise self.fail(f"must be true or false, not {self.shown()}")
         return self.value
 
     def time(self) -> int:
@@ -122,7 +131,7 @@ class Marked:
                 raise ValueError
             return round(float(number) * TIME_UNITS[unit])
         except (TypeError, ValueError, KeyError):
-            raise self.fail(f"must be a time such as 0.5, 0.5 s or 20 ms, not {self.plain()!r}") from None
+            raise self.fail(f"must be a time such as 0.5, 0.5 s or 20 ms, not {self.shown()}") from None
 
     def plain(self) -> Any:
         """Return the value without its marks."""
@@ -130,59 +139,32 @@ class Marked:
             return {name: item.plain() for name, item in self.value.items()}
         return [item.plain() for item in self.value] if isinstance(self.value, list) else self.value
 
+    def shown(self) -> str:
+        """Return the value for an error, as YAML has it; a long one is cut."""
+        text = _shown(self.value)
+        return text if len(text) <= MOST_SHOWN else f"{text[:MOST_SHOWN]}..."
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, Marked):
+        return _shown(value.value)
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name}: {_shown(item)}" for name, item in value.items()) + "}"
+    if isinstance(value, list):
+        return "[" + ", ".join(map(_shown, value)) + "]"
+    if value is None:
+        return "nothing"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if type(value).__name__ in ("date", "datetime"):
+        return f"the date {value}"
+    return "bytes" if isinstance(value, bytes) else repr(value)
+
 
 def _split(text: str) -> tuple[str, str]:
     """Return a number and its unit."""
     number = text.rstrip("abcdefghijklmnopqrstuvwxyz ")
     return number, text[len(number) :].strip() or "s"
-
-
-class Mistakes:
-    """Collects mistakes while a file is read, or ends the reading at the first one.
-
-    Args:
-        keep: collect all, as a check of the file does; otherwise raise the first one, as before a run.
-
-    Attributes:
-        errors: the collected mistakes.
-    """
-
-    def __init__(self, keep: bool = False) -> None:
-        self.errors: list[UsageError] = []
-        self._keep = keep
-
-    def add(self, error: UsageError) -> None:
-        """Report a mistake.
-
-        Raises:
-            UsageError: the mistake, unless mistakes are collected.
-        """
-        if not self._keep:
-            raise error
-        self.errors.append(error)
-
-    def attempt(self, read: Callable[[], T]) -> T | None:
-        """Return the result of `read`, or None if it fails; see `add` for the errors."""
-        try:
-            return read()
-        except UsageError as error:
-            self.add(error)
-            return None
-
-    def mapping(self, entry: Marked) -> dict[str, Marked]:
-        """Return a value as a mapping with any keys, or an empty one if it is not a mapping; see `add` for the
-        errors.
-        """
-        return self.attempt(entry.mapping) or {}
-
-    def fields(self, entry: Marked, known: Iterable[str]) -> Iterator[tuple[str, Marked]]:
-        """Yield the known keys of a mapping with their values, and report unknown keys; see `add` for the errors."""
-        allowed = tuple(known)
-        for name, item in self.mapping(entry).items():
-            if name in allowed:
-                yield name, item
-            else:
-                self.add(item.unknown(allowed))
 
 
 def load(path: Path, *, handed: bool = False) -> Marked:
@@ -198,7 +180,7 @@ def load(path: Path, *, handed: bool = False) -> Marked:
     try:
         text = text_limited(path, YAML_BYTES, handed=handed)
     except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+        raise unreadable(path, error) from None
     except UnicodeDecodeError:
         raise UsageError("is not UTF-8 text", file=path) from None
     try:

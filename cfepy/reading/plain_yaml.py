@@ -87,7 +87,10 @@ def opened(text: str, loader: type[Any] | None = None) -> Iterator[Any]:
         line = None if mark is None else mark.line + 1
         if error.problem == _TOO_DEEP:
             raise YamlError("is nested too deeply", line) from None
-        raise YamlError(f"is not YAML: {error.problem or error.context}", line) from None
+        hint = "; indent with blanks, not with tabs" if mark is not None and _is_tab(text, mark) else ""
+        raise YamlError(f"is not YAML: {error.problem or error.context}{hint}", line) from None
+    except yaml.reader.ReaderError as error:
+        raise _control_character(text, error) from None
     except yaml.YAMLError as error:
         raise YamlError(f"is not YAML: {error}") from None
     except UnicodeError:
@@ -95,6 +98,18 @@ def opened(text: str, loader: type[Any] | None = None) -> Iterator[Any]:
     finally:
         if used is not None:
             used.dispose()
+
+
+def _is_tab(text: str, mark: Any) -> bool:
+    lines = text.split("\n")
+    return bool(mark.line < len(lines) and lines[mark.line][mark.column : mark.column + 1] == "\t")
+
+
+def _control_character(text: str, error: Any) -> YamlError:
+    """Return the error about a character that YAML does not allow; libyaml gives its position in bytes."""
+    code = error.character if isinstance(error.character, int) else ord(error.character)
+    line = text.encode("utf-8", "surrogatepass")[: error.position].count(b"\n") + 1
+    return YamlError(f"is not YAML: it has the control character 0x{code:02X}; remove it", line)
 
 
 def constructed(loader: Any, node: Any) -> Any:

@@ -1,10 +1,17 @@
-"""`did you mean X?`: suggestions for an unknown name, in one form for all kinds of names."""
+"""`did you mean X?`: suggestions for an unknown name, in one form for all kinds of names.
+
+`expected` is the usual end of an error text about an unknown word. `did_you_mean` is for errors with another
+remedy if no name is similar.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 LIKENESS = 0.6  # out of 1, as difflib counts
+FEW = 6
+"""Choices up to this number are all listed."""
+_WIDTH = 90  # characters of a list of names that is cut
 _LONGEST, _MOST = 100, 2_000  # characters of a name and number of names to compare; more would take long
 
 
@@ -60,3 +67,49 @@ def did_you_mean(
     near = like(name, known, most, likeness)
     text = f"did you mean {' or '.join(form.format(each) for each in near)}?" if near else otherwise
     return f"{before}{text}" if text else ""
+
+
+def expected(
+    name: str, known: Iterable[str], *, subject: str = "expected", last: str = "or", likeness: float = LIKENESS
+) -> str:
+    """Return the end of an error text about an unknown word: the most similar known word, and the choices.
+
+    Up to `FEW` choices are all listed. Of more, it suggests the most similar one, or lists the first ones if none is
+    similar.
+
+    Args:
+        name: the unknown word.
+        known: the existing words.
+        subject: the beginning of a list, such as "expected" or "HK_TLM has".
+        last: the word before the last one of a list.
+        likeness: minimum similarity; see `like`.
+
+    >>> expected("pol", ("host", "pool", "strict"))
+    'did you mean pool? (expected host, pool or strict)'
+    """
+    names = list(dict.fromkeys(known))
+    hint = did_you_mean(name, names, likeness=likeness)
+    if hint and len(names) > FEW:
+        return hint
+    choices = f"{subject} {listed(names, last)}"
+    return f"{hint} ({choices})" if hint else choices
+
+
+def listed(names: Iterable[str], last: str = "or") -> str:
+    """Return names as a list, "a, b or c"; a long list is cut and ends with the number of names left out.
+
+    Args:
+        names: the names.
+        last: the word before the last one.
+    """
+    every = list(names)
+    shown = every
+    if len(every) > FEW:
+        shown = []
+        for each in every:
+            if shown and len(", ".join((*shown, each))) > _WIDTH:
+                break
+            shown.append(each)
+        if len(shown) < len(every):
+            return f"{', '.join(shown)} {last} {len(every) - len(shown)} more"
+    return f" {last} ".join(filter(None, (", ".join(shown[:-1]), *shown[-1:]))) or "none"

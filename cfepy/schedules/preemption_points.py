@@ -12,6 +12,7 @@ import re
 from dataclasses import dataclass
 from pathlib import PurePath
 
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
 LINES, ATTRIBUTES, CALLS = "lines", "attributes", "calls"
@@ -44,8 +45,9 @@ class Points:
         if not text:
             return cls()
         kind, *modules = text.replace(":", ",").split(",")
-        if kind not in (LINES, ATTRIBUTES, CALLS):
-            raise UsageError(f"invalid kind of points {kind!r}; expected lines, attributes or calls", field=field)
+        kinds = (LINES, ATTRIBUTES, CALLS)
+        if kind not in kinds:
+            raise UsageError(f"invalid kind of points {kind!r}; {expected(kind, kinds)}", field=field)
         wrong = next((each for each in modules if _MODULE.fullmatch(each) is None), None)
         if wrong is not None:
             raise UsageError(f"invalid module {wrong!r}; write for instance {kind}:arm,util", field=field)

@@ -25,7 +25,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import expected
 from cfepy.schedules.preemption_points import Points
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
@@ -274,5 +274,4 @@ def _wrong(text: str) -> UsageError:
     if kind in _KINDS:
         options = "" if kind == "fifo" else _OPTIONS
         return UsageError(f"invalid schedule {text!r}; expected {_KINDS[kind]}{options}", field="--schedule")
-    hint = did_you_mean(kind, _KINDS, f"expected {', '.join(_KINDS)}", before="; ")
-    return UsageError(f"unknown schedule {kind!r}{hint}", field="--schedule")
+    return UsageError(f"unknown schedule {kind!r}; {expected(kind, _KINDS)}", field="--schedule")

@@ -10,15 +10,18 @@ import math
 import re
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.ground import EVENT_TYPES, Dictionary, Topic, int_of, number_of, packet_of, topic_id, unknown_field
 from cfepy.mission import MissionSpec
 from cfepy.msg import Telemetry
-from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import LINE_FILE_BYTES
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.joined_errors import placed
+from cfepy.reading.mistakes import Mistakes, collected
+from cfepy.reading.suggestions import expected, listed
 from cfepy.script.conditions import (
     APP_STATES,
     OPERATORS,
@@ -70,7 +73,7 @@ class Words:
         self.source = line[:at].strip()
         rest = line[at:].strip()
         if rest and not rest.startswith("#"):
-            raise UsageError(f"unclosed quote: {rest}")
+            raise UsageError(f'unclosed quote: {rest}; end the text with "')
 
     def __bool__(self) -> bool:
         return bool(self._words)
@@ -132,7 +135,7 @@ def choice(text: str, choices: Iterable[str], what: str) -> str:
     known = list(choices)
     if text in known:
         return text
-    hint = did_you_mean(text, known if len(text) > LONGEST_SIGN else (), f"expected {', '.join(known)}", likeness=0.5)
+    hint = expected(text, known, likeness=0.5) if len(text) > LONGEST_SIGN else f"expected {listed(known)}"
     raise UsageError(f"invalid {what} {text!r}; {hint}")
 
 
@@ -201,7 +204,7 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
     try:
         text = text_limited(path, LINE_FILE_BYTES, handed=True)
     except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+        raise unreadable(path, error) from None
     except UnicodeError:
         raise UsageError("is not UTF-8 text", file=path) from None
     return parse_script(text, path, spec, dictionary)
@@ -210,6 +213,13 @@ def read_script(path: str | Path, spec: MissionSpec, dictionary: Dictionary) -> 
 def parse_script(text: str, path: str | Path, spec: MissionSpec | None, dictionary: Dictionary) -> Script:
     """`read_script` for a text; `path` is for messages. Without a mission, it cannot name new topics."""
     reader = _Reader(spec, dictionary)
+    steps = collected(partial(_steps, reader, text, path))
+    if not steps:
+        raise UsageError("has no steps; add at least one, such as `at 5 send CFE_ES_NOOP`", file=path)
+    return Script(str(path), tuple(steps), dictionary, reader.longest_ns)
+
+
+def _steps(reader: _Reader, text: str, path: str | Path, mistakes: Mistakes) -> list[Step]:
     steps: list[Step] = []
     for number, line in enumerate(text.split("\n"), 1):
         try:
@@ -217,10 +227,8 @@ def parse_script(text: str, path: str | Path, spec: MissionSpec | None, dictiona
             if words:
                 steps.append(reader.step(number, words))
         except UsageError as error:
-            raise UsageError(error.text, file=path, line=number, field=error.field) from None
-    if not steps:
-        raise UsageError("has no steps; add at least one, such as `at 5 send CFE_ES_NOOP`", file=path)
-    return Script(str(path), tuple(steps), dictionary, reader.longest_ns)
+            mistakes.add(placed(error, file=path, line=number))
+    return steps
 
 
 class _Reader:
@@ -380,6 +388,6 @@ def _comparison(words: Words, declared: Telemetry | Topic) -> Comparison:
         try:
             number_of(value)
         except ValueError:
-            hint = "" if names is None else did_you_mean(value, names.values, f"known names are {names}", before="; ")
+            hint = "" if names is None else f"; {expected(value, names.values)}"
             raise UsageError(f"invalid number {value!r}{hint}", field=path) from None
     return Comparison(path, sign, value)

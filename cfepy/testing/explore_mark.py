@@ -7,8 +7,10 @@ from dataclasses import dataclass
 
 import pytest
 
+from cfepy.reading.suggestions import expected
 from cfepy.schedules import Points, Schedule
 from cfepy.status import UsageError
+from cfepy.testing.keywords import suggests_keywords
 from cfepy.testing.missions import EXPLORE_MARK
 
 POLICIES = ("all", "random", "pct", "abreast")
@@ -38,6 +40,7 @@ class Exploration:
     races: bool = False
 
 
+@suggests_keywords
 def explore(
     seeds: int = 200,
     policy: str | Sequence[str] = "all",
@@ -81,7 +84,7 @@ def explore(
     policies = (policy,) if isinstance(policy, str) else tuple(policy)
     for each in policies:
         if each not in POLICIES:
-            raise UsageError(f"unknown policy {each!r}; expected one of {', '.join(POLICIES)}", field="policy")
+            raise UsageError(f"unknown policy {each!r}; {expected(str(each), POLICIES)}", field="policy")
     if seeds < 1 or not policies:
         raise UsageError("must not be empty; give at least one", field="seeds" if policies else "policy")
     if depth is not None and depth < 1:

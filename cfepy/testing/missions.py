@@ -24,6 +24,7 @@ from cfepy.rtos import AUTO, NotingPolicy, Policy
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from cfepy.testing.hypothesis_tests import ExampleTests
+from cfepy.testing.keywords import suggests_keywords
 from cfepy.writing.escapes import visible
 
 if TYPE_CHECKING:
@@ -99,6 +100,7 @@ class Missions:
         self._journals = None if folder is None else _journals(folder)
         self._examples = ExampleTests(config.getoption("--cfepy-example"), self._end_example)
 
+    @suggests_keywords
     def __call__(
         self,
         name: str | os.PathLike[str],

@@ -11,7 +11,7 @@ dictionaries, which are readable in a failing example.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,8 @@ from cfepy.flight import SECONDS, array_of, build, library_near, library_of_clas
 from cfepy.ground import Dictionary, Topic, dictionary_of, table_type
 from cfepy.mission import read_mission
 from cfepy.msg import CMD_HEADER_SIZE, HIGHEST_VALID_MSG_ID, Cell, Command, Layout, Telemetry, command, telemetry
+from cfepy.reading.joined_errors import together
+from cfepy.reading.suggestions import expected
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 
@@ -139,9 +141,7 @@ def messages(
     name = kind if isinstance(kind, str) else str(getattr(kind, "_type", kind))
     library = library_near(near) if isinstance(kind, str) else library_of_class(kind)
     known = MessageValues(library).fields(name)
-    for field in fields:
-        if field not in known:
-            raise UsageError(f"unknown field; {name} has {', '.join(known)}", field=field)
+    _check_fields(fields, known, name)
     built = st.fixed_dictionaries({**known, **fields}).map(lambda values: build(library, name, values))
     return built if isinstance(kind, str) else built.map(lambda message: _as_class(kind, message))
 
@@ -177,10 +177,16 @@ def fields_of(layout: Layout, given: Fields, owner: str) -> st.SearchStrategy[di
         UsageError: if there is no such field.
     """
     cells = {cell.path: cell_values(cell) for cell in layout.cells()}
-    for path in given:
-        if path not in cells:
-            raise UsageError(f"unknown field; {owner} has {', '.join(cells) or 'no fields'}", field=path)
+    _check_fields(given, cells, owner)
     return st.fixed_dictionaries({**cells, **given})
+
+
+def _check_fields(given: Iterable[str], known: Iterable[str], owner: str) -> None:
+    names = list(known)
+    unknown = [name for name in given if name not in names]
+    if unknown:
+        hints = [(name, expected(name, names)) for name in unknown]
+        raise together([UsageError(f"unknown field of {owner}; {hint}", field=name) for name, hint in hints])
 
 
 def packed(layout: Layout, values: Mapping[str, Any]) -> bytes:

@@ -49,7 +49,8 @@ from cfepy.pilot.determinism_look import suspects
 from cfepy.pilot.mission_check import check_mission
 from cfepy.pilot.mission_check.cfe_names import wrong_names
 from cfepy.psp.profile import load_profile
-from cfepy.reading.marked_yaml import Mistakes, load
+from cfepy.reading.marked_yaml import load
+from cfepy.reading.mistakes import Mistakes, collected
 from cfepy.reading.plain_xml import XmlError, plain_xml
 from cfepy.reading.plain_yaml import YamlError
 from cfepy.schedules import Schedule
@@ -143,10 +144,10 @@ def shared_object(data: bytes, path: Path) -> None:
 
 
 def mission_file(data: bytes, path: Path) -> None:
-    """Read a mission file with all its sections. The first mistake is raised, and all are collected."""
-    mistakes = Mistakes(keep=True)
+    """Read a mission file with all its sections, as a check and as a run read it."""
+    mistakes = Mistakes()
     read_demands(read_mission_file(path, mistakes).demands, mistakes)
-    read_demands(read_mission_file(path, Mistakes()).demands, Mistakes())
+    collected(lambda mistakes: read_demands(read_mission_file(path, mistakes).demands, mistakes))
 
 
 def mission(data: bytes, path: Path) -> None:
@@ -157,7 +158,7 @@ def mission(data: bytes, path: Path) -> None:
 
 def launch(data: bytes, path: Path) -> None:
     """A launch file, as a check and as a run read it."""
-    read(path, {"given": "1"}, Packages(path.parent, {}), {"HOME": "/home/me"}, Mistakes(keep=True))
+    read(path, {"given": "1"}, Packages(path.parent, {}), {"HOME": "/home/me"}, Mistakes())
     read(path, {"given": "1"}, Packages(path.parent, {}), {"HOME": "/home/me"})
 
 

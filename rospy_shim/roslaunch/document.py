@@ -11,7 +11,7 @@ from pathlib import Path
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LAUNCH_NUMBER, XML_BYTES
 from cfepy.reading.plain_xml import XmlError, parse_xml
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, like
 from cfepy.status import UsageError
 from rospy_shim.roslaunch.model import LaunchRemark
 from rospy_shim.roslaunch.scope import Scope
@@ -136,6 +136,7 @@ class Attributes:
         self.tag = tag
         self.failed = False
         self._scope = scope
+        self._unknown: list[str] = []
 
     def wrong(self, text: str, attribute: str | None = None) -> None:
         """Report an error in the tag; see `Tag.fail`.
@@ -161,6 +162,7 @@ class Attributes:
             if name not in allowed:
                 hint = did_you_mean(name, known, before=", ")
                 self.remark(f"<{self.tag.name}> has no attribute {name!r}; it is ignored{hint}", is_error=True)
+                self._unknown.append(name)
 
     def optional(self, name: str) -> str | None:
         """Return the value of an attribute; None if it is missing or a substitution cannot be made."""
@@ -198,7 +200,8 @@ class Attributes:
     def required(self, name: str) -> str | None:
         """Return the value of a required attribute; None if it is missing, or a substitution cannot be made."""
         if name not in self.tag.attributes:
-            self.wrong(f'missing {name!r}; write {name}="..."')
+            near = like(name, self._unknown)
+            self.wrong(f'missing {name!r}; write {name}="..."{f" instead of {near[0]}=" if near else ""}')
         return self.optional(name)
 
     def flag(self, name: str) -> bool:

@@ -20,7 +20,7 @@ from typing import Any
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig
 from cfepy.reading.input_files import beginning_of, text_limited
 from cfepy.reading.input_limits import CMAKE_BYTES, XML_BYTES
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import FirstMistake, Mistakes
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -237,7 +237,7 @@ def plan_of(
         taken: names of existing applications.
         cwd: folder in which the launch is started; the meaning of cwd="cwd".
         results: folder for the results of tests.
-        mistakes: receives errors; None raises the first error.
+        mistakes: receives errors; None raises the first error, as roslaunch does.
         with_compiled: plan nodes in C++ whose sources are here, too.
 
     Returns:
@@ -248,7 +248,7 @@ def plan_of(
     """
     environ = {**ROS_ENVIRONMENT, **environ}
     packages = Packages(file, environ)
-    mistakes = Mistakes() if mistakes is None else mistakes
+    mistakes = FirstMistake() if mistakes is None else mistakes
     planner = Planner(packages, environ, taken, cwd or file.parent, results, with_compiled)
     return planner.plan(read(file, args, packages, environ, mistakes), mistakes)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import FirstMistake, Mistakes
 
 DEFAULT_TIME_LIMIT_S = 60.0
 
@@ -44,7 +44,7 @@ class LaunchFindings:
         work: size of the launch so far (`LAUNCH_WORK` of `cfepy.reading.input_limits`).
     """
 
-    mistakes: Mistakes = field(default_factory=Mistakes)
+    mistakes: Mistakes = field(default_factory=FirstMistake)
     remarks: list[LaunchRemark] = field(default_factory=list)
     unset: set[tuple[Path, str, str]] = field(default_factory=set)
     work: int = 0

@@ -14,6 +14,7 @@ from typing import Any
 
 from cfepy.reading.input_files import read_limited, text_limited
 from cfepy.reading.input_limits import LAUNCH_FILE_BYTES, LAUNCH_NAME
+from cfepy.reading.suggestions import expected, listed
 from rospy_shim.parameters.values import marshalled
 from rospy_shim.roslaunch.document import Attributes, Tag
 from rospy_shim.roslaunch.model import Launch
@@ -26,6 +27,7 @@ STOOD_IN = {"xacro": Path("xacro")}
 PARAM = ("name", "value", "type", "textfile", "binfile", "command")
 ROSPARAM = ("command", "ns", "file", "param", "subst_value")
 _BYTES_KEPT, _YAML_BYTES = 200, 10  # bytes that count as one for the size of a launch
+_COMMANDS = ("load", "dump", "delete")
 _SOURCES = ("value", "textfile", "binfile", "command")
 
 
@@ -129,7 +131,7 @@ def read_param(launch: Launch, tag: Tag, scope: Scope, of_node: bool = False) ->
     given = [source for source in _SOURCES if source in tag.attributes]
     name = attributes.required("name")
     if len(given) != 1:
-        attributes.wrong(f"must have exactly one of {', '.join(_SOURCES)}, not {' and '.join(given) or 'none'}")
+        attributes.wrong(f"must have exactly one of {listed(_SOURCES)}, not {' and '.join(given) or 'none'}")
         return
     value = _value(attributes, given[0])
     if name is None or attributes.failed:
@@ -174,8 +176,8 @@ def read_rosparam(launch: Launch, tag: Tag, scope: Scope) -> None:
     command = attributes.optional("command") or "load"
     param = joined(attributes.optional("ns") or "", attributes.optional("param") or "")
     file, resolves = attributes.optional("file"), attributes.flag("subst_value")
-    if command not in ("load", "dump", "delete"):
-        attributes.wrong(f"must be load, dump or delete, not {command!r}", "command")
+    if command not in _COMMANDS:
+        attributes.wrong(f"invalid value {command!r}; {expected(command, _COMMANDS)}", "command")
         return
     if command == "delete" and file is not None:
         attributes.wrong('is not used by command="delete"; remove it', "file")

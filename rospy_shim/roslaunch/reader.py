@@ -13,8 +13,8 @@ from pathlib import Path
 
 from cfepy.reading.input_files import open_input
 from cfepy.reading.input_limits import LAUNCH_INCLUDES_DEEP, LAUNCH_NAME, LAUNCH_WORK
-from cfepy.reading.marked_yaml import Mistakes
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.mistakes import FirstMistake, Mistakes
+from cfepy.reading.suggestions import did_you_mean, expected
 from cfepy.status import UsageError
 from rospy_shim.roslaunch.document import Attributes, Tag, read_launch_tag, unused_arguments
 from rospy_shim.roslaunch.model import (
@@ -217,7 +217,7 @@ def _record(attributes: Attributes, inner: Scope, name: str, namespace: str) -> 
 def _word(attributes: Attributes, name: str) -> str | None:
     value = attributes.optional(name)
     if value and value not in _WORDS[name]:
-        attributes.wrong(f"must be one of {', '.join(_WORDS[name])}, not {value!r}", name)
+        attributes.wrong(f"invalid value {value!r}; {expected(value, _WORDS[name])}", name)
     return value or None
 
 
@@ -235,7 +235,7 @@ def read(
         args: values of its arguments, `name:=value` on roslaunch's command line.
         packages: the packages for $(find).
         environ: the environment for $(env) and $(optenv); ROS_NAMESPACE is the namespace of all.
-        mistakes: receives errors; None raises the first error.
+        mistakes: receives errors; None raises the first error, as roslaunch does.
 
     Returns:
         The contents.
@@ -243,7 +243,7 @@ def read(
     Raises:
         UsageError: it cannot be read, or has an error.
     """
-    return _Reader(packages, environ, LaunchFindings(Mistakes() if mistakes is None else mistakes)).read(file, args)
+    return _Reader(packages, environ, LaunchFindings(FirstMistake() if mistakes is None else mistakes)).read(file, args)
 
 
 class _Reader:
@@ -251,7 +251,9 @@ class _Reader:
 
     def __init__(self, packages: Packages, environ: Mapping[str, str], findings: LaunchFindings) -> None:
         self._environ = environ
-        self._world = World(environ, lambda name: packages.path(name) or STOOD_IN.get(name), self._anonymous, [0])
+        self._world = World(
+            environ, lambda name: packages.path(name) or STOOD_IN.get(name), self._anonymous, [0], packages.names
+        )
         self._names_made = 0
         self._depth = 0
         self._too_deep = self._too_much = False

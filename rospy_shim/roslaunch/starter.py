@@ -123,7 +123,7 @@ class Starter:
         """
         packages = Packages(self._here, self._environ)
         made = count(1)
-        world = World(self._environ, packages.path, lambda name: f"{name}_cfepy_{next(made)}", [0])
+        world = World(self._environ, packages.path, lambda name: f"{name}_cfepy_{next(made)}", [0], packages.names)
         path = Path(self._node.universe.resolve(file or str(self._here)))
         try:
             return Substitutions(world, path, args, anonymous).resolve(text)

@@ -7,11 +7,12 @@ but not to the computer.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.reading.input_limits import SUBSTITUTED_CHARACTERS, SUBSTITUTED_IN_ALL
+from cfepy.reading.suggestions import did_you_mean
 from rospy_shim.roslaunch.values import converted
 from rospy_shim.types.expression import MATH, ExpressionError, plain_text, value_of
 
@@ -78,14 +79,16 @@ def arguments_in(text: str) -> set[str]:
 class World(NamedTuple):
     """The common data of substitutions in all files of a launch.
 
-    `environ` is the environment; `find` returns the folder of a package, or None; `anonymous` makes a unique node name;
-    `made` has the number of characters that substitutions have made.
+    `environ` is the environment; `find` returns the folder of a package, or None; `packages` returns the names of all
+    packages, for errors; `anonymous` makes a unique node name; `made` has the number of characters that substitutions
+    have made.
     """
 
     environ: Mapping[str, str]
     find: Callable[[str], Path | None]
     anonymous: Callable[[str], str]
     made: list[int]
+    packages: Callable[[], Iterable[str]] = tuple
 
 
 class Substitutions:
@@ -152,8 +155,9 @@ class Substitutions:
         if not end or not inside:
             return match[0]  # never closed, or empty: plain text
         if command not in COMMANDS:
+            hint = did_you_mean(command, (*COMMANDS, "eval"), before="; ")
             raise SubstitutionError(
-                f"unknown substitution $({inside}); known are {', '.join(COMMANDS)}, and eval alone"
+                f"unknown substitution $({inside}); known are {', '.join(COMMANDS)}, and eval alone{hint}"
             )
         if command not in commands:
             return match[0]
@@ -180,8 +184,10 @@ class Substitutions:
     def _find(self, package: str) -> str:
         folder = self.world.find(package)
         if folder is None:
-            text = f"unknown package {package!r}; put it next to the package of the launch file, or on ROS_PACKAGE_PATH"
-            raise SubstitutionError(text)
+            what_to_do = "put it next to the package of the launch file, or on ROS_PACKAGE_PATH"
+            raise SubstitutionError(
+                f"unknown package {package!r}; {did_you_mean(package, self.world.packages(), what_to_do)}"
+            )
         return str(folder)
 
     def _env(self, name: str) -> str:

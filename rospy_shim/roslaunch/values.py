@@ -11,6 +11,7 @@ from functools import cache
 from typing import Any
 
 from cfepy.reading.plain_yaml import YamlError, plain_yaml, safe_loader
+from cfepy.reading.suggestions import expected
 from rospy_shim.types.angles import degrees, radians
 
 _TRUTH = {"true": True, "1": True, "false": False, "0": False}
@@ -29,7 +30,7 @@ def converted(text: str, type_name: str) -> Any:
     """
     kind = type_name.lower()
     if kind not in TYPES:
-        raise ValueError(f"unknown type {type_name!r}; known are {', '.join(TYPES)}")
+        raise ValueError(f"unknown type {type_name!r}; {expected(kind, TYPES)}")
     try:
         return _CONVERSIONS[kind](text)
     except ValueError as error:

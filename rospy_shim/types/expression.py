@@ -24,6 +24,7 @@ from cfepy.reading.input_limits import (
     EXPRESSION_STEPS,
     EXPRESSION_WORK,
 )
+from cfepy.reading.suggestions import expected
 
 _SHOWN = 60  # characters of an expression in an error
 _TOO_MUCH = "compute less, or pass the value as an argument"
@@ -457,8 +458,8 @@ class _Interpreter:
         """Call a method of a text, a list or a mapping."""
         kind: type = type(value)
         if name not in _METHODS.get(kind, ()):
-            known = ", ".join(sorted(_METHODS.get(kind, ()))) or "none"
-            raise ExpressionError(f"calls {name} of a {kind.__name__}, which is not allowed; allowed are {known}")
+            hint = expected(name, sorted(_METHODS.get(kind, ())), subject="allowed are", last="and")
+            raise ExpressionError(f"calls {name} of a {kind.__name__}, which is not allowed; {hint}")
         if name == "format":
             return self._fill(value, values, named)
         if name in ("center", "ljust", "rjust", "zfill") and values and isinstance(values[0], int):

@@ -75,7 +75,9 @@ def test_the_saved_script_repeats_the_run(console: Console, tmp_path: Path, caps
 
 def test_what_is_wrong_is_told_and_the_session_goes_on(console: Console) -> None:
     status, output = console(
-        "lab", lines="CFE_ES_NOPE\nrun 0\nuntil\npage NO_SUCH\nload none.txt\nspeed x\nexpect bus\nrun 0.7\nevents HK\n"
+        "lab",
+        lines="CFE_ES_NOPE\nrun 0\nuntil\npage NO_SUCH\nload none.txt\nspeed x\nexpect bus\n"
+        "SAMPLE_APP_DISPLAY_PARAM ValU=1 ValI16=x\nrun 0.7\nevents HK\n",
     )
     assert status == 1
     for text in (
@@ -85,7 +87,9 @@ def test_what_is_wrong_is_told_and_the_session_goes_on(console: Console) -> None
         "unknown telemetry packet NO_SUCH",
         "cannot be read: No such file or directory",
         "invalid factor 'x'",
-        "invalid condition 'bus'; expected event, tlm, app, file, console",
+        "invalid condition 'bus'; expected event, tlm, app, file or console",
+        "ValU: unknown field of SAMPLE_APP_DISPLAY_PARAM; did you mean ValU32? (expected ValU32, ValI16 or ValStr); "
+        "ValI16: must be an integer, not 'x'",
     ):
         assert f"FAILED {text}" in output
     assert "OPERATIONAL" in output

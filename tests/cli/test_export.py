@@ -129,7 +129,7 @@ def test_a_text_a_truth_and_bytes_in_csv(tmp_path: Path, capsys: pytest.CaptureF
             ["csv", *CAPTURE, "/joint_state"],
             "unknown topic or packet; did you mean /joint_states?",
         ),
-        (["csv", *CAPTURE, "/joint_states.nose"], "nose: unknown field"),
+        (["csv", *CAPTURE, "/joint_states.nose"], "nose: unknown field of /joint_states; "),
         (["csv", *CAPTURE, "CFE_ES_HK_TIM"], "unknown telemetry packet CFE_ES_HK_TIM"),
         (["csv", *CAPTURE, "CFE_ES_MEMSTATS_TLM"], "CFE_ES_MEMSTATS_TLM: no message was sent there"),
         (["csv", *CAPTURE, "/phase", "-o", "/no/such/file.csv"], "/no/such/file.csv: --output: cannot be written"),

@@ -96,6 +96,14 @@ def test_tables_of_a_missions_own_apps(tmp_path: Path, capsys: pytest.CaptureFix
     assert "unknown table LIMITS.Points" in capsys.readouterr().err
 
 
+def test_an_unknown_table_gets_the_nearest_known_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    source = tmp_path / "copy.yaml"
+    source.write_text("table: HK.CopyTabel\nrows: []\n", encoding="utf-8")
+    assert main(["tbl", "build", str(source)]) == 2
+    said = "unknown table HK.CopyTabel; did you mean HK.CopyTable? Otherwise name its mission with --mission, or add"
+    assert said in capsys.readouterr().err
+
+
 def test_an_app_that_cannot_be_read_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "limits.py").write_text(APP + "\nraise ValueError('boom')\n", encoding="utf-8")
     (tmp_path / "startup.scr").write_text("CFE_APP, limits, Main, LIMITS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")

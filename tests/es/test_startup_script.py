@@ -130,6 +130,19 @@ def test_check_tells_of_silent_changes(script: bytes, text: str) -> None:
     assert text in note.explanation
 
 
+def test_check_tells_of_all_mistakes_of_an_entry() -> None:
+    notes = check(b"CFE_AP, , A_Main, A_NAME_BEYOND_20_CHARACTERS, high, 8192, 0, 0;")
+    assert [(note.explanation, note.is_warning) for note in notes] == [
+        ("the file name cannot be used: '' has no file name", False),
+        ("the first field must be CFE_APP or CFE_LIB, not 'CFE_AP'; did you mean CFE_APP?", False),
+        (
+            "the name 'A_NAME_BEYOND_20_CHARACTERS' must have at most 19 characters, not 27; cFE does not report this",
+            False,
+        ),
+        ("invalid priority 'high', which cFE reads as 0; write a number, such as 60 or 0x3C", True),
+    ]
+
+
 @pytest.mark.parametrize(
     ("text", "value"),
     [

@@ -61,7 +61,7 @@ def test_only_one_task(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("fault", "why"),
     [
-        ({"compute": "A"}, "compute requires one of for, times, such as `for: 0.02`"),
+        ({"compute": "A"}, "compute requires for or times, such as `for: 0.02`"),
         ({"compute": "A", "for": 1, "times": 2}, "cannot be combined with for"),
         ({"compute": "A", "message": "/x", "times": 2}, "cannot be combined with message"),
         ({"compute": "A", "for": 0}, "must be a number of seconds greater than 0"),

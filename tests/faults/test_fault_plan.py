@@ -71,7 +71,7 @@ def test_the_list_may_stand_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line", "says"),
     [
-        ("faults:\n  - drop: /a\n  - dropp: /b", 3, "missing kind of fault; did you mean drop?"),
+        ("faults:\n  - drop: /a\n  - dropp: /b", 3, "unknown kind of fault 'dropp'; did you mean drop?"),
         ("- {drop: /a, crash: B}", 1, "drop cannot be combined with crash"),
         ("- drop: /a\n  probabilty: 1", 2, "unknown option of drop; did you mean probability?"),
         ("- drop: /a\n  probability: 1.5", 2, "a probability greater than 0 and at most 1"),
@@ -83,22 +83,26 @@ def test_the_list_may_stand_alone(tmp_path: Path) -> None:
         ("- drop: /a\n  count: 0", 2, "at least 1"),
         ("- drop: 1.5", 1, "must be the name of the message"),
         ("- drop: []", 1, "missing target"),
-        ("- drop: /a\n  unit: packet", 2, "one of message, segment"),
+        ("- drop: /a\n  unit: packet", 2, "expected message or segment"),
         ("- delay: /a", 1, "delay requires by, such as `by: 0.01`"),
         ("- delay: /a\n  by: [2, 1]", 2, "must be a shortest and a longest time"),
-        ("- crash: A", 1, "crash requires one of at"),
-        ("- slow: A", 1, "slow requires one of times, extra"),
+        ("- crash: A", 1, "crash requires at, after, until"),
+        ("- slow: A", 1, "slow requires times or extra"),
         ("- {corrupt: /a, bits: 1, bytes: {'1': 2}}", 1, "cannot be combined with bits"),
         ("- corrupt: /a\n  bytes: {'1': 256}", 2, "at most 255"),
         ("- corrupt: /a\n  bytes: {x: 2}", 2, "invalid position 'x'; expected a whole number"),
         ("- corrupt: /a\n  fields: 3", 2, "must be a mapping of fields"),
-        ("- {reset: hard, at: 1}", 1, "processor, poweron, exception, watchdog"),
+        ("- {reset: hard, at: 1}", 1, "processor, poweron, exception or watchdog"),
         ("- {jump_clock: 0, at: 1}", 1, "a number other than 0"),
         ("- jump_clock: 5", 1, "jump_clock requires at"),
         ("- {corrupt_file: x.tbl}", 1, "a path of the virtual file system"),
         ("- {fail: OS_QueuePutt}", 1, "did you mean os.queue_put?"),
         ("- {fail: queue_put}", 1, "invalid call"),
         ("- fail: os.write\n  status: OS_WRONG", 2, "unknown status"),
+        ("- fail: os.write\n  status: OS_QUEUE_FUL", 2, "unknown status 'OS_QUEUE_FUL'; did you mean OS_QUEUE_FULL?"),
+        ("- {fail: oss.write}", 1, "did you mean os.write?"),
+        ("- drop: /a\n  until: 2024-01-01", 2, "must be a number of seconds, such as 2.5, not the date 2024-01-01"),
+        ("- {drop: /a, form: B}", 1, "unknown option of drop; did you mean from?"),
         ("- {drop: 'udp:1', to: A}", 1, "to is not an option of faults of datagrams"),
         ("- {drop: ['udp:1', /a]}", 1, "messages cannot be combined with datagrams"),
         ("- {drop: /a, name: x}\n- {drop: /a, name: x}", 2, "the name 'x' is already used by another fault"),
@@ -116,6 +120,25 @@ def test_mistakes_say_where_and_what_to_do(tmp_path: Path, text: str, line: int,
         read_plan(path)
     assert says in str(caught.value)
     assert (caught.value.file, caught.value.line) == (str(path), line)
+
+
+def test_all_mistakes_of_a_plan_are_raised_together(tmp_path: Path) -> None:
+    text = """\
+faults:
+- {dorp: /a}
+- {drop: /b, evry: 2, count: x, probability: 3}
+- {crash: [3, B], at: [x, 1, y]}
+- {delay: /a}
+- {corrupt: /a, bytes: {a: 1, "2": 300}}
+- {drop: /a, name: n}
+- {drop: /a, name: n}
+fault: []
+"""
+    with pytest.raises(UsageError) as caught:
+        read_plan(write(tmp_path, text))
+    fields = "faults[0].dorp faults[1].evry faults[1].count faults[1].probability faults[2].crash[0] faults[2].at[0] "
+    fields += "faults[2].at[2] faults[3] faults[4].bytes.a faults[4].bytes.2 faults[6] fault"
+    assert [error.field for error in caught.value.each] == fields.split()
 
 
 def test_no_file_and_no_yaml(tmp_path: Path) -> None:

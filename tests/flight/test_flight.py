@@ -127,11 +127,11 @@ def test_mistakes_are_told_at_once(flight: Flight) -> None:
         flight.publish("/count", data=1)
     with pytest.raises(UsageError, match="/jump has type std_msgs/Int32, not std_msgs/String"):
         flight.publish("/jump", flight.message_class("std_msgs/String")())
-    with pytest.raises(UsageError, match="invalid std_msgs/Int32: "):
+    with pytest.raises(UsageError, match="number: unknown field of std_msgs/Int32; expected data"):
         flight.publish("/jump", number=1)
     with pytest.raises(ExpectationError, match="unknown service /rest; did you mean /reset"):
         flight.call_service("/rest")
-    with pytest.raises(UsageError, match="number: unknown field; near it are data"):
+    with pytest.raises(UsageError, match="number: unknown field; it has data"):
         flight.expect_message("/count", number=3)
     with pytest.raises(UsageError, match="invalid event type 'INFO'"):
         flight.expect_event(type="INFO")

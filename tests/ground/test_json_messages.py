@@ -44,7 +44,7 @@ def test_not_a_number_is_null() -> None:
     ("kind", "value", "why"),
     [
         ("std_msgs/String", [], r"std_msgs/String: \[\] is not an object"),
-        ("std_msgs/String", {"dat": ""}, "std_msgs/String: unknown field 'dat'"),
+        ("std_msgs/String", {"dat": ""}, "std_msgs/String: unknown field 'dat'; did you mean data"),
         ("std_msgs/String", {"data": 5}, "std_msgs/String.data: 5 is not a text"),
         ("std_msgs/Int32", {"data": 1.5}, "std_msgs/Int32.data: 1.5 is not a valid int32"),
         ("std_msgs/Int32", {"data": "1"}, "std_msgs/Int32.data: '1' is not a valid int32"),

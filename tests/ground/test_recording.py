@@ -473,5 +473,5 @@ def test_what_is_no_recording(tmp_path: Path) -> None:
         rewrite(str(tmp_path / "noise.mcap"), str(tmp_path / "out.mcap"))
     with pytest.raises(UsageError, match="--output"):
         rewrite(str(tmp_path / "noise.mcap"), str(tmp_path / "out.zip"))
-    with pytest.raises(UsageError, match=r"unknown compression zstd for a file \.bag; expected none, bz2, lz4"):
+    with pytest.raises(UsageError, match=r"unknown compression zstd for a file \.bag; expected none, bz2 or lz4"):
         rewrite(str(tmp_path / "noise.mcap"), str(tmp_path / "out.bag"), "zstd")

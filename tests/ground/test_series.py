@@ -110,7 +110,7 @@ def test_words_may_mean_topics_within_topics() -> None:
     ("word", "why"),
     [
         ("/joint_state.position", "unknown topic or packet; did you mean /joint_states"),
-        ("/joint_states.positon", "unknown field; did you mean position"),
+        ("/joint_states.positon", "unknown field of /joint_states; did you mean position"),
         ("/joint_states.position[7]", r"index out of range; the last item is position\[6\]"),
         ("/joint_states.header", "not a single field; name one of its fields: header.seq, header.stamp"),
         ("/joint_states", "not a single field; name one of its fields: header, name"),

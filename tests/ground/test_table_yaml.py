@@ -153,6 +153,45 @@ def test_a_layout_in_the_file(tmp_path: Path) -> None:
     assert (file.header.spacecraft_id, file.header.processor_id) == (66, 1)
 
 
+def test_all_mistakes_of_a_table_are_raised_together(tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    text = """\
+table: APP.Plan
+spacecraft_id: -1
+markk: true
+mark: 3
+rows:
+- {MsgId: 70000, Bit: 3}
+- {row: x, MsgId: 1}
+- {row: 0}
+- {MsgId: {}}
+"""
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(UsageError) as caught:
+        table_yaml.read(path, find)
+    fields = "spacecraft_id markk mark rows[0].MsgId rows[0].Bit rows[1].row rows[2].row rows[3].MsgId"
+    assert [error.field for error in caught.value.each] == fields.split()
+
+
+def test_all_wrong_types_of_a_layout_are_raised_together(tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text("table: X.Y\nlayout: {A: u24, B: flaot, C: u8, D: [{E: i3}, 2]}\nrows: []", encoding="utf-8")
+    with pytest.raises(UsageError) as caught:
+        table_yaml.read(path, find)
+    assert [error.field for error in caught.value.each] == ["layout.A", "layout.B", "layout.D[0].E"]
+
+
+def test_misspelt_keys_of_a_table_are_not_missing_too(tmp_path: Path) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text("tabel: APP.Plan\nrow: []", encoding="utf-8")
+    with pytest.raises(UsageError) as caught:
+        table_yaml.read(path, find)
+    assert [error.text for error in caught.value.each] == [
+        "unknown field; did you mean table?",
+        "unknown field; did you mean rows?",
+    ]
+
+
 @pytest.mark.parametrize(
     ("text", "line", "field", "words"),
     [

@@ -73,18 +73,18 @@ def test_the_packet_is_the_commands_own() -> None:
 @pytest.mark.parametrize(
     ("word", "said"),
     [
-        ("Cuont=1", "Cuont: unknown field; did you mean Count? APP_SET has Count, Signed, "),
-        ("Inner=1", "Inner: unknown field; did you mean Inner.Id? "),
+        ("Cuont=1", "Cuont: unknown field of APP_SET; did you mean Count?"),
+        ("Inner=1", "Inner: unknown field of APP_SET; did you mean Inner.Id?"),
         ("Inner", "invalid field value 'Inner'; expected FIELD=VALUE"),
         ("Count=300", "Count: 300 does not fit u8"),
-        ("Count=-1", "Count: -1 does not fit u8"),
+        ("Count=-1", "Count: -1 does not fit u8; expected 0 to 255"),
         ("Count=1.5", "Count: must be an integer, not '1.5'"),
         ("Count=", "Count: must be an integer, not ''"),
         ("Ratio=x", "Ratio: must be a number, not 'x'"),
         ("On=maybe", "On: must be true or false, not 'maybe'"),
         ("Masks=1,2,3,4", "Masks: must have at most 3 items, not 4"),
         ("Masks=1,x", "Masks[1]: must be an integer, not 'x'"),
-        ("Masks[3]=1", "Masks[3]: unknown field; did you mean Masks? "),
+        ("Masks[3]=1", "Masks[3]: unknown field of APP_SET; did you mean Masks?"),
         ("Inner.Name=muchtoolong", "Inner.Name: must have at most 8 bytes, not 11: 'muchtoolong'"),
     ],
 )
@@ -92,6 +92,12 @@ def test_a_mistake_names_the_field_and_what_to_write(word: str, said: str) -> No
     with pytest.raises(UsageError) as error:
         packet_of(COMMAND, [word])
     assert str(error.value).startswith(said)
+
+
+def test_all_wrong_fields_are_raised_together() -> None:
+    with pytest.raises(UsageError) as error:
+        packet_of(COMMAND, ["Cuont=1", "Ratio=x", "Masks=1,2,3,4", "Inner"])
+    assert [each.field for each in error.value.each] == ["Cuont", "Ratio", "Masks", None]
 
 
 def test_a_field_is_given_once() -> None:

@@ -42,10 +42,10 @@ def test_what_is_said(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("old", "new", "error"),
     [
-        ("strict", "tight", "2: cpp_nodes.profile: unknown profile 'tight'; expected one of host, pool, strict"),
+        ("strict", "tight", "2: cpp_nodes.profile: unknown profile 'tight'; expected host, pool or strict"),
         ("65536", "0", "3: cpp_nodes.arena_bytes: must be a whole number of at least 4096, not 0"),
         ("65536", "8 GiB", "3: cpp_nodes.arena_bytes: must be a whole number"),
-        ("text: 20", "text: true", "5: cpp_nodes.capacities.text: must be a whole number of at least 1, not True"),
+        ("text: 20", "text: true", "5: cpp_nodes.capacities.text: must be a whole number of at least 1, not true"),
         ("name: 7", "name: -7", "7: cpp_nodes.capacities.sensor_msgs/JointState.name: must be a whole"),
         (
             "name: 7",
@@ -56,7 +56,7 @@ def test_what_is_said(tmp_path: Path) -> None:
         (
             "  capacities",
             "  capacity",
-            "5: cpp_nodes.capacity: unknown field; known fields are profile, arena_bytes, cap",
+            "5: cpp_nodes.capacity: unknown field; did you mean capacities? (expected profile, arena_bytes or cap",
         ),
     ],
 )

@@ -1,4 +1,4 @@
-"""The table of sections: a run's reading stops at the first mistake, and a check's reading continues."""
+"""The table of sections: a run raises all mistakes of the file together, and a check collects them."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import pytest
 from cfepy.mission import MissionSpec, read_mission
 from cfepy.mission.mission_file import DEMANDS, SECTIONS, MissionSections, read_mission_file
 from cfepy.mission.record import RunRecord
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.monitors import read_demands
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.types.config import RosConfig
 
@@ -45,7 +46,7 @@ def read(folder: Path, text: str, mistakes: Mistakes) -> MissionSections:
 
 
 def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
-    mistakes = Mistakes(keep=True)
+    mistakes = Mistakes()
     said = read(tmp_path, WRONG, mistakes)
     fields = "name board bord limits.sb_max_pipes limits.nodes nodes.A.namespace nodes.A.args nodes.A.keys[0] topics.b "
     fields += "topics./c params.x params_from ordered_sets cfe_version compiled.omit_deprecated compiled.strip "
@@ -65,20 +66,61 @@ def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
     assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions"}
 
 
-def test_a_run_ends_with_the_first_mistake_of_the_file(tmp_path: Path) -> None:
-    lines = WRONG.splitlines()
-    for first in (0, 2, 4, 7, 12, 14):
-        text = "\n" * first + "\n".join(lines[first:])
-        kept = Mistakes(keep=True)
-        read(tmp_path, text, kept)
-        with pytest.raises(UsageError) as caught:
-            read(tmp_path, text, Mistakes())
-        assert str(caught.value) == str(kept.errors[0])
+def test_a_run_raises_all_mistakes_of_the_file_by_line(tmp_path: Path) -> None:
+    kept = Mistakes()
+    read(tmp_path, WRONG, kept)
+    (tmp_path / "startup.scr").write_text("!", encoding="utf-8")
+    with pytest.raises(UsageError) as caught:
+        read_mission(str(tmp_path))
+    told = caught.value.each
+    assert sorted(map(str, kept.errors)) == sorted(each.alone for each in told)
+    assert [each.line for each in told] == sorted(each.line or 0 for each in told)
+    lines = str(caught.value).splitlines()
+    assert lines[0].startswith(f"{tmp_path / 'mission.yaml'}:1: name: must be text")
+    assert lines[-1] == f"and {len(told) - 20} more"
+
+
+def test_several_mistakes_of_one_entry_are_raised_together(tmp_path: Path) -> None:
+    text = """\
+nodes: {A: {keys: [{}, -1], compute: {f: x, g: y}}}
+topics: {/a: {msg_id: big, rawe: true, raw: 3}}
+params: {a: null, b: {c: null}}
+params_from: [1]
+deadlines: {apps: {B: {response: 2, periode: 3}}}
+invariants: {x: {topic: a, holds: "1 +", after: soon}, y: {topic: /a, within: x, then: {topc: /a, holds: "mg"}}}
+results: {/a: {compare: lst, ignore: [a b, c d]}}
+"""
+    mistakes = Mistakes()
+    read_demands(read(tmp_path, text, mistakes).demands, mistakes)
+    fields = "nodes.A.keys[0] nodes.A.keys[1] nodes.A.compute.f nodes.A.compute.g topics./a.rawe topics./a.raw "
+    fields += "topics./a.msg_id params.a params.b.c params_from[0] "
+    fields += "invariants.x.topic invariants.x.holds invariants.x.after "
+    fields += "invariants.y.within invariants.y.then.topc invariants.y.then.holds "
+    fields += "results./a.ignore[0] results./a.ignore[1] results./a.compare "
+    fields += "deadlines.apps.B.periode deadlines.apps.B.response"
+    assert [error.field for error in mistakes.errors] == fields.split()
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("connection_delay: 2024-01-01", "must be a time such as 0.5, 0.5 s or 20 ms, not the date 2024-01-01"),
+        ("name: 2024-01-01 10:00:00", "must be text, not the date 2024-01-01 10:00:00; put it in quotes"),
+        ("name: [2024-01-01, null, true]", "must be text, not [the date 2024-01-01, nothing, true]; put it in quotes"),
+        ("name: !!binary QUJD", "must be text, not bytes; put it in quotes"),
+        ("topics: {/a: {msg_id: 2024-01-01}}", "must be a number from 1 to 0x1FFF, not the date 2024-01-01"),
+        ("ordered_sets:", "must be true or false, not nothing"),
+    ],
+)
+def test_a_wrong_value_is_shown_as_in_yaml(tmp_path: Path, text: str, said: str) -> None:
+    mistakes = Mistakes()
+    read(tmp_path, text, mistakes)
+    assert [error.text for error in mistakes.errors] == [said]
 
 
 def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
     for text in ("[1]", "a: {", "nodes: 3", "topics: 3", "limits: 3", "launch: 3"):
-        mistakes = Mistakes(keep=True)
+        mistakes = Mistakes()
         read(tmp_path, text, mistakes)
         assert len(mistakes.errors) == 1, text
     assert read(tmp_path, "", Mistakes()) == MissionSections()

@@ -10,7 +10,7 @@ from cfepy.mission import MissionSpec, read_mission
 from cfepy.monitors.deadline_monitor import DeadlineMonitor
 from cfepy.monitors.invariant_watch import InvariantWatch
 from cfepy.monitors.run_rules import Demands, demands_of, judges_of, read_demands
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 
 GOOD = """\
@@ -55,7 +55,7 @@ def test_nothing_is_demanded(tmp_path: Path) -> None:
 
 
 def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
-    mistakes = Mistakes(keep=True)
+    mistakes = Mistakes()
     demands = read_demands(mission(tmp_path, WRONG).demands, mistakes)
     fields = "invariants.a invariants.b.topic results./a deadlines.nodes deadlines.topics"
     assert [error.field for error in mistakes.errors] == [*fields.split(), "deadlines.apps.HK.response"]

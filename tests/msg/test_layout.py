@@ -98,7 +98,7 @@ def test_a_mapping_and_keywords_go_together() -> None:
 @pytest.mark.parametrize(
     ("values", "text"),
     [
-        ({"Id": 256}, "Id: 256 does not fit u8"),
+        ({"Id": 256}, "Id: 256 does not fit u8; expected 0 to 255"),
         ({"Id": "x"}, "Id: must be a number, not 'x'"),
         ({"Id": 1.5}, "Id: must be an integer, not 1.5"),
         ({"Name": "12345"}, "Name: must have at most 4 bytes, not 5"),
@@ -108,7 +108,7 @@ def test_a_mapping_and_keywords_go_together() -> None:
         ({"At": [7]}, r"At\[0\]: must be a mapping"),
         ({"At": 7}, "At: must be a list, not 7"),
         ({"Real": 1e300}, "Real: 1e.300 does not fit f32"),
-        ({"Nope": 1}, "Nope: unknown field; T has Id, Name, At, Real"),
+        ({"Nope": 1}, "Nope: unknown field of T; expected Id, Name, At or Real"),
     ],
 )
 def test_bad_values_name_their_field(values: dict[str, Any], text: str) -> None:

@@ -124,6 +124,16 @@ def test_a_file_that_has_nothing_to_say_yet_is_not_waited_for(tmp_path: Path, mo
     os.close(writer)
 
 
+def test_a_missing_file_gets_the_name_of_a_similar_one(tmp_path: Path) -> None:
+    (tmp_path / "board.yaml").write_text("name: x", encoding="utf-8")
+    with pytest.raises(UsageError) as caught:
+        load(tmp_path / "borad.yaml")
+    assert caught.value.text == f"cannot be read: No such file or directory; did you mean {tmp_path / 'board.yaml'}?"
+    with pytest.raises(UsageError) as caught:
+        load(tmp_path / "none" / "board.yaml")
+    assert caught.value.text == "cannot be read: No such file or directory; check the path"
+
+
 def test_inputs_are_opened_by_the_helper_alone() -> None:
     found = set()
     for file in sorted((ROOT / "cfepy").rglob("*.py")):

@@ -61,7 +61,10 @@ def test_what_a_person_writes(text: str, schedule: Schedule) -> None:
         ("rondom:1", "unknown schedule 'rondom'; did you mean random?"),
         ("fifo:any", "invalid schedule 'fifo:any'; expected fifo alone, without options"),
         ("fifo:1", "invalid schedule 'fifo:1'; expected fifo alone"),
-        ("random:1:points=all", "invalid kind of points 'all'; expected lines, attributes or calls"),
+        (
+            "random:1:points=all",
+            "invalid kind of points 'all'; did you mean calls? (expected lines, attributes or calls)",
+        ),
         ("random:1:points=lines,", "invalid module ''; write for instance lines:arm,util"),
         ("random:1:2", "invalid schedule 'random:1:2'; expected random[:SEED], then options such as :any"),
         ("random:-1", "SEED must be a whole number of at least 0, not '-1'"),

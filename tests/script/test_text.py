@@ -80,14 +80,14 @@ def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
         ("send CFE_ES_NOOP X=1", "X: CFE_ES_NOOP has no fields"),
         ("send SAMPLE_APP_DISPLAY_PARAM ValU32=-1", "ValU32: -1 does not fit u32"),
         ("send raw 18zz", "invalid bytes '18zz'"),
-        ("reset warm", "invalid kind of reset 'warm'; expected processor, power-on"),
+        ("reset warm", "invalid kind of reset 'warm'; expected processor or power-on"),
         ("expect evnt CFE_ES", "invalid condition 'evnt'; did you mean event?"),
         ("expect event", "unexpected end of line; the application's name is missing"),
         ("expect event CFE_ES 3 EROR", "invalid type of event 'EROR'; did you mean ERROR?"),
         ('expect event CFE_ES 3 "No-op', 'unclosed quote: "No-op'),
         ("expect tlm SAMPLE_APP_HK", "unknown telemetry packet SAMPLE_APP_HK; did you mean SAMPLE_APP_HK_TLM?"),
-        ("expect tlm SAMPLE_APP_HK_TLM Counter == 1", "Counter: unknown field; "),
-        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter = 1", "invalid sign '='; expected ==, !=, <, <=, >, >="),
+        ("expect tlm SAMPLE_APP_HK_TLM Counter == 1", "Counter: unknown field of SAMPLE_APP_HK_TLM; "),
+        ("expect tlm SAMPLE_APP_HK_TLM CommandCounter = 1", "invalid sign '='; expected ==, !=, <, <=, > or >="),
         ("expect tlm SAMPLE_APP_HK_TLM CommandCounter ==", "unexpected end of line; the value is missing"),
         ("expect tlm SAMPLE_APP_HK_TLM CommandCounter == x", "CommandCounter: invalid number 'x'"),
         ("expect app SAMPLE_APP RUNING", "invalid application state 'RUNING'; did you mean RUNNING?"),
@@ -103,6 +103,18 @@ def test_a_mistake_is_told_with_its_place(tmp_path: Path, line: str, said: str) 
     with pytest.raises(UsageError) as error:
         script(tmp_path, f"# first line\n{line}\n")
     assert str(error.value).startswith(f"{tmp_path / 'script.txt'}:2: {said}")
+
+
+def test_all_wrong_steps_are_raised_together(tmp_path: Path) -> None:
+    text = "sned CFE_ES_NOOP\nsend CFE_ES_NOOP\nsend SAMPLE_APP_DISPLAY_PARAM ValU32=-1 ValU=2\nexpect app X Y\n"
+    with pytest.raises(UsageError) as error:
+        script(tmp_path, text)
+    found = [(each.line, each.field, each.text) for each in error.value.each]
+    assert [(line, field) for line, field, _ in found] == [(1, None), (3, "ValU32"), (3, "ValU"), (4, None)]
+    assert (
+        found[2][2]
+        == "unknown field of SAMPLE_APP_DISPLAY_PARAM; did you mean ValU32? (expected ValU32, ValI16 or ValStr)"
+    )
 
 
 def test_times_do_not_go_back(tmp_path: Path) -> None:

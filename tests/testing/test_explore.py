@@ -196,13 +196,34 @@ def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
 
 
 def test_wrong_arguments() -> None:
-    with pytest.raises(UsageError, match="unknown policy 'fancy'; expected one of all, random, pct"):
+    with pytest.raises(UsageError, match="unknown policy 'fancy'; expected all, random, pct or abreast"):
         explore(policy="fancy")
     with pytest.raises(UsageError, match="seeds"):
         explore(seeds=0)
+    misspelt: Any = explore
+    with pytest.raises(UsageError) as caught:
+        misspelt(polcy="all", hlod="1ms")
+    said = "polcy: unknown argument; did you mean policy?\nhlod: unknown argument; did you mean hold?"
+    assert str(caught.value) == said
     for wrong in ({"hold": "soon"}, {"start": "later"}, {"policy": "pct", "depth": 0}):
         with pytest.raises(UsageError):
             explore(**wrong)
+
+
+def test_a_misspelt_option_of_a_mission_gets_the_nearest_one(suite: Suite) -> None:
+    result = suite(
+        """
+        def test_it(mission):
+            mission("talk", scheduel="fifo", sed=3)
+        """
+    )
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "*UsageError: scheduel: unknown argument; did you mean schedule?",
+            "*sed: unknown argument; did you mean seed?",
+        ]
+    )
 
 
 def test_a_decorator_without_parentheses_is_told() -> None:

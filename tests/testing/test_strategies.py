@@ -68,7 +68,7 @@ def test_messages_shrink() -> None:
 def test_messages_that_there_are_not() -> None:
     with pytest.raises(UsageError, match="no_msgs/Nothing"):
         messages("no_msgs/Nothing")
-    with pytest.raises(UsageError, match="date: unknown field; std_msgs/String has data"):
+    with pytest.raises(UsageError, match="date: unknown field of std_msgs/String; did you mean data"):
         messages("std_msgs/String", date=st.text())
     with pytest.raises(UsageError, match="not a ROS message class"):
         messages(int)
@@ -111,7 +111,7 @@ def test_packets_that_there_are_not() -> None:
         packets("SAMPLE_APP_NOP")
     with pytest.raises(UsageError, match="invalid MsgId 0x1001"):
         packets(0x1001)
-    with pytest.raises(UsageError, match="Val: unknown field; SAMPLE_APP_DISPLAY_PARAM has ValU32, "):
+    with pytest.raises(UsageError, match="Val: unknown field of SAMPLE_APP_DISPLAY_PARAM; did you mean ValU32"):
         packets("SAMPLE_APP_DISPLAY_PARAM", fields={"Val": st.just(1)})
 
 
@@ -124,7 +124,7 @@ def test_tables_fit_their_definition(rows: list[dict[str, Any]]) -> None:
 
 
 def test_tables_that_there_are_not() -> None:
-    with pytest.raises(UsageError, match=r"unknown table 'HK\.Copy'; known tables are HK\.CopyTable, "):
+    with pytest.raises(UsageError, match=r"unknown table 'HK\.Copy'; did you mean HK\.CopyTable"):
         tables("HK.Copy")
 
 

@@ -17,6 +17,7 @@ from cfepy.ground.cfe_files import table_yaml
 from cfepy.ground.cfe_files.table_file import (
     HEADER_FIELDS,
     Find,
+    KnownTables,
     Leaf,
     TableContents,
     defects_of,
@@ -56,7 +57,7 @@ def _find(arguments: argparse.Namespace) -> Find:
     if arguments.layout is not None:
         own = _own_type(Path(arguments.layout))
         known[own.name] = own
-    return known.get
+    return KnownTables(known)
 
 
 def _own_type(path: Path) -> TableType:

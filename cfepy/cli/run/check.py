@@ -70,7 +70,7 @@ def _check_faults(arguments: argparse.Namespace, flies: bool) -> list[MissionPro
         plan = plan_of(arguments.faults, spec) if flies else read_plan(arguments.faults)
         errors = check_plan(plan, spec, look_at(spec) if flies else None)
     except UsageError as error:
-        errors = [error]
+        errors = list(error.each)
     return [problem_of(error, Path(arguments.faults)) for error in errors]
 
 

@@ -14,7 +14,7 @@ from cfepy.mission import NODE_SYMBOL, MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.reading.suggestions import did_you_mean
 
 NO_SYMBOL = "NULL"
@@ -129,7 +129,7 @@ def _line(omits: bool) -> str:
 def _says_profile(said: MissionSections) -> bool:
     """Return True if the mission file itself sets the profile."""
     section = said.places.get("compiled")
-    return section is not None and PROFILE in Mistakes(keep=True).mapping(section)
+    return section is not None and PROFILE in Mistakes().mapping(section)
 
 
 def _listed(names: set[str]) -> str:

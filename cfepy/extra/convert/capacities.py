@@ -7,14 +7,12 @@ from dataclasses import dataclass, field
 
 from cfepy.mission import ARRAY, MOST_ITEMS, TEXT, CppNodesConfig, CppNodesError, MissionSections, mission_environment
 from cfepy.pilot import MissionProblem, problem_of
+from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, listed
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 from rospy_shim.types.msgs.spec import BUILTINS, Field, Spec
-
-_SHOWN = 8
-"""Fields that an error names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +68,9 @@ def capacities_of(config: CppNodesConfig, library: Library) -> Capacities:
     Raises:
         CppNodesError: a type or field does not exist, or has a fixed length.
     """
-    for error in wrong_capacities(config, library):
-        raise error
+    wrong = wrong_capacities(config, library)
+    if wrong:
+        raise together(wrong)
     return Capacities(config.capacities, config.text, config.array)
 
 
@@ -110,7 +109,7 @@ def _wrong(kind: str, name: str, number: int, library: Library) -> str | None:
 
 def _wrong_field(spec: Spec, name: str, number: int) -> str | None:
     variable = [place for each in spec.fields for place in _places(each)]
-    has = f"fields of {spec.full_name} with a capacity: {', '.join(variable[:_SHOWN]) or 'none'}"
+    has = f"fields of {spec.full_name} with a capacity: {listed(variable, 'and')}"
     each = next((each for each in spec.fields if each.name == name.removesuffix("[]")), None)
     if each is None:
         return f"unknown field of {spec.full_name}; {did_you_mean(name, variable, has)}"

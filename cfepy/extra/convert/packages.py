@@ -17,6 +17,7 @@ from cfepy.extra.c import CMakeBudget, CMakeScript
 from cfepy.reading.input_files import read_limited, text_limited
 from cfepy.reading.input_limits import CMAKE_BYTES, CPP_FILES, XML_BYTES
 from cfepy.reading.plain_xml import XmlError, plain_xml
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Packages, check_package_name
 
@@ -182,8 +183,8 @@ def program_of(package: CppPackage, node_type: str, packages: Packages, ours: It
     plugin = package.nodelets().get(node_type)
     target = package.executable(node_type) if plugin is None else package.targets.get(plugin.library)
     if target is None:
-        known = ", ".join([*package.executables(), *package.nodelets()]) or "no C++ node"
-        raise UsageError(f"package {package.name!r} has no C++ node {node_type!r}; it has {known}", file=package.folder)
+        hint = expected(node_type, [*package.executables(), *package.nodelets()], subject="it has", last="and")
+        raise UsageError(f"package {package.name!r} has no C++ node {node_type!r}; {hint}", file=package.folder)
     program = Program(package, node_type, nodelet="" if plugin is None else plugin.type.lstrip(":"))
     program.definitions.append(f'ROS_PACKAGE_NAME="{package.name}"')  # as roscpp's part of catkin does
     _Collector(program, packages, set(ours)).take(package, target)

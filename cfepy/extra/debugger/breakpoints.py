@@ -14,7 +14,7 @@ from cfepy.ground import EVENT_IDS, EVENT_TYPES, DecodedEvent, Dictionary, dicti
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen
 from cfepy.monitors import Heard, MessageWatch, Predicate, short, shortened
 from cfepy.reading.marked_yaml import Marked
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, expected
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 
@@ -85,9 +85,7 @@ def _meant(text: str, spec: MissionSpec, hit: Hit) -> Attachment:
 
 def _at_event(text: str, app: str, which: str, hit: Hit) -> Attachment:
     if which.isalpha() and which not in EVENT_TYPES:
-        raise UsageError(
-            f"{text!r}: invalid event type {which}; expected one of {', '.join(EVENT_TYPES)}", field="--break"
-        )
+        raise UsageError(f"{text!r}: invalid event type {which}; {expected(which, EVENT_TYPES)}", field="--break")
 
     def take(seen: Seen) -> None:
         event = DecodedEvent.of(seen)

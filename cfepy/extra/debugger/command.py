@@ -21,7 +21,7 @@ from cfepy.extra.debugger import Debugger, GdbSession, Journey, Keepers
 from cfepy.journal import Replay
 from cfepy.mission import CORE_APPS, MissionSpec
 from cfepy.pilot import Flown
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import expected
 from cfepy.rtos import GREENLET, task_kind
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -171,8 +171,7 @@ def _application(name: str, spec: MissionSpec, option: str) -> str:
         if app in apps or app in CORE_APPS:
             return str(app)
     known = [*apps, *nodes]
-    hint = did_you_mean(plain, known, f"expected one of {', '.join(known)}")
-    raise UsageError(f"unknown application {name!r}; {hint}", field=option)
+    raise UsageError(f"unknown application {name!r}; {expected(plain, known)}", field=option)
 
 
 class DebugView(View):

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from cfepy.attachment import Attachment
 from cfepy.ground import plain
 from cfepy.mission import Mission, MissionSpec, matches
-from cfepy.monitors import Heard, MessageWatch, demands_of, short
+from cfepy.monitors import Heard, MessageWatch, demands_of, short, unknown_packets
 from cfepy.monitors.selected_results import (
     ANY_ORDER,
     COUNT,
@@ -58,7 +58,7 @@ class ResultWatch(Attachment):
         try:
             self._watch = MessageWatch(spec, self._take, topics, packets)
         except UsageError as error:
-            raise UsageError(error.text, file=spec.mission_file, field="results") from None
+            raise unknown_packets(spec, "results", [(name, name) for name in packets]) or error from None
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         return self._watch.bus(base)

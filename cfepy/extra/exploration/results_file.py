@@ -17,7 +17,7 @@ from typing import Any, BinaryIO
 
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.interpreter.host_system import lock_file
-from cfepy.reading.input_files import open_input
+from cfepy.reading.input_files import open_input, unreadable
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 
@@ -249,7 +249,7 @@ def _opened(path: Path) -> BinaryIO:
     try:
         return open_input(path, handed=True)
     except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}", file=path) from None
+        raise unreadable(path, error) from None
 
 
 def _check(head: dict[str, Any], identity: dict[str, Any], path: Path) -> None:

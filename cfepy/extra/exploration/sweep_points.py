@@ -9,10 +9,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from functools import partial
 from itertools import product
 
 from cfepy.extra.exploration.sweep import Point
 from cfepy.mission import MissionSpec
+from cfepy.psp import load_profile
+from cfepy.reading.mistakes import each_of
 from cfepy.status import UsageError
 
 MOST_POINTS = 100_000
@@ -96,11 +99,12 @@ def seeds_of(text: str, option: str) -> list[int]:
         UsageError: a value is not a whole number.
     """
     steps = ",".join(f"{part}:1" if ".." in part and ":" not in part else part for part in text.split(","))
-    values = values_of(steps, option)
     try:
-        return [int(value) for value in values]
-    except ValueError:
-        raise UsageError(f"invalid seeds {text!r}; expected numbers, or a range such as 0..9", field=option) from None
+        return [int(value) for value in values_of(steps, option)]
+    except ValueError:  # a UsageError is one; it would name a range with a step, which the user did not write
+        raise UsageError(
+            f"invalid seeds {text!r}; expected numbers, or a rising range such as 0..9", field=option
+        ) from None
 
 
 def points_of(
@@ -120,9 +124,10 @@ def points_of(
         seeds: seeds of all random values.
 
     Raises:
-        UsageError: the mission does not define the target of a rate, a varied parameter is also that target, or there
-            are too many points.
+        UsageError: a board does not exist, the mission does not define the target of a rate, a varied parameter is also
+            that target, or there are too many points.
     """
+    each_of(partial(load_profile, board) for board in boards if board is not None)
     sets = spec.sweep.rate
     if rates and not sets:
         text = "missing target of --rate; add `sweep: {rate: [/node/rate]}` to the mission file, or use --set"

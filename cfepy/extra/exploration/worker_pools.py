@@ -139,6 +139,8 @@ class Cluster:
             else:  # check first: a client with an invalid address would leave its threads running
                 self._distributed.comm.get_address_host_port(self._address)
             client = self._distributed.Client(target, timeout=CONNECT_S, set_as_default=False)
+        except UsageError:
+            raise
         except (OSError, ValueError) as error:
             text = f"no dask scheduler answers at {self._address}: {error}"
             raise UsageError(text, field=OPTION) from None

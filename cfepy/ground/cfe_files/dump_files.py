@@ -238,9 +238,10 @@ def read_dump(data: bytes, file: str) -> DumpFile:
     try:
         head = read_header(data)
     except CfeError as error:
-        raise UsageError(f"is not a cFE file: {error.text}", file=file) from None
+        raise UsageError(f"is not a cFE file: {error.text}; give a file that cFE wrote", file=file) from None
     if head.content_type != CONTENT_ID:
-        raise UsageError(f'is not a cFE file: it begins with {data[:4].hex(" ")}, not with "cFE1"', file=file)
+        text = f'is not a cFE file: it begins with {data[:4].hex(" ")}, not with "cFE1"; give a file that cFE wrote'
+        raise UsageError(text, file=file)
     body = data[HEADER_SIZE:]
     if head.subtype == header.SUBTYPE_ES_SYSLOG:
         text = body.partition(b"\0")[0].decode("utf-8", "replace")

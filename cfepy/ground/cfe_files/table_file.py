@@ -9,7 +9,7 @@ the file.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
@@ -31,6 +31,22 @@ from cfepy.status import CfeError, UsageError
 from cfepy.tbl import TableType, is_intact, mark_for, mark_in
 
 Find = Callable[[str], TableType | None]
+
+
+@dataclass(frozen=True, slots=True)
+class KnownTables:
+    """Finds the types of tables by full name; an error about an unknown table suggests one of them.
+
+    Attributes:
+        types: the types by full name.
+    """
+
+    types: Mapping[str, TableType]
+
+    def __call__(self, name: str) -> TableType | None:
+        return self.types.get(name)
+
+
 """Returns the type of a table by its full name; None if it is not declared."""
 ROW = "row"
 """Key for the number of a row after empty rows that are left out; not possible if fields have this name."""
@@ -142,7 +158,8 @@ def take_apart(data: bytes, find: Find, file: str) -> TableContents:
     try:
         header, table, image = read_table_file(data)
     except CfeError as error:
-        raise UsageError(f"is not a table file: {error.text}", file=file) from None
+        text = f"is not a table file: {error.text}; give a file that cFE or `cfepy tbl build` wrote"
+        raise UsageError(text, file=file) from None
     size = table.num_bytes
     return TableContents(header, table, image[:size], image[size:], find(table.table_name))
 

@@ -11,14 +11,17 @@ See docs/how_to/tables_and_parameters.md for the format. Errors give file, line 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 from cfepy.fs import DESCRIPTION_SIZE, SUBTYPE_TBL_IMG, FileHeader, TableHeader
-from cfepy.ground.cfe_files.table_file import HEADER_FIELDS, ROW, Find, TableContents, cut, one_nan
+from cfepy.ground.cfe_files.table_file import HEADER_FIELDS, ROW, Find, KnownTables, TableContents, cut, one_nan
 from cfepy.msg import Layout
 from cfepy.reading.marked_yaml import Marked, load
+from cfepy.reading.mistakes import Mistakes, collected, each_of
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from cfepy.tbl import PROCESSOR_ID, SPACECRAFT_ID, TableType
 from cfepy.tbl.packets import FULL_NAME_SIZE
@@ -91,19 +94,27 @@ def read(path: Path, find: Find) -> TableContents:
     Raises:
         UsageError: if it has an error, with file, line and field.
     """
-    root = load(path, handed=True)
-    said = root.mapping(KEYS)
+    return collected(partial(_table, load(path, handed=True), find))
+
+
+def _table(root: Marked, find: Find, mistakes: Mistakes) -> TableContents:
+    said = dict(mistakes.fields(root, KEYS))
+    header = mistakes.attempt(partial(_header, said)) or FileHeader()
+    offset, reserved = (mistakes.attempt(partial(_number, said, name)) for name in ("offset", "reserved"))
+    after = mistakes.attempt(partial(_hex, said.get("after"))) or b""
+    wants_mark = mistakes.attempt(partial(_wants_mark, said))
+    if mistakes.errors and not ("table" in said and {"data", "rows"} & said.keys()):
+        raise mistakes.errors.pop()  # what is missing may have a misspelt key
     if "table" not in said:
         raise root.fail("missing table; write `table: APP.Table`")
     name = said["table"].text()
     if "." not in name or not 0 < len(name) < FULL_NAME_SIZE:
         raise said["table"].fail(f"must be APP.Table with at most {FULL_NAME_SIZE - 1} characters, not {name!r}")
     kind = own_type(said) or find(name)
-    offset = _number(said, "offset")
-    image = _image(said, kind, offset)
-    table = TableHeader(name, len(image), offset, _number(said, "reserved"))
-    file = TableContents(_header(said), table, image, _hex(said.get("after")), kind)
-    return file.marked() if _wants_mark(said) else file
+    image = _image(said, kind, offset or 0, find.types if isinstance(find, KnownTables) else ())
+    table = TableHeader(name, len(image), offset or 0, reserved or 0)
+    file = TableContents(header, table, image, after, kind)
+    return file.marked() if wants_mark else file
 
 
 def own_type(said: dict[str, Marked]) -> TableType | None:
@@ -117,7 +128,9 @@ def own_type(said: dict[str, Marked]) -> TableType | None:
 
 
 def _layout(marked: Marked, name: str) -> Layout:
-    fields = [(field, _field_type(kind, field)) for field, kind in marked.mapping().items()]
+    parts = marked.mapping()
+    types = each_of(partial(_checked_type, kind, field) for field, kind in parts.items())
+    fields = list(zip(parts, types, strict=True))
     if not fields:
         raise marked.fail("has no fields; add at least one, such as `Name: u16`")
     try:
@@ -125,6 +138,16 @@ def _layout(marked: Marked, name: str) -> Layout:
     except UsageError as error:
         wrong = marked.value.get((error.field or "").rpartition(".")[2], marked)
         raise wrong.fail(error.text) from None
+
+
+def _checked_type(marked: Marked, name: str) -> Any:
+    """Return the type of one field of a layout."""
+    kind = _field_type(marked, name)
+    try:
+        Layout(name, [(name, kind)])
+    except UsageError as error:
+        raise marked.fail(error.text) from None
+    return kind
 
 
 def _field_type(marked: Marked, name: str) -> Any:
@@ -161,9 +184,7 @@ def _wants_mark(said: dict[str, Marked]) -> bool:
     """Return whether to add an integrity mark: always, unless the file excludes it or uses that place."""
     if "mark" not in said:
         return "reserved" not in said
-    if not isinstance(said["mark"].value, bool):
-        raise said["mark"].fail(f"must be true or false, not {said['mark'].plain()!r}")
-    return bool(said["mark"].value)
+    return said["mark"].flag()
 
 
 def _hex(marked: Marked | None) -> bytes:
@@ -175,14 +196,16 @@ def _hex(marked: Marked | None) -> bytes:
         raise marked.fail("must be hexadecimal digits, two for each byte") from None
 
 
-def _image(said: dict[str, Marked], kind: TableType | None, offset: int) -> bytes:
+def _image(said: dict[str, Marked], kind: TableType | None, offset: int, known: Iterable[str]) -> bytes:
     if "data" in said:
         if "rows" in said:
             raise said["data"].fail("cannot be combined with `rows`; remove one of them")
         image = _hex(said["data"])
     elif kind is None:
-        text = f"unknown table {said['table'].value}; name its mission with --mission, or add a `layout`"
-        raise said["table"].fail(text)
+        name = said["table"].value
+        hint = did_you_mean(name, known, before="; ")
+        remedy = f"{' Otherwise' if hint else ';'} name its mission with --mission, or add a `layout`"
+        raise said["table"].fail(f"unknown table {name}{hint}{remedy}")
     else:
         size = _number(said, "bytes", max(0, kind.size - offset))
         image = cut(_packed(said.get("rows"), kind), offset, size)
@@ -195,22 +218,37 @@ def _image(said: dict[str, Marked], kind: TableType | None, offset: int) -> byte
 
 def _packed(rows: Marked | None, kind: TableType) -> bytes:
     """Return all bytes of a table from its rows."""
+    return bytes(collected(partial(_packed_rows, rows, kind)))
+
+
+def _packed_rows(rows: Marked | None, kind: TableType, mistakes: Mistakes) -> bytearray:
     image = bytearray(kind.size)
     number = -1
     for row in rows.items() if rows is not None else ():
-        fields = row.mapping()
+        fields = mistakes.mapping(row)
         numbered = ROW in fields and ROW not in kind.row.fields
-        if numbered and fields[ROW].integer() <= number:
-            raise fields[ROW].fail(f"is {fields[ROW].value}, but follows row {number}; sort the rows")
-        number = fields[ROW].value if numbered else number + 1
+        said = mistakes.attempt(fields[ROW].integer) if numbered else None
+        if said is not None and said <= number:
+            mistakes.add(fields[ROW].fail(f"is {said}, but follows row {number}; sort the rows"))
+        number = number + 1 if said is None else said
         if number >= kind.rows:
             raise row.fail(f"row {number} (counted from 0) is out of range; {kind.name} has {kind.rows} rows")
         given = {name: one_nan(value.plain()) for name, value in fields.items() if name != ROW or not numbered}
         try:
             image[number * kind.row.size : (number + 1) * kind.row.size] = kind.row.pack(given)
         except UsageError as error:
-            raise _place(row, error.field or "").fail(error.text) from None
-    return bytes(image)
+            wrong = [*_wrong_fields(kind.row, given)] or [error]
+            mistakes.errors += [_place(row, each.field or "").fail(each.text) for each in wrong]
+    return image
+
+
+def _wrong_fields(layout: Layout, given: dict[str, Any]) -> Iterator[UsageError]:
+    """Yield the errors of the fields of a row, each packed without the others."""
+    for name, value in given.items():
+        try:
+            layout.pack({name: value})
+        except UsageError as error:
+            yield error
 
 
 def _place(row: Marked, path: str) -> Marked:

@@ -42,7 +42,7 @@ from cfepy.pilot.mission_check.startup import app_sources, check_startup
 from cfepy.plugins import Hook
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import STARTUP_BYTES
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 
 CHECK_PROFILES: Hook[Callable[[Path, list[StartupEntry], MissionSections], Iterable[MissionProblem]]] = Hook(
@@ -101,7 +101,7 @@ def _check_node(file: Path) -> list[MissionProblem]:
 def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None) -> list[MissionProblem]:
     """Check a startup script with all its files."""
     data = read_limited(script, STARTUP_BYTES)
-    mistakes = Mistakes(keep=True)
+    mistakes = Mistakes()
     path = mission_file_of(script)
     said = MissionSections() if path is None else read_mission_file(path, mistakes)
     longest = RELEASES[said.cfe_version].longest_entry

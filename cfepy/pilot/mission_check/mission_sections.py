@@ -19,10 +19,11 @@ from cfepy.mission import (
 )
 from cfepy.monitors import Demands
 from cfepy.nodes import RosConfig
-from cfepy.pilot.mission_check.problem import MissionProblem, problem_of, with_field
+from cfepy.pilot.mission_check.problem import MissionProblem, problems_of, with_field
 from cfepy.psp import BoardProfile, load_profile
-from cfepy.reading.marked_yaml import Marked, Mistakes
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.marked_yaml import Marked
+from cfepy.reading.mistakes import Mistakes
+from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
 
@@ -31,7 +32,7 @@ def check_nodes_said(said: MissionSections, entries: list[StartupEntry]) -> Iter
     symbols = {entry.name: entry.symbol for entry in entries if entry.kind == CFE_APP}
     names: dict[str, str] = {}
     section = said.places.get("nodes")
-    for app, place in ({} if section is None else Mistakes(keep=True).mapping(section)).items():
+    for app, place in ({} if section is None else Mistakes().mapping(section)).items():
         if app not in symbols:
             yield _unknown_app(f"nodes.{app}", app, place, symbols)
         elif symbols[app] != NODE_SYMBOL:
@@ -58,7 +59,7 @@ def check_lock(folder: Path, said: MissionSections) -> Iterator[MissionProblem]:
     try:
         read_lock(path, RosConfig(topics=said.topics))
     except UsageError as error:
-        yield problem_of(error, path)
+        yield from problems_of(error, path)
 
 
 def check_deadlines(said: MissionSections, entries: list[StartupEntry]) -> Iterator[MissionProblem]:
@@ -67,7 +68,7 @@ def check_deadlines(said: MissionSections, entries: list[StartupEntry]) -> Itera
     section = said.demands.get("deadlines")
     if section is None or "launch" in said.places:
         return
-    unread = Mistakes(keep=True)  # they were reported before
+    unread = Mistakes()  # they were reported before
     of_apps = unread.mapping(section).get("apps")
     for app, place in ({} if of_apps is None else unread.mapping(of_apps)).items():
         if app not in apps:
@@ -98,8 +99,8 @@ def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem
     section = said.places.get("ros_bridge")
     if section is None:
         return
-    parts = Mistakes(keep=True).mapping(section)
-    for place in Mistakes(keep=True).attempt(parts["subscribe"].items) or () if "subscribe" in parts else ():
+    parts = Mistakes().mapping(section)
+    for place in Mistakes().items(parts["subscribe"]) if "subscribe" in parts else ():
         if place.value in said.ros_bridge.subscribe and place.value not in said.topics:
             text = f"{place.value} requires a fixed MsgId; give it one under topics:"
             yield MissionProblem(place.file, place.line, f"{place.field}: {text}")
@@ -109,7 +110,7 @@ def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem
         dictionary = dictionary_of(read_mission(str(script)))
     except UsageError:  # an error of another file, which is reported there
         return
-    places = Mistakes(keep=True).mapping(parts["publish"])
+    places = Mistakes().mapping(parts["publish"])
     for topic, bridged in said.ros_bridge.publish.items():
         try:
             dictionary.telemetry_of(bridged.packet)
@@ -119,7 +120,7 @@ def check_bridge(said: MissionSections, script: Path) -> Iterator[MissionProblem
 
 
 def _unknown_app(field: str, app: str, place: Marked, apps: Collection[str]) -> MissionProblem:
-    hint = did_you_mean(app, apps, f"the startup script has {', '.join(apps) or 'none'}")
+    hint = expected(app, apps, subject="the startup script has", last="and")
     return MissionProblem(place.file, place.line, f"{field}: unknown application {app}; {hint}")
 
 
@@ -142,12 +143,12 @@ def check_board(
         if error.file is None and place is not None and board is None:
             yield MissionProblem(place.file, place.line, with_field(error))
         else:
-            yield problem_of(error, script)
+            yield from problems_of(error, script)
         return
     try:
         config = said.limits.config(profile, any(entry.symbol == NODE_SYMBOL for entry in entries))
     except UsageError as error:
-        yield problem_of(error, script)
+        yield from problems_of(error, script)
         return
     yield from _check_limits(script, entries, profile, config)
     yield from _check_stacks(script, entries, profile, config)

@@ -37,6 +37,11 @@ def problem_of(error: UsageError, file: Path, is_warning: bool = False) -> Missi
     return MissionProblem(Path(error.file or file), error.line or 0, with_field(error), is_warning)
 
 
+def problems_of(error: UsageError, file: Path, is_warning: bool = False) -> list[MissionProblem]:
+    """Return an error, and the further ones in it, as problems; see `problem_of`."""
+    return [problem_of(each, file, is_warning) for each in error.each]
+
+
 def with_field(error: UsageError) -> str:
     """Return the text of an error, with the wrong field."""
     return f"{error.field}: {error.text}" if error.field else error.text

@@ -18,8 +18,8 @@ from cfepy.mission import app_sources as sources
 from cfepy.nodes import CppNode
 from cfepy.pilot.mission_check.problem import MissionProblem, problem_of
 from cfepy.pilot.plan import built_node
-from cfepy.reading.marked_yaml import Mistakes
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.mistakes import Mistakes
+from cfepy.reading.suggestions import did_you_mean, expected
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def check_launch(
     """
     from rospy_shim.roslaunch.launch_plan import plan_of
 
-    mistakes = Mistakes(keep=True)
+    mistakes = Mistakes()
     plan = mistakes.attempt(
         partial(plan_of, file, args, environ, cwd=Path.cwd(), mistakes=mistakes, with_compiled=True)
     )
@@ -158,7 +158,7 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
     if not imports:
         return
     packages = Packages(script.file, script.environ)
-    library = Library([OnDisk(packages, Mistakes(keep=True))], base=shipped())
+    library = Library([OnDisk(packages, Mistakes())], base=shipped())
     for package, kind, names, line in imports:
         if _is_code(package, script, packages):
             continue
@@ -171,7 +171,7 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
         parts = {f"{name}{part}" for name in known for part in ("Request", "Response") if kind == "srv"}
         for name in names:
             if name not in known and name not in parts and not name.startswith("_"):
-                hint = did_you_mean(name, known, f"it has {', '.join(known) or 'none'}")
+                hint = expected(name, known, subject="it has", last="and")
                 yield MissionProblem(script.file, line, f"package {package} has no {kind} {name}; {hint}")
 
 

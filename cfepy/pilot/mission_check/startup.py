@@ -12,6 +12,7 @@ from cfepy.mission import app_sources as sources
 from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.pilot.mission_check.problem import MissionProblem
 from cfepy.plugins import Hook, missing
+from cfepy.reading.resources import shipped
 from cfepy.reading.suggestions import did_you_mean
 
 NO_SYMBOL = "NULL"
@@ -91,7 +92,9 @@ def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) 
             f"missing code for {entry.path}: found no {stem}.py and no package {stem} "
             f"in {folder}, and no app or module {stem}"
         )
-        yield MissionProblem(script, entry.line, text + "; add it, or correct the name")
+        names = [*_sources_in(folder), *(each.name for each in shipped("apps").iterdir())]
+        hint = did_you_mean(stem, names, before="; ")
+        yield MissionProblem(script, entry.line, f"{text}; add it, or correct the name{hint}")
         return
     if is_node and not isinstance(code, Path):
         yield MissionProblem(
@@ -102,6 +105,12 @@ def _check_code(script: Path, entries: list[StartupEntry], entry: StartupEntry) 
     if source is not None and not is_node:
         broken = list(_check_syntax(source))
         yield from broken or _check_symbol(script, entry, source)
+
+
+def _sources_in(folder: Path) -> list[str]:
+    """Return the names of the Python files and packages of a folder, as a startup script names them."""
+    found = [each for each in folder.iterdir() if each.suffix == ".py" or (each / "__init__.py").is_file()]
+    return sorted(each.stem for each in found)
 
 
 def _check_syntax(source: Path) -> Iterator[MissionProblem]:

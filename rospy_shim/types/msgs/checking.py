@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import DEFINITION_BYTES
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.reading.suggestions import like
 from cfepy.status import UsageError
 from rospy_shim.types.msgs.definition_sources import Definition, OnDisk, messages_of, split_parts, split_service
@@ -40,7 +40,7 @@ def check_definitions(packages: Packages, names: Iterable[str]) -> Iterator[Defi
         packages: the packages to find them in, with those that they need.
         names: names of the packages to check.
     """
-    library = Library([OnDisk(packages, Mistakes(keep=True))], base=shipped())
+    library = Library([OnDisk(packages, Mistakes())], base=shipped())
     for name in names:
         for folder in packages.folders(name):
             for kind in _KINDS:
@@ -98,7 +98,7 @@ class _Check:
         return {stem: definition}
 
     def _part(self, name: str, part: Definition) -> Iterator[DefinitionFault]:
-        mistakes = Mistakes(keep=True)
+        mistakes = Mistakes()
         full_name = f"{self._package}/{name}"
         spec = parse(part.text, full_name, part.file, part.first_line, mistakes)
         unknown = [error for field in spec.fields if (error := self._unknown(field.base, field.line)) is not None]

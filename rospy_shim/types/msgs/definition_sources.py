@@ -15,7 +15,7 @@ from typing import Literal, NamedTuple, Protocol
 
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import DEFINITION_BYTES
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.types.msgs.packages import Packages, has_definitions
 

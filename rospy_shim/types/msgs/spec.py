@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, NamedTuple
 
 from cfepy.reading.input_limits import DEFINITION_BYTES, MESSAGE_FIELDS
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 
 PRIMITIVES = {

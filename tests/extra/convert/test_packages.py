@@ -112,7 +112,7 @@ def test_a_target_that_is_not_there_is_told(tmp_path: Path) -> None:
     write(tmp_path, FILES)
     package = read_package(tmp_path / "demo", "demo")
     known = Packages(tmp_path / "demo/src/talker.cpp", {})
-    with pytest.raises(UsageError, match=r"has no C\+\+ node 'walker'; it has hearer, old, talker, demo/Filter"):
+    with pytest.raises(UsageError, match=r"has no C\+\+ node 'walker'; did you mean talker?"):
         program_of(package, "walker", known)
     with pytest.raises(UsageError, match=r"old has a missing source: gone\.cpp"):
         program_of(package, "old", known)

@@ -109,7 +109,7 @@ def test_a_command_is_told_from_others_with_its_msg_id() -> None:
     [
         ("CFE_EVS_LONG_EVENT_MSGG", "did you mean CFE_EVS_LONG_EVENT_MSG?"),
         ("nonsense", "; expected APP:ID"),
-        ("HK:FOO", "invalid event type FOO; expected one of DEBUG, INFORMATION, ERROR, CRITICAL"),
+        ("HK:FOO", "invalid event type FOO; expected DEBUG, INFORMATION, ERROR or CRITICAL"),
         ("msg.x >", "invalid Python expression 'msg.x >'"),
         ("message.x > 3", "unknown name 'message'"),
     ],

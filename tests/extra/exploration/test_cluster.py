@@ -250,7 +250,7 @@ def test_without_dask(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("address", ["local:", "local:0", "local:many"])
 def test_a_number_of_processes_that_is_none(address: str) -> None:
     with pytest.raises(
-        UsageError, match=f"--cluster: .*invalid number of processes in {address}; write for instance local:4"
+        UsageError, match=f"^--cluster: invalid number of processes in {address}; write for instance local:4"
     ):
         Cluster(address)
 

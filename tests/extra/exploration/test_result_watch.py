@@ -126,7 +126,7 @@ def test_a_difference_says_both() -> None:
 @pytest.mark.parametrize(
     ("text", "error"),
     [
-        ("/a: lst", "results./a: must be one of last, sequence, any order, count, file, output, not 'lst'"),
+        ("/a: lst", "results./a: unknown comparison 'lst'; did you mean last? (expected last, "),
         ("/a: {ignore: [x]}", "missing compare"),
         ("log.txt: file", "expected a path in the mission's file system, such as"),
         ("/a: output", "name the node's application"),

@@ -46,8 +46,9 @@ def test_no_rate(text: str) -> None:
 
 def test_seeds() -> None:
     assert seeds_of("0..3,7", "--seed") == [0, 1, 2, 3, 7]
-    with pytest.raises(UsageError, match="invalid seeds"):
-        seeds_of("1.5", "--seed")
+    for wrong in ("1.5", "a..b", "9..0"):
+        with pytest.raises(UsageError, match=f"invalid seeds '{wrong}'; expected numbers, or a rising range"):
+            seeds_of(wrong, "--seed")
 
 
 def test_points_change_the_plan() -> None:
@@ -59,6 +60,15 @@ def test_points_change_the_plan() -> None:
     command = point.plan(RunPlan(("rx64m_pubsub",), seconds=2)).command_line()
     assert "--set /left/report_period=1 --set /left/rate=100 --set /right/rate=100" in command
     assert "--board linux" in command
+
+
+def test_unknown_boards_are_reported_before_the_sweep() -> None:
+    with pytest.raises(UsageError) as caught:
+        points_of(read_mission("lab"), [None, "rx64n", "linux", "linxu"], [], [], [0])
+    assert [error.text.partition("?")[0] for error in caught.value.each] == [
+        "unknown board 'rx64n'; did you mean rx64m",
+        "unknown board 'linxu'; did you mean linux",
+    ]
 
 
 def test_a_rate_that_sets_nothing() -> None:

@@ -160,10 +160,12 @@ def test_what_is_wrong_with_the_section_is_told_with_its_line(tmp_path: Path) ->
 
 def test_a_run_does_not_begin_with_an_unknown_packet(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
-    (tmp_path / "mission.yaml").write_text("ros_bridge: {publish: {/a: CFE_ES_HKK_TLM}}\n", encoding="utf-8")
+    (tmp_path / "mission.yaml").write_text("ros_bridge: {publish: {/a: CFE_ES_HKK_TLM, /b: X}}\n", encoding="utf-8")
     with (
         Mission(str(tmp_path), console=Console(quiet=True)) as mission,
         HostNetwork(mission),
-        pytest.raises(UsageError, match="CFE_ES_HKK_TLM"),
+        pytest.raises(UsageError, match="CFE_ES_HKK_TLM") as caught,
     ):
         RosHost(mission, lambda host: ServedMaster(host, 0), {})
+    told = [(each.file, each.field) for each in caught.value.each]
+    assert told == [(str(tmp_path / "mission.yaml"), f"ros_bridge.publish./{name}") for name in "ab"]

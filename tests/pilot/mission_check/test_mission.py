@@ -11,7 +11,7 @@ from cfepy.mission.mission_file import read_mission_file
 from cfepy.monitors.run_rules import read_demands
 from cfepy.pilot.mission_check import check_mission
 from cfepy.psp.profile import load_profile
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import collected
 from cfepy.status import UsageError
 from dev.house.tree import ROOT
 
@@ -40,6 +40,7 @@ def test_a_good_mission(tmp_path: Path) -> None:
     [
         ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0;", "the entry must have 8 fields, not 7"),
         ("CFE_APP, nothere, X_Main, X, 60, 16384, 0, 0;", "missing code for /cf/nothere.so"),
+        ("CFE_APP, hkk, HK_AppMain, HK2, 60, 16384, 0, 0;", "add it, or correct the name; did you mean hk?"),
         ("CFE_APP, hk, HK_AppMian, HK2, 60, 16384, 0, 0;", "has no function HK_AppMian; did you mean HK_AppMain?"),
         ("CFE_APP, hk, , HK2, 60, 16384, 0, 0;", "the application never runs, and the start waits for it; write"),
         (
@@ -231,8 +232,8 @@ def test_no_mission(tmp_path: Path) -> None:
 
 
 def read_all(path: Path) -> None:
-    """Read all sections of a mission file. The first mistake is raised."""
-    read_demands(read_mission_file(path, Mistakes()).demands, Mistakes())
+    """Read all sections of a mission file. All mistakes are raised together."""
+    collected(lambda mistakes: read_demands(read_mission_file(path, mistakes).demands, mistakes))
 
 
 @pytest.mark.parametrize(("document", "read"), [("mission_file", read_all), ("board_profiles", load_profile)])

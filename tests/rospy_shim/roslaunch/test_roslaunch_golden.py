@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.roslaunch.model import Launch, LaunchNode
 from rospy_shim.roslaunch.reader import read
@@ -88,7 +88,7 @@ def test_what_a_check_finds_begins_with_what_a_run_refuses(tmp_path: Path) -> No
     random = Random(3)
     seen = {True: 0, False: 0}
     for case in (damaged(case, random) for case in GOLDEN["cases"][::2]):
-        kept = Mistakes(keep=True)
+        kept = Mistakes()
         read_case(case, tmp_path, kept)
         refused = error_of(case, tmp_path)
         assert refused in (list(map(str, kept.errors)) or [None]), case["text"]

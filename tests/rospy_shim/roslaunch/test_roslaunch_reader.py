@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.parameters.values import DateTime
 from rospy_shim.roslaunch.launch_plan import plan_of
@@ -125,7 +125,7 @@ def test_cat_and_xacro_are_stood_in_for(tmp_path: Path) -> None:
 
 def collected(folder: Path, body: str, **args: str) -> list[tuple[str, int, str]]:
     """Return the errors of a launch file and its omitted parts: file, line, text."""
-    file, mistakes = folder / "x.launch", Mistakes(keep=True)
+    file, mistakes = folder / "x.launch", Mistakes()
     file.write_text(f"<launch>\n{textwrap.dedent(body)}</launch>\n", encoding="utf-8")
     remarks = read(file, args, Packages(file, {}), {}, mistakes).remarks
     errors = [
@@ -179,6 +179,32 @@ def test_a_file_is_read_to_the_end(tmp_path: Path) -> None:
         "<test time-limit>: must be a number",
     ):
         assert said in texts
+
+
+def test_unknown_words_get_the_nearest_known_one(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>robot</name></package>", encoding="utf-8")
+    found = collected(
+        tmp_path,
+        """\
+        <param name="a" value="$(find robt)"/>
+        <param name="b" value="$(agr x)"/>
+        <param name="c" value="1" type="flaot"/>
+        <param name="d" value="1" type="doubel"/>
+        <node pkg="p" type="t" name="n" output="scren" cwd="nod"/>
+        <node pkg="p" tpye="t" name="m"/>
+        """,
+    )
+    assert [text for _, _, text in found] == [
+        "<param value>: unknown package 'robt'; did you mean robot?",
+        "<param value>: unknown substitution $(agr x); known are find, env, optenv, dirname, anon, arg, and eval "
+        "alone; did you mean arg?",
+        "<param value>: unknown type 'flaot'; expected str, string, int, double, bool, boolean, yaml or auto",
+        "<param value>: unknown type 'doubel'; did you mean double?",
+        "<node cwd>: invalid value 'nod'; did you mean node? (expected node, cwd, ROS_HOME or ros-root)",
+        "<node output>: invalid value 'scren'; did you mean screen? (expected screen or log)",
+        "<node> has no attribute 'tpye'; it is ignored, did you mean type?",
+        "<node>: missing 'type'; write type=\"...\" instead of tpye=",
+    ]
 
 
 def test_what_a_mistake_brings_about_is_not_told(tmp_path: Path) -> None:

@@ -268,7 +268,7 @@ class ConsoleSession:
             else:
                 self._add(line if name in VERBS or name in TIMES else f"send {line}")
         except UsageError as error:
-            self._fail(f"{error.field}: {error.text}" if error.field else error.text)
+            self._fail("; ".join(f"{each.field}: {each.text}" if each.field else each.text for each in error.each))
         self.gather()
 
     def _fail(self, text: str) -> None:
