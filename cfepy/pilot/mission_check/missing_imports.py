@@ -20,7 +20,7 @@ from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission import tree_of
 from cfepy.pilot.mission_check.problem import MissionProblem
 from cfepy.pilot.mission_check.ros_files import NodeScript
-from cfepy.reading.marked_yaml import Mistakes
+from cfepy.reading.mistakes import Mistakes
 
 MOST_FILES = 500  # of one node
 DISTRIBUTIONS = {
