@@ -58,7 +58,7 @@ def _names_of(kind: type) -> set[str]:
 
 def main() -> None:
     """Record."""
-    parser = argparse.ArgumentParser(prog="python3 -m dev.record.class_names", description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(prog="python -m dev.record.class_names", description=__doc__.partition("\n")[0])
     parser.add_argument("file", metavar="FILE", type=Path, help="the file to write, tests/data/ros_class_names.json")
     found = {
         f"{module}.{name}": sorted(_names_of(getattr(importlib.import_module(module), name)))

@@ -54,7 +54,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--results": ("FILE", "write (all results|the result of every test)"),
     "--save-files": ("DIR", "write the mission's files, such as /ram/x.log, to this folder at the end"),
     "--check-determinism": ("N", "run it N times side by side"),
-    "--ros-master": ("URI", "be one graph with ROS on this computer"),
+    "--ros-master": ("URI", "join ROS on this computer"),
     "--schedule": ("TEXT", "order of tasks where several could run"),
     "--script": ("FILE", "send commands and check their effects"),
     "--seed": ("N", "(seed of all random values|seeds|plan of this seed)"),

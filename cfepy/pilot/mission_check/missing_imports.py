@@ -112,7 +112,7 @@ class _GivenToNode:
     def _message_packages(self) -> frozenset[str]:
         from rospy_shim.types.msgs import Library, OnDisk, shipped
 
-        return frozenset(Library([OnDisk(self._packages, Mistakes(keep=True))], base=shipped()).packages())
+        return frozenset(Library([OnDisk(self._packages, Mistakes())], base=shipped()).packages())
 
     def _has_settings(self, package: str) -> bool:
         return any(os.path.isdir(folder / "cfg") for folder in self._packages.folders(package))
