@@ -44,7 +44,7 @@ def read(folder: Path, text: str, mistakes: Mistakes) -> MissionSections:
     return read_mission_file(folder / "mission.yaml", mistakes)
 
 
-def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
+def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> None:
     mistakes = Mistakes(keep=True)
     said = read(tmp_path, WRONG, mistakes)
     fields = "name board bord limits.sb_max_pipes limits.nodes nodes.A.namespace nodes.A.args nodes.A.keys[0] topics.b "
@@ -65,7 +65,7 @@ def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
     assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions"}
 
 
-def test_a_run_ends_with_the_first_mistake_of_the_file(tmp_path: Path) -> None:
+def test_run_ends_with_the_first_mistake_of_the_file(tmp_path: Path) -> None:
     lines = WRONG.splitlines()
     for first in (0, 2, 4, 7, 12, 14):
         text = "\n" * first + "\n".join(lines[first:])
@@ -76,7 +76,7 @@ def test_a_run_ends_with_the_first_mistake_of_the_file(tmp_path: Path) -> None:
         assert str(caught.value) == str(kept.errors[0])
 
 
-def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
+def test_section_that_is_not_a_mapping_is_refused(tmp_path: Path) -> None:
     for text in ("[1]", "a: {", "nodes: 3", "topics: 3", "limits: 3", "launch: 3"):
         mistakes = Mistakes(keep=True)
         read(tmp_path, text, mistakes)
@@ -84,7 +84,7 @@ def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
     assert read(tmp_path, "", Mistakes()) == MissionSections()
 
 
-def test_demands_are_kept_as_they_stand(tmp_path: Path) -> None:
+def test_demands_are_kept_unparsed(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("!", encoding="utf-8")
     text = "invariants: {a: 1}\nresults: {b: 2}\ndeadlines: {c: 3}\ninversions: 4\n"
     (tmp_path / "mission.yaml").write_text(text, encoding="utf-8")
