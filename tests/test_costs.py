@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 
 from dev.costs import meter
-from dev.costs.table import ROOT, SLOW_S, Table, file_of, function_of, lines
+from dev.costs.table import DEAR_S, ROOT, SLOW_S, Table, file_of, function_of, lines
 from tests import costs
 
-SLOW, DEAR, CHEAP = 0.5, 0.1, 0.01
+SLOW, DEAR, CHEAP = 2 * SLOW_S, DEAR_S, DEAR_S / 2
 MEASURED = {
     "tests/a.py::test_one": DEAR,
     "tests/a.py::test_two[x]": CHEAP,
