@@ -226,7 +226,7 @@ def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
         assert f"{moment.instead_of} is preempted by {moment.chosen}" in mark.text or not moment.preemption
     assert any("odometer.py:" in mark.text for mark in switches)
     page = page_of(flown, collector, About("", plan.schedule.text(), mission))
-    assert f"The schedule made {len(switches)} switches before" in page
+    assert f"The schedule made {len(switches)} switches in this run:" in page
     assert any("is preempted by" in text for text in items(page))
 
 
@@ -237,7 +237,7 @@ def test_failure_is_shown_as_a_story_with_its_switch(tmp_path: Path) -> None:
     words = ["report", mission, "--for", "1.3", "--tasks", "greenlet", "-o", str(page)]
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__/2=MAPPER.odom"]) == 0
     text = page.read_text(encoding="utf-8")
-    assert '<a href="#story">What happened</a>: MAPPER.scan.1 has self.map_lock (mapper.py:11) and wants' in text
+    assert '<a href="#story">What happened</a>: MAPPER.scan.1 holds self.map_lock (mapper.py:11) and waits' in text
     assert '<strong class="switch">=== PREEMPTED by MAPPER.odom.2 ===</strong>' in text
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__=MAPPER.odom"]) == 0  # does not fail
     assert "What happened" not in page.read_text(encoding="utf-8")

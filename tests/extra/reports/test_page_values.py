@@ -83,7 +83,7 @@ def test_too_many_fields_get_fewer_points_and_large_messages_are_omitted(
     large, small = found.plain
     assert [len(group["lines"]) for group in (*large["groups"], *small["groups"])] == [61, 1]
     assert len(small["times"]) == 2 * page_values.FEWEST_PAIRS
-    assert "62 of 101 fields are here" in values_section(found, recorded)
+    assert "62 of 101 fields are included" in values_section(found, recorded)
 
 
 def test_thinned_series_is_mentioned_on_the_page() -> None:
