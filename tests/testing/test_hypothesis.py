@@ -36,7 +36,7 @@ def test_the_failing_example_is_small_and_can_be_given_on(suite: Suite, missions
     assert "--cfepy-example" in command
     again = given_verbatim(command, missions)
     assert again.returncode == 1
-    assert f"the same again: {command}" in again.stdout
+    assert f"to reproduce: {command}" in again.stdout
     said = [re.findall(r"E +instead: .*", each) for each in (text, again.stdout)]
     assert said[0] == said[1] != []
 

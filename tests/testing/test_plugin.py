@@ -52,7 +52,7 @@ def test_failed_expectation_reports_the_actual_values(suite: Suite) -> None:
             "*instead: * messages, the last: data: * at *",
             "*console until 1.*",
             "*talker*talking*",
-            "*the same again: pytest test_it.py::test_it --cfepy-seed 0 --cfepy-schedule fifo",
+            "*to reproduce: pytest test_it.py::test_it --cfepy-seed 0 --cfepy-schedule fifo",
         ]
     )
 
@@ -121,7 +121,7 @@ def test_without_actions_equals_a_run_of_the_command_line(
     text += "    flight.run_until(1.5)\n    open('trace', 'w').write(flight.results.trace)\n"
     result = suite(text, "--cfepy-seed", "5", "--cfepy-schedule", "random:2")
     result.assert_outcomes(failed=1, passed=1)
-    commands = re.findall(r"the same again: cfepy (run .*)", result.stdout.str())
+    commands = re.findall(r"to reproduce: cfepy (run .*)", result.stdout.str())
     assert commands == ["run --for 1.100001 --seed 5 --schedule random:2 talk"]
     monkeypatch.chdir(missions)
     assert main([*commands[0].replace("1.100001", "1.5").split(), "--quiet"]) == 0
@@ -173,7 +173,7 @@ def test_failed_assertion_shows_the_console(suite: Suite) -> None:
             assert not flight.messages('/count')
         """
     )
-    result.stdout.fnmatch_lines(["*cfepy*", "console until 1.000:", "*the same again: pytest test_it.py::test_it *"])
+    result.stdout.fnmatch_lines(["*cfepy*", "console until 1.000:", "*to reproduce: pytest test_it.py::test_it *"])
 
 
 def test_paths_are_relative_to_the_test_file(pytester: pytest.Pytester, missions: Path) -> None:
@@ -197,7 +197,7 @@ def test_mistake_in_a_test_shows_its_own_line(line: str, says: str, suite: Suite
     result = suite(f"def test_it(mission):\n    {line}\n")
     result.stdout.fnmatch_lines([f">*{line}", f"E  *{says}"])
     shown = result.stdout.str().split("= FAILURES")[1].split("short test summary")[0]
-    assert own_files(re.sub(r"replay: .*|the same again: .*", "", shown)) == []
+    assert own_files(re.sub(r"replay: .*|to reproduce: .*", "", shown)) == []
     assert "contextlib.py" not in shown
 
 

@@ -405,8 +405,8 @@ def _deleted(evidence: Evidence) -> str:
     for deletion, receiving in _received_late(evidence.deeds):
         if receiving.thing not in usual:
             return (
-                f"{deletion.task} deleted {deletion.thing} at {deletion.place} before {receiving.task} tried to receive from "
-                f"it at {receiving.place}; under fifo no task does so after the deletion"
+                f"{deletion.task} deleted {deletion.thing} at {deletion.place} before {receiving.task} tried to "
+                f"receive from it at {receiving.place}; under fifo no task does so after the deletion"
             )
     return ""
 

@@ -45,7 +45,7 @@ def test_extent_is_reported_in_a_few_lines() -> None:
     assert looked("pct:0:1:10").lines() == [
         "1 order",
         "under fifo others can get in at 8 points: 5 at messages, 3 at locks",
-        "chance that a bug has shown, at least: 0.25 at depth 1 (PCT's bound for 4 tasks and 10 points)",
+        "probability that a bug was found, at least: 0.25 at depth 1 (PCT's bound for 4 tasks and 10 points)",
     ]
     assert looked("random:0").lines()[1:] == ["under fifo others can get in at 8 points: 5 at messages, 3 at locks"]
 

@@ -30,7 +30,7 @@ def test_ended_node_is_reported_as_an_unexplored_order() -> None:
     """Its subscriptions end with it, in orders that are not all tried."""
     report = explored("check_then_act")
     assert [told.finding.failure.kind for told in report.findings] == [RAISED]
-    assert any("how the subscriptions of a node end" in line for line in report.breadth.lines())
+    assert any("in which the subscriptions of a stopped node end" in line for line in report.breadth.lines())
 
 
 @pytest.mark.slow

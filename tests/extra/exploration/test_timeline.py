@@ -102,7 +102,7 @@ def test_long_texts_are_cut_to_the_column() -> None:
     assert max(map(len, lines)) <= WIDTH
     assert any("xxx..." in line for line in lines)
     assert any("=== PREEMPTED ===" in line for line in lines)
-    assert any("=== HELD UP ===" in line for line in lines)
+    assert any("=== DELAYED ===" in line for line in lines)
 
 
 def test_timeline_is_empty_without_tasks() -> None:
