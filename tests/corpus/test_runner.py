@@ -170,7 +170,7 @@ def test_the_page_has_a_row_for_each_scenario() -> None:
     corpus = read_corpus()
     verdicts = [Verdict("rt_talker", "", 0.4), Verdict("rt_listener", "a|b", 0.5)]
     text = report.page(corpus, verdicts)
-    assert "1 of 2 meet all of theirs" in text
+    assert "1 of 2 scenarios pass all checks" in text
     assert "| does not | 0.5 s | a\\|b |" in text
     assert isinstance(corpus, Corpus)
 
