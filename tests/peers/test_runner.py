@@ -140,4 +140,4 @@ def test_page_names_failed_and_excluded_tests() -> None:
     text = report.page(peers, [verdict])
     assert "| us/robots aaaaaaaa | 2 | 2 | 1 | ok | Case.test_tcp: no TCP |" in text
     assert "| some files | some reason |" in text
-    assert "1 of these files are \"ok\"" in text
+    assert '1 of these files are "ok"' in text

@@ -105,11 +105,11 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     assert [(each.line, each.why) for each in suspects(str(file))] == [
-        (5, "is a set in the order of addresses"),
-        (6, "asks a library in C, whose clock and random numbers are this computer's"),
+        (5, "is a set that is ordered by addresses"),
         (6, "asks the clock of this computer"),
-        (6, "counts what else Python keeps"),
-        (6, "has what lay in memory before"),
+        (6, "calls a C library, which uses the clock and random numbers of this computer"),
+        (6, "counts objects of the whole process"),
+        (6, "returns uninitialized memory"),
     ]
     file.write_text("this is = no program", encoding="utf-8")
     assert suspects(str(file)) == suspects(str(tmp_path / "none.py")) == []

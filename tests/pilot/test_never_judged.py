@@ -35,12 +35,13 @@ DEMANDS = {
     "measured: no message of 0x0895 was sent",
     "deadlines: {apps: {TALKR: {response: 1 ms}}}": "the deadline response of TALKR was never measured: "
     "unknown application TALKR; did you mean TALKER?",
-    "results: {/enrgy: last}": "the result /enrgy (last) never came: no message of /enrgy "
+    "results: {/enrgy: last}": "the result /enrgy (last) never occurred: no message of /enrgy "
     "was sent; did you mean /energy?",
-    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never came: the file does not exist",
-    "results: {TALKR: output}": "the result TALKR (output) never came: unknown application TALKR; did you mean TALKER?",
+    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never occurred: the file does not exist",
+    "results: {TALKR: output}": "the result TALKR (output) never occurred: unknown application TALKR; "
+    "did you mean TALKER?",
     "results: {/energy: last}": "",
-    "results: {/silent: last}": "the result /silent (last) never came: no message of /silent was sent",
+    "results: {/silent: last}": "the result /silent (last) never occurred: no message of /silent was sent",
     "invariants: {few: {topic: /energy, holds: msg.data < 3}}": "",
 }
 

@@ -82,7 +82,7 @@ def test_tasks_pipes_where_and_help(plan: RunPlan) -> None:
     assert "CFE_TBL (task" in said
     assert "TBL_CMD_PIPE" in said
     assert said.count("publisher.publish(number)") == 2
-    assert "go on to the next breakpoint" in said
+    assert "continue to the next breakpoint" in said
 
 
 def test_quitting_ends_the_run(plan: RunPlan) -> None:
