@@ -33,7 +33,7 @@ def test_the_changelog_gets_the_day() -> None:
         (CHANGES, "0.3.0", "no section"),
         (CHANGES, "0.1.0", "below other versions"),
         (CHANGES.replace("- News.", ""), "0.2.0", "has nothing"),
-        (CHANGES.replace("unreleased", "soon"), "0.2.0", "neither unreleased nor a day"),
+        (CHANGES.replace("unreleased", "soon"), "0.2.0", "invalid day 'soon'"),
     ],
 )
 def test_a_changelog_without_the_version_is_refused(changes: str, version: str, why: str) -> None:
@@ -82,12 +82,12 @@ def git(folder: Path, *words: str) -> str:
 
 def test_the_version_is_in_one_place(checkout: Path) -> None:
     check_version(checkout, "0.2.0")
-    with pytest.raises(UsageError, match=r"says 0\.2\.0: write 0\.2\.1"):
+    with pytest.raises(UsageError, match=r"has version 0\.2\.0; write 0\.2\.1"):
         check_version(checkout, "0.2.1")
     with pytest.raises(UsageError, match="expected a version such as"):
         check_version(checkout, "two")
     (checkout / "pyproject.toml").write_text('[project]\nversion = "0.2.0"\n', encoding="utf-8")
-    with pytest.raises(UsageError, match=r"alone, and is in cfepy/__init__\.py, pyproject\.toml"):
+    with pytest.raises(UsageError, match=r"not in cfepy/__init__\.py, pyproject\.toml"):
         check_version(checkout, "0.2.0")
 
 
