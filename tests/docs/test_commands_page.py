@@ -24,7 +24,7 @@ def test_each_command_has_a_section_an_example_and_a_guide() -> None:
 
 
 @pytest.mark.parametrize("name", sorted(commands.EXAMPLES))
-def test_example_can_be_given(name: str) -> None:
+def test_example_of_each_command_is_parsed(name: str) -> None:
     words = commands.EXAMPLES[name].split()
     assert words[:2] == ["cfepy", name]
     parser_for(words[1:]).parse_args(words[1:])
