@@ -53,7 +53,7 @@ def gain(figure: str, before: float, after: float) -> float:
 def main() -> None:
     """Measure in turns, and print the table."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks.beside", description=__doc__.partition("\n")[0])
-    parser.add_argument("python", metavar="PYTHON", help="that of the other environment")
+    parser.add_argument("python", metavar="PYTHON", help="Python of the other environment")
     parser.add_argument("names", nargs="*", metavar="NAME", default=NAMES, help=f"benchmarks ({', '.join(NAMES)})")
     parser.add_argument("--rounds", type=int, default=ROUNDS, metavar="N", help=f"turns ({ROUNDS})")
     options = parser.parse_args()

@@ -103,7 +103,7 @@ OWN = (
     ),
     _own(
         "exploration",
-        commands=("explore", "faults", "sweep"),
+        commands=("explore", "sweep"),
         title="Find races and faults",
         hooks={
             "explore": ".python_results:explore",

@@ -1,4 +1,4 @@
-"""`python -m dev.prose [PATH ...]`: count riddles in what people read: docs, docstrings, error messages, test names.
+"""`python -m dev.prose [PATH ...]`: count riddles in docs, docstrings, error messages, help texts and test names.
 
 A riddle describes a thing by a relative clause ("what is told", "that of the task") in place of its name, or hides the
 actor ("is said", "nobody"). The program prints how often each pattern occurs in 10,000 words, by kind of text. The
@@ -31,6 +31,8 @@ IN_ERRORS = RIDDLES | {"is no": r"\b(?:is|are) no\b|\bno such\b"}
 IN_NAMES = {"test name": r"_(?:what|who|whoever|nobody|somebody|those)(?:_|$)"}
 YOU = r"\byou(?:r|rs)?\b"
 RAISERS = ("fail", "error", "UsageError")
+HELPS = ("help", "description", "epilog")
+"""Arguments of argparse whose texts `--help` prints."""
 _CODE = re.compile(r"`[^`]*`")
 _BLOCK = re.compile(r"^ *```.*?^ *```", re.MULTILINE | re.DOTALL)
 _TARGET = re.compile(r"\]\([^)]*\)")
@@ -86,6 +88,11 @@ def _in_python(tree: ast.Module, file: str) -> Iterator[Text]:
                 words = " ".join(_strings(part))
                 if words:
                     yield Text("errors", file, part.lineno, words)
+        if isinstance(node, ast.Call):
+            for given in node.keywords:
+                words = " ".join(_strings(given.value)) if given.arg in HELPS else ""
+                if words:
+                    yield Text("help", file, given.value.lineno, _CODE.sub("x", words))
 
 
 def _name_of(function: ast.expr) -> str:

@@ -40,6 +40,8 @@ def test_riddles_of_a_page_are_found_with_their_lines(tmp_path: Path) -> None:
         ('raise UsageError(f"{text!r} is no size; write bytes", field=option)', [("errors", "is no")]),
         ('raise UsageError(f"invalid size {text!r}; expected bytes")', []),
         ('parser.error("nobody listens")', [("errors", "nobody")]),
+        ('add("--json", help="what was found")', [("help", "what")]),
+        ('add("--json", help="the `what` of it", metavar="what")', []),
         ("def test_what_is_left(): pass", [("test names", "test name")]),
         ("def test_journal_keeps_complete_messages(): pass", []),
         ('def look():\n    """What a task does."""', [("docstrings", "what")]),

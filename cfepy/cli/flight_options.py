@@ -9,6 +9,7 @@ import argparse
 
 from cfepy.cli import flight_add_ons
 from cfepy.cli.options import add_json, factor_of
+from cfepy.cli.parser import shared_group
 from cfepy.status import UsageError
 
 DEFAULT_RUNS, MOST_RUNS = 3, 64
@@ -26,12 +27,12 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
 
 def add_outputs(parser: argparse.ArgumentParser) -> None:
     """Add the options for the output of the run."""
-    run = parser.add_argument_group("what the run leaves behind")
+    run = shared_group(parser, "output")
     add_json(run, "the report's numbers")
     run.add_argument(
         "--save-files",
         metavar="DIR",
-        help="at the end write the files that the mission wrote, such as /ram/x.log, to this folder, as DIR/ram/x.log",
+        help="write the mission's files, such as /ram/x.log, to this folder at the end, as DIR/ram/x.log",
     )
     run.add_argument("--bag", metavar="FILE", help="record the ROS topics of the run into a bag (rosbag record -a)")
     run.add_argument(
@@ -42,16 +43,14 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
         metavar="TOPIC",
         help="record only these, such as /odom or '/arm/*' (default: all)",
     )
-    run.add_argument("--trace", metavar="FILE", help="write everything that happened to a file, a line each")
-    run.add_argument("--quiet", action="store_true", help="no console and no status line, only the report")
+    run.add_argument("--trace", metavar="FILE", help="write all records of the run to a file, a line each")
+    run.add_argument("--quiet", action="store_true", help="print only the report, no console and no status line")
 
 
 def add_recording(parser: argparse.ArgumentParser) -> None:
     """Add the options for the journal of the run."""
-    run = parser.add_argument_group("the journal of the run")
-    run.add_argument(
-        "--record", metavar="FILE", help="write a journal, from which `cfepy replay FILE` does the same run again"
-    )
+    run = shared_group(parser, "journal")
+    run.add_argument("--record", metavar="FILE", help="write a journal, from which `cfepy replay FILE` repeats the run")
     run.add_argument(
         "--record-no-files",
         action="store_true",
@@ -61,7 +60,7 @@ def add_recording(parser: argparse.ArgumentParser) -> None:
 
 def add_pace(parser: argparse.ArgumentParser) -> None:
     """Add the options for the pace of the run and for the ports that are open meanwhile."""
-    pace = parser.add_argument_group("the wall clock and this computer")
+    pace = shared_group(parser, "real time")
     pace.add_argument(
         "--realtime",
         nargs="?",
@@ -99,8 +98,8 @@ def _add_check_determinism(parser: argparse.ArgumentParser) -> None:
         type=runs_of,
         const=DEFAULT_RUNS,
         metavar="N",
-        help="run it N times side by side, each time under another hash seed and both on threads and on greenlets, "
-        f"and show the first thing that differs (default: {DEFAULT_RUNS} runs)",
+        help="run it N times side by side, under different hash seeds, on threads and on greenlets, and show the first "
+        f"difference (default: {DEFAULT_RUNS} runs)",
     )
 
 

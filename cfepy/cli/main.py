@@ -19,8 +19,8 @@ from typing import Any
 
 from cfepy import __version__
 from cfepy.cli.json_output import standard_output
-from cfepy.cli.options import MISSION_HELP
-from cfepy.cli.parser import CommandParser, RootParser
+from cfepy.cli.options import MISSION_HELP, STATUS_HELP
+from cfepy.cli.parser import HELP_OF_SHARED, CommandParser, RootParser, groups_help, parsers_below
 from cfepy.cli.user_notes import NO_ROOM
 from cfepy.interpreter.early_end import INTERRUPTED as INTERRUPTED
 from cfepy.interpreter.early_end import leave, leave_on_interrupt
@@ -33,42 +33,46 @@ from cfepy.writing.escapes import keep_output_safe, raw, safe_output
 ENDED_WELL = 0
 FOUND_PROBLEMS = 1
 BAD_USAGE = 2
+HELP, FLYING = "help", "flying"
+SHELLS = ("bash", "zsh", "fish")
 AGAIN_S = 0.001  # wall time until a dropped interrupt is raised again
 ROOMS = {
     "run": ("run", "check", "new"),
-    "board": ("boards", "board"),
-    "ros": ("launch", "node", "rostest", "topic", "service", "param", "bag"),
-    "ros_tools": ("rosbag", "rosmsg", "rossrv", "rosnode", "tf"),
+    "board": ("board",),
+    "ros": ("launch", "node", "rostest", "rostopic", "rosservice", "rosparam"),
+    "ros_tools": ("rosnode", "rosmsg", "rosbag", "tf"),
     "journal": ("replay", "diff"),
-    "ground": ("cmd", "tlm", "console", "mids", "graph", "export"),
+    "ground": ("cmd", "tlm", "console", "graph", "export"),
     "files": ("tbl", "log"),
-    "shell": ("completion",),
 }
 """The commands of each subpackage. Only the subpackage of the given command is loaded, since setting up all takes 10
 ms.
 """
+ALIASES = {"roslaunch": "launch", "rosrun": "node", "rossrv": "rosmsg"}
+"""ROS's names of some commands, with the commands that have them."""
 TITLES = {
     "run": "Fly a mission",
     "board": "Fly a mission",
     "ros": "ROS",
-    "ros_tools": "ROS's own tools",
+    "ros_tools": "ROS",
     "journal": "Do a run again",
     "ground": "Ground",
     "files": "Files of cFE",
-    "shell": "The shell",
 }
 """Titles in the help, under which the commands of a subpackage are listed."""
+FLYING_HELP = """\
+Options that commands share which fly a mission, such as run, launch, explore and plot.
+`cfepy COMMAND --help` names those that a command takes.
+"""
 ORDER = (
     "Fly a mission",
     "ROS",
-    "ROS's own tools",
     "Find races and faults",
     "Do a run again",
     "Look at a run",
     "Ground",
     "ROS nodes in C++",
     "Files of cFE",
-    "The shell",
 )
 """Order of the titles in the help; titles of other packages' add-ons follow."""
 
@@ -134,8 +138,10 @@ def main(argv: Sequence[str] | None = None) -> int:
 def _obey(words: Sequence[str]) -> int:
     """Carry out the words. Returns the exit status."""
     if "_ARGCOMPLETE" in os.environ:
-        _command(f"{__package__}.shell.completion").complete(parser_for)
+        _command(f"{__package__}.shell_completion").complete(parser_for)
     try:
+        if words[:1] == [HELP]:
+            return _print_help(words[1:])
         chosen = parser_for(words).parse_args(words)
         command = _command(chosen.module)
         with terminable(), standard_output(chosen):
@@ -162,6 +168,19 @@ def _obey(words: Sequence[str]) -> int:
             return INTERRUPTED
         print(f"cfepy: {_without_room(error) or error}", file=sys.stderr)
         return BAD_USAGE
+
+
+def _print_help(words: Sequence[str]) -> int:
+    """Print the help of a command, of all, or of the options that commands share. Returns the exit status."""
+    if list(words) != [FLYING]:
+        parser_for(words).parse_args([*words, "--help"])
+    groups: dict[str | None, argparse._ArgumentGroup] = {}
+    parsers = parsers_below(parser_for([]))
+    for each in parsers:
+        for group in each.shared:
+            groups.setdefault(group.title, group)
+    print(f"{FLYING_HELP}\n{groups_help(each, groups.values())}\n{STATUS_HELP}")
+    return ENDED_WELL
 
 
 def _drop_output() -> None:
@@ -219,6 +238,14 @@ def _command(module: str) -> Any:
             freeze()
 
 
+class _Completion(argparse.Action):
+    """Prints the completion script of a shell and exits."""
+
+    def __call__(self, parser: argparse.ArgumentParser, namespace: Any, shell: Any, option: str | None = None) -> None:
+        print(_command(f"{__package__}.shell_completion").script(shell))
+        parser.exit()
+
+
 class _Version(argparse.Action):
     """Prints the version and exits. It checks for compiled parts only then."""
 
@@ -241,14 +268,15 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
     Raises:
         UsageError: the command belongs to an add-on that is not installed.
     """
-    rooms = {room: names for room, names in ROOMS.items() if words[:1] and words[0] in names}
+    first = ALIASES.get(words[0], words[0]) if words else ""
+    rooms = {room: names for room, names in ROOMS.items() if first in names}
     plugins: Sequence[Plugin] = ()
     if not rooms:
         usable = _with_new_commands(installed())
-        plugins = [each for each in usable if words[:1] and words[0] in each.commands]
-        owner = owner_of(words[0]) if words and not plugins else None
+        plugins = [each for each in usable if first in each.commands]
+        owner = None if plugins else owner_of(first)
         if owner is not None:
-            raise UsageError(missing(f"the command {words[0]}", owner.name))
+            raise UsageError(missing(f"the command {first}", owner.name))
         if not plugins:
             rooms, plugins = dict(ROOMS), usable
     groups = _groups(rooms, plugins)
@@ -256,9 +284,17 @@ def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
         groups,
         prog="cfepy",
         description="NASA's core Flight Executive and ROS 1 nodes on one simulated processor.",
-        epilog="`cfepy COMMAND --help` explains a command. A MISSION is " + MISSION_HELP + "." + _add_ons(plugins),
+        epilog=f"`cfepy COMMAND --help` explains a command, `{HELP_OF_SHARED}` the options that many commands share. "
+        f"A MISSION is {MISSION_HELP}.{_add_ons(plugins)}",
     )
-    parser.add_argument("--version", action=_Version, help="tell the version, and whether kernel and bus are compiled")
+    parser.add_argument("--version", action=_Version, help="print the version, and whether the engine is compiled")
+    parser.add_argument(
+        "--completion",
+        action=_Completion,
+        choices=SHELLS,
+        metavar="SHELL",
+        help="print the script that completes words in bash, zsh or fish",
+    )
     commands = parser.add_subparsers(metavar="COMMAND", required=True, parser_class=CommandParser)
     for room in rooms:
         importlib.import_module(f"cfepy.cli.{room}").add(commands)

@@ -8,26 +8,20 @@ import argparse
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from cfepy.cli.parser import MissionAction
+from cfepy.cli.parser import MissionAction, hand_options_to_nodes, shared_group
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.pilot import RunPlan
 
 Options = argparse._ActionsContainer  # a parser, or a group of its options
+NODE_SUFFIX = ".py"
 LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
 SLOWEST, FASTEST = 1e-3, 1e9  # times real time
 DEFAULT_SEED, DEFAULT_TASKS, DEFAULT_SCHEDULE, DEFAULT_STALL_S = 0, "auto", "fifo", 10.0
 TASK_KINDS = (DEFAULT_TASKS, "thread", "greenlet")
 
-POINTS_HELP = (
-    "before each of its lines, before each access to attributes, items and variables that tasks may share, or behind "
-    "its calls, too (lines, attributes or calls; lines:arm,util in these modules alone)"
-)
-MISSION_HELP = (
-    "a startup script, a folder with a startup.scr, a shipped mission's name, a launch file (or PACKAGE FILE), or "
-    "a node's .py"
-)
+MISSION_HELP = "a startup script or its folder, a shipped mission, a launch file (or PACKAGE FILE), or a node's .py"
 FOR_HELP = "virtual seconds to run (default: 10, or as long as the script takes; until Ctrl-C with --realtime)"
 STATUS_HELP = """exit status:
   0    the run ended well
@@ -48,7 +42,7 @@ def _add_launch_args(parser: Options) -> None:
         type=launch_argument_of,
         default=[],
         metavar="NAME:=VALUE",
-        help="an argument of the launch file, if it is one",
+        help="set an argument of the launch file",
     )
 
 
@@ -57,7 +51,7 @@ def _add_seconds(parser: Options) -> None:
 
 
 def _add_seed(parser: Options) -> None:
-    text = f"of everything random in the mission (default: {DEFAULT_SEED})"
+    text = f"seed of all random values in the mission (default: {DEFAULT_SEED})"
     parser.add_argument("--seed", type=int, default=DEFAULT_SEED, metavar="N", help=text)
 
 
@@ -66,7 +60,7 @@ def _add_board(parser: Options) -> None:
 
 
 def _add_tasks(parser: Options) -> None:
-    text = "what tasks run on (default: auto, greenlets where they are installed, else threads); the run is the same"
+    text = "kind of tasks (default: auto, which means greenlet if it is installed, else thread); the trace is the same"
     parser.add_argument("--tasks", choices=TASK_KINDS, default=DEFAULT_TASKS, help=text)
 
 
@@ -75,20 +69,20 @@ def _add_schedule(parser: Options) -> None:
         "--schedule",
         default=DEFAULT_SCHEDULE,
         metavar="TEXT",
-        help="who runs next where there is a choice: fifo (default), random[:SEED], pct:SEED:DEPTH[:STEPS], "
-        "abreast[:SEED] or at:42=1 (at decision 42 candidate 1), these with :any (of any priority), :hold=500us (tasks "
-        "may be held up) or :connect=50ms (connections of nodes may take as long)",
+        help="order of tasks where several could run: fifo (default), random[:SEED], pct:SEED:DEPTH[:STEPS], "
+        "abreast[:SEED] or at:42=1 (at decision 42 candidate 1); add :any to ignore priorities, :hold=500us to delay "
+        "tasks, :connect=50ms to delay connections of nodes",
     )
     parser.add_argument(
         "--points",
-        metavar="KIND[:MODULE,...]",
-        help="let others in at more points of the mission's Python code than at its calls, under this schedule: "
-        f"{POINTS_HELP}",
+        metavar="KIND",
+        help="let this schedule preempt Python code at lines, attributes or calls[:MODULE,...], not only at its calls "
+        "of cFE and ROS",
     )
 
 
 def _add_script(parser: Options) -> None:
-    parser.add_argument("--script", metavar="FILE", help="send commands and check what comes of them, as a script says")
+    parser.add_argument("--script", metavar="FILE", help="send commands and check their effects, by a mission script")
 
 
 def _add_stop_on_failure(parser: Options) -> None:
@@ -101,13 +95,13 @@ def _add_faults(parser: Options) -> None:
     parser.add_argument(
         "--faults",
         metavar="FILE|seed:N",
-        help="let faults happen: those of a plan, or random ones (seed:N, or seed:N:low, :medium, :high); "
-        "cfepy faults has more",
+        help="inject the faults of a plan, or random ones (seed:N, seed:N:low, :medium, :high); `cfepy new faults` "
+        "writes a plan",
     )
 
 
 def _add_play(parser: Options) -> None:
-    text = "play a bag's topics into the mission, or those of an MCAP file, as rosbag play does"
+    text = "play the topics of a bag or an MCAP file into the mission, as rosbag play does"
     parser.add_argument("--play", metavar="BAG", help=text)
 
 
@@ -115,7 +109,7 @@ def _add_play_options(parser: Options) -> None:
     parser.add_argument(
         "--play-options",
         metavar="TEXT",
-        help="how: options and remappings of rosbag play, as in --play-options='--rate 2 --start 5 --topics /a /a:=/b'",
+        help="options and remappings of rosbag play, such as --play-options='--rate 2 --start 5 --topics /a /a:=/b'",
     )
 
 
@@ -125,7 +119,7 @@ def _add_stall(parser: Options) -> None:
         type=stall_of,
         default=DEFAULT_STALL_S,
         metavar="SECONDS",
-        help="end the run as failed when a task computes for so many seconds of wall time without giving up the CPU "
+        help="fail if a task computes for so many seconds of wall time without giving up the CPU "
         f"(default: {DEFAULT_STALL_S:g}; 0: never)",
     )
 
@@ -134,7 +128,7 @@ def _add_guard(parser: Options) -> None:
     parser.add_argument(
         "--guard",
         action="store_true",
-        help="let compiled applications fault where they write past a buffer, or use one that was freed",
+        help="report writes of compiled applications past a buffer, and uses of freed buffers",
     )
 
 
@@ -142,8 +136,7 @@ def _add_cpp_nodes(parser: Options) -> None:
     parser.add_argument(
         "--cpp-nodes",
         metavar="PROFILE|MISSION",
-        help="build the nodes in C++ of launch files for a profile (host, pool, strict), or as the section cpp_nodes "
-        "of this mission's file says",
+        help="build nodes in C++ for a profile (host, pool, strict), or by the section cpp_nodes of a mission file",
     )
 
 
@@ -151,7 +144,7 @@ def _add_races(parser: Options) -> None:
     parser.add_argument(
         "--races",
         action="store_true",
-        help="find accesses of Python code to one attribute, item or variable that nothing orders, one of them a write",
+        help="report unordered accesses of Python code to one attribute, item or variable, one of them a write",
     )
 
 
@@ -163,7 +156,7 @@ def _add_settings(parser: Options) -> None:
         type=setting_of,
         default=[],
         metavar="/PARAM=VALUE",
-        help="give a ROS parameter, such as /arm/rate, another value than the mission does (in YAML)",
+        help="set a ROS parameter, such as /arm/rate, in place of the mission's value (in YAML)",
     )
 
 
@@ -187,7 +180,7 @@ def _add_processor_id(parser: Options) -> None:
 
 
 def _add_beside(parser: Options) -> None:
-    text = "let another processor fly beside it, in the same virtual time and on one network (from that second on)"
+    text = "run another processor in the same virtual time and network, from that second on"
     metavar = "MISSION[@SECONDS]"
     parser.add_argument("--with", dest="beside", action="append", default=[], metavar=metavar, help=text)
 
@@ -223,7 +216,7 @@ def add_run_options(parser: argparse.ArgumentParser, without: Sequence[str] = ()
         parser: parser of the command.
         without: attributes of `RunPlan` that the command sets in another way.
     """
-    group = parser.add_argument_group("what decides the run")
+    group = shared_group(parser, "flight")
     for name, add in RUN_OPTIONS.items():
         if name not in without:
             add(group)
@@ -339,13 +332,13 @@ def add_mission_or_node(parser: argparse.ArgumentParser, **said: Any) -> None:
         said: see `add_mission`.
     """
     add_mission(parser, **said)
-    parser.add_argument("node_args", metavar="ARG", nargs="*", help="what a node's .py gets")
-    parser.set_defaults(hint="; put the options of the node itself after --")
+    parser.add_argument("node_args", metavar="ARG", nargs="*", help="arguments of a node's .py")
+    hand_options_to_nodes(parser, lambda word: word.endswith(NODE_SUFFIX))
 
 
-LOOKED_AT_HELP = f"a journal that `cfepy run --record FILE` wrote, or what is flown: {MISSION_HELP}"
+LOOKED_AT_HELP = f"a journal that `cfepy run --record FILE` wrote, or {MISSION_HELP}"
 VALUES_HELP = (
-    "a topic or packet, with a field behind it or not: /joint_states.position[0], /odom/pose/pose/position/x, "
+    "a topic or packet, with or without a field: /joint_states.position[0], /odom/pose/pose/position/x, "
     "CFE_ES_HK_TLM.CommandCounter, '/arm/*'"
 )
 LOOK_STATUS = """exit status:
@@ -369,7 +362,7 @@ def add_from_disk(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--from-disk",
         action="store_true",
-        help="take the mission's files as they are on this computer now, not those that the journal carries",
+        help="use the mission's files on this computer, not those in the journal",
     )
 
 
@@ -383,7 +376,7 @@ def add_json(parser: Options, what: str) -> None:
         parser: parser of the command.
         what: the data that is written, for the help.
     """
-    text = f"write {what} as JSON to a file, or with - to standard output and nothing else there"
+    text = f"write {what} as JSON; - writes to standard output"
     parser.add_argument("--json", metavar="FILE|-", help=text)
 
 

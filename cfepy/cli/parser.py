@@ -8,18 +8,32 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.writing.escapes import raw
 
+HELP_OF_SHARED = "cfepy help flying"
 LAUNCH_FILES = (".launch", ".test", ".xml")
 _PACKAGE = re.compile(r"\w[\w-]*")
 _CONTINUED = re.compile(r"\n {3,}(?=\S)")
 _ENTRY = re.compile(r" +\d+ +")
-FROM_ROS = {"rosrun": "node", "tf_echo": "tf echo", "view_frames": "tf frames", "rqt_graph": "graph"}
-"""ROS's names of some commands. Names that are alike need no row."""
+OTHER_NAMES = {
+    "bag": "rosbag",
+    "boards": "board list",
+    "completion": "--completion",
+    "faults": "new faults",
+    "mids": "graph --mids",
+    "param": "rosparam",
+    "rqt_graph": "graph",
+    "service": "rosservice",
+    "tf_echo": "tf echo",
+    "topic": "rostopic",
+    "view_frames": "tf frames",
+}
+"""Names of commands in ROS, and in earlier versions, with today's. Names that are alike need no row."""
+_ALMOST = 0.8  # likeness of two options, one of which is likely to be a mistake
 _FEW = 2  # options that are shown in a usage; a command with more shows a placeholder
 
 
@@ -53,19 +67,53 @@ class MissionAction(argparse.Action):
         setattr(namespace, self.dest, values)
 
 
+def shared_group(parser: argparse.ArgumentParser, title: str) -> argparse._ArgumentGroup:
+    """Add a group for options that commands share. The help of a command names them; `cfepy help flying` explains them.
+
+    Args:
+        parser: parser of the command.
+        title: title of the group, the same for all commands.
+    """
+    group = parser.add_argument_group(title)
+    if isinstance(parser, CommandParser):
+        parser.shared.append(group)
+    return group
+
+
+def hand_options_to_nodes(parser: argparse.ArgumentParser, is_node: Callable[[str], bool]) -> None:
+    """Let a node get the words after it and the options that the command does not have, as with rosrun.
+
+    Args:
+        parser: parser of the command.
+        is_node: returns whether a first word is a node.
+    """
+    if isinstance(parser, CommandParser):
+        parser.is_for_nodes = is_node
+
+
 class CommandParser(argparse.ArgumentParser):
     """The parser of a command: options may stand between its words, which argparse does not support.
 
+    Args:
+        examples: command lines that the help shows first.
+        settings: as for `ArgumentParser`.
+
     Attributes:
-        mixes: True if they may. For shell completion it is False.
+        examples: these command lines.
+        mixes: True if options may stand between words. For shell completion it is False.
+        is_for_nodes: see `hand_options_to_nodes`.
+        shared: the groups of `shared_group`.
     """
 
     mixes = True
     _is_mixing = False
 
-    def __init__(self, **settings: Any) -> None:
+    def __init__(self, *, examples: Sequence[str] = (), **settings: Any) -> None:
         # A later option must not break a script, so abbreviations of options are not accepted.
         super().__init__(**{**settings, "allow_abbrev": False, "formatter_class": HelpFormatter})
+        self.examples = tuple(examples)
+        self.shared: list[argparse._ArgumentGroup] = []
+        self.is_for_nodes: Callable[[str], bool] = lambda word: False
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
         """Parse the arguments. A command with actions of its own leaves the mixing of options and words to them."""
@@ -76,7 +124,7 @@ class CommandParser(argparse.ArgumentParser):
         if self._subparsers is not None:
             found, left = super().parse_known_args(args, namespace)
         else:
-            found, left = self._mixed(self._with_missions_joined(args), namespace)
+            found, left = self._mixed(self._with_node_options_last(self._with_missions_joined(args)), namespace)
         if left:  # reported here, so that the message shows the usage of the command
             self._refuse(left)
         return found, left
@@ -88,6 +136,33 @@ class CommandParser(argparse.ArgumentParser):
             return self.parse_known_intermixed_args(args, namespace)
         finally:
             self._is_mixing = False
+
+    def _with_node_options_last(self, args: Sequence[str]) -> list[str]:
+        """Move a node's own options, and the words after them, behind `--`."""
+        own: list[str] = []
+        of_node: list[str] = []
+        first, rest = "", list(args)
+        while rest:
+            word = rest.pop(0)
+            if word == "--":
+                of_node += rest
+                break
+            option = self._option_string_actions.get(word.partition("=")[0])
+            if option is not None:
+                own += [word, *_values_of(option, rest, has_value="=" in word)]
+            elif word.startswith("-") and self.is_for_nodes(first) and not self._negative_number_matcher.match(word):
+                of_node.append(word)
+                self._note_similar(word)
+            else:
+                (of_node if of_node else own).append(word)
+                first = first or word
+        return [*own, "--", *of_node] if of_node else list(args)
+
+    def _note_similar(self, word: str) -> None:
+        """Tell the user that a node gets an option which is almost one of the command."""
+        hint = did_you_mean(word.partition("=")[0], self._option_string_actions, before="; ", likeness=_ALMOST)
+        if hint:
+            print(f"cfepy: {word} is passed to the node{hint}", file=sys.stderr)
 
     def _with_missions_joined(self, args: Sequence[str]) -> list[str]:
         """Join PACKAGE FILE to one word, where a mission may stand."""
@@ -146,9 +221,82 @@ class CommandParser(argparse.ArgumentParser):
         return formatter.format_help().removeprefix("usage: ")
 
     def format_help(self) -> str:
-        """Format the help as argparse does, with this usage."""
-        _, _, rest = super().format_help().partition("\n\n")
-        return f"{self.format_usage()}\n{rest}"
+        """Format the help: usage, purpose, examples, the arguments and options of this command, and the names of those
+        that commands share."""
+        formatter = self._get_formatter()
+        formatter.add_text(self.description)
+        text = formatter.format_help()
+        if self.examples:
+            text += "".join(["\nexamples:\n", *(f"  {each}\n" for each in self.examples)])
+        return (
+            f"{self.format_usage()}\n{text}{self._own_help()}{self._shared_help()}{self._epilog_help()}".rstrip() + "\n"
+        )
+
+    def _own_help(self) -> str:
+        text = groups_help(self, [each for each in self._action_groups if each not in self.shared])
+        return f"\n{text}" if text else ""
+
+    def _shared_help(self) -> str:
+        """Name the options of shared groups."""
+        if not self.shared:
+            return ""
+        import textwrap
+
+        lines = [f"\nmore options, which `{HELP_OF_SHARED}` explains:"]
+        for group in self.shared:
+            names = [action.option_strings[-1] for action in group._group_actions]
+            text = f"{group.title}: {' '.join(names)}"
+            lines += textwrap.wrap(
+                text, self._width(), initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False
+            )
+        return "\n".join(lines) + "\n"
+
+    def _epilog_help(self) -> str:
+        formatter = self._get_formatter()
+        formatter.add_text(self.epilog)
+        text = formatter.format_help()
+        return f"\n{text}" if text else ""
+
+    def _width(self) -> int:
+        return int(self._get_formatter()._width)
+
+
+def _values_of(option: argparse.Action, words: list[str], has_value: bool) -> list[str]:
+    """Remove the values of an option from the words after it. Returns them.
+
+    Args:
+        option: the option.
+        words: the words after it.
+        has_value: whether the option has its value in the same word.
+    """
+    is_fixed = option.nargs is None or isinstance(option.nargs, int)
+    most = option.nargs if isinstance(option.nargs, int) else 1 if option.nargs in (None, "?") else len(words)
+    count = 0 if has_value else most
+    taken: list[str] = []
+    while words and len(taken) < count and (is_fixed or not words[0].startswith("-")):
+        taken.append(words.pop(0))
+    return taken
+
+
+def groups_help(parser: argparse.ArgumentParser, groups: Iterable[argparse._ArgumentGroup]) -> str:
+    """Format the help of groups of options."""
+    formatter = parser._get_formatter()
+    for group in groups:
+        formatter.start_section(group.title)
+        formatter.add_text(group.description)
+        formatter.add_arguments(group._group_actions)
+        formatter.end_section()
+    return formatter.format_help()
+
+
+def parsers_below(parser: argparse.ArgumentParser) -> Iterator[CommandParser]:
+    """Yield a parser and those of all commands and actions below it, each once."""
+    assert isinstance(parser, CommandParser)
+    yield parser
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for each in dict.fromkeys(action.choices.values()):  # an alias has the same parser
+                yield from parsers_below(each)
 
 
 class RootParser(CommandParser):
@@ -164,8 +312,8 @@ class RootParser(CommandParser):
         self._groups = groups
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Check a choice as all parsers do; for a ROS tool with another name here, name the command."""
-        meant = FROM_ROS.get(value) if isinstance(action, argparse._SubParsersAction) else None
+        """Check a choice as all parsers do; for a command with another name in ROS, or in earlier versions, name it."""
+        meant = OTHER_NAMES.get(value) if isinstance(action, argparse._SubParsersAction) else None
         if meant is not None:
             raise argparse.ArgumentError(action, f"invalid choice: {value!r}; did you mean {meant}?")
         super()._check_value(action, value)

@@ -191,8 +191,8 @@ def header_of(connection: Connection) -> dict[str, str]:
 def _hint(error: Exception, file: str) -> str:
     """Return advice about a file that cannot be read."""
     if isinstance(error, storage().ROSBagUnindexedException):
-        return f"; rosbag reindex makes an index, cfepy bag recover {file} saves the readable messages"
-    return f"; cfepy bag recover {file} saves the readable messages" if is_bag(file) else ""
+        return f"; rosbag reindex makes an index, cfepy rosbag recover {file} saves the readable messages"
+    return f"; cfepy rosbag recover {file} saves the readable messages" if is_bag(file) else ""
 
 
 def is_bag(file: str) -> bool:

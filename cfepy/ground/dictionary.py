@@ -8,8 +8,10 @@ in the mission file are known from the start, their message types once a mission
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -25,13 +27,14 @@ from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemet
 from cfepy.reading.contained_files import is_contained
 from cfepy.reading.input_files import open_input
 from cfepy.reading.resources import shipped
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, known_as
 from cfepy.status import CfeError, UsageError
 from cfepy.tbl import TableType
 
 DECLARATIONS = ("COMMANDS", "TELEMETRY")
 TABLES = "TABLES"
 CF = "/cf/"
+_WILD = re.compile(r"[*?[]")
 ROS_PACKETS = "rospy_shim.parameters.table"
 """Code in which the application ROS declares its packets, as found by a loader."""
 
@@ -107,11 +110,12 @@ class Dictionary:
                 self._by_id[topic.msg_id] = topic
 
     def command(self, name: str) -> Command:
-        """Return a command by its name.
+        """Return a command by its name, which may be in small letters.
 
         Raises:
             UsageError: if there is none; the text names similar ones.
         """
+        name = name if name in self.commands else known_as(name, self.commands)
         if name not in self.commands:
             raise self._unknown("command", name, self.commands)
         return self.commands[name]
@@ -119,9 +123,13 @@ class Dictionary:
     def telemetry_of(self, name: str) -> Telemetry | Topic:
         """Return a telemetry packet by its name or MsgId ("0x0800", "2048"); one known only by MsgId has no fields.
 
+        Args:
+            name: the name, which may be in small letters.
+
         Raises:
             UsageError: if there is none of that name.
         """
+        name = name if name in self.telemetry else known_as(name, self.telemetry)
         if name in self.telemetry:
             return self.telemetry[name]
         try:
@@ -129,6 +137,19 @@ class Dictionary:
         except ValueError:
             raise self._unknown("telemetry packet", name, self.telemetry) from None
         return self._by_id.get(msg_id) or Telemetry(f"0x{msg_id:04X}", msg_id)
+
+    def telemetry_like(self, pattern: str) -> list[int]:
+        """Return the MsgIds of the telemetry packets that a word names: a name, a MsgId, or a pattern such as `CFE_*`.
+
+        Raises:
+            UsageError: if there is none.
+        """
+        if not _WILD.search(pattern):
+            return [self.telemetry_of(pattern).msg_id]
+        found = [packet.msg_id for name, packet in self.telemetry.items() if fnmatchcase(name, pattern.upper())]
+        if not found:
+            raise self._unknown("telemetry packet", pattern, self.telemetry)
+        return found
 
     def decode(self, packet: bytes) -> Decoded:
         """Return name and fields of a packet: telemetry, or a command.

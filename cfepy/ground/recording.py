@@ -268,7 +268,7 @@ def _copy(summary: RecordingSummary, salvage: Salvage, target: _BagTarget | _Mca
         loss = next(iter(salvage.losses), None)
         why = next(summary.damage()) if loss is None else f"{loss.why} (byte {loss.at:,})"
         raise UsageError(
-            f"is damaged: {why}; cfepy bag recover {summary.file} saves the readable messages", file=summary.file
+            f"is damaged: {why}; cfepy rosbag recover {summary.file} saves the readable messages", file=summary.file
         )
     if not summary.messages and not strict:
         why = next(iter(summary.damage()), "it has no messages")

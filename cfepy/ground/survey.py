@@ -2,7 +2,7 @@
 
 A mission runs for some virtual seconds with a Software Bus that records the sender of each message. A sender without
 messages in that time is not found, except ROS publishers, which register. `lock` gives every topic and service its own
-MsgId: the file `topics.lock` in the mission's folder, created by `cfepy mids --lock`, should be under version control.
+MsgId: the file `topics.lock` in the mission's folder, created by `cfepy graph --lock`, should be under version control.
 An id in it never changes; the mission file's `topics:` have precedence.
 """
 
@@ -20,7 +20,7 @@ from cfepy.nodes import RosConfig
 from cfepy.writing.console import Console
 
 LOOK_S = 10.0
-_HEAD = "# MsgIds of ROS topics and services, written by `cfepy mids --lock`. Keep this file: ids in it never move.\n"
+_HEAD = "# MsgIds of ROS topics and services, written by `cfepy graph --lock`. Keep this file: ids in it never move.\n"
 
 
 @dataclass(frozen=True, slots=True)

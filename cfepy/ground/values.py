@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import Any
 
 from cfepy.msg import Cell, Command, Layout, ValueNames, command
-from cfepy.reading.suggestions import did_you_mean
+from cfepy.reading.suggestions import did_you_mean, known_as
 from cfepy.status import UsageError
 
 _TRUTH = {"true": 1, "false": 0, "1": 1, "0": 0}
@@ -35,6 +35,7 @@ def packet_of(declared: Command, words: Iterable[str]) -> bytes:
         path, equals, text = word.partition("=")
         if not equals:
             raise UsageError(f"invalid field value {word!r}; expected FIELD=VALUE")
+        path = path if path in cells else known_as(path, cells)
         if path in given:
             raise UsageError("is given twice; remove one", field=path)
         given.add(path)

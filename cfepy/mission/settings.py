@@ -18,6 +18,8 @@ from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
 OPTION = "--set"
+OF_ROS = ("/use_sim_time",)
+"""Parameters that every mission can have."""
 
 
 def with_settings(spec: MissionSpec, settings: Sequence[tuple[str, str]]) -> MissionSpec:
@@ -36,6 +38,7 @@ def with_settings(spec: MissionSpec, settings: Sequence[tuple[str, str]]) -> Mis
         owners = [app for app, node in nodes.items() if _within(name, node)]
         for app in owners:
             own = name.removeprefix(f"{_full_name(nodes[app])}/")
+            notes += _almost(name, own, nodes[app].params)
             nodes[app] = replace(nodes[app], params=merged(nodes[app].params, _tree(own, value)))
         if not owners:
             notes += _doubts(name, nodes, params)
@@ -69,10 +72,21 @@ def _tree(name: str, value: Any) -> dict[str, Any]:
     return tree
 
 
+def _almost(name: str, own: str, params: Mapping[str, Any]) -> list[str]:
+    """Return a note if a node has no parameter of a name in the mission, but a similar one."""
+    hint = "" if own.split("/")[0] in params else did_you_mean(own, params)
+    return [f"{OPTION} {name}: the mission has no such parameter; {hint}"] if hint else []
+
+
 def _doubts(name: str, nodes: Mapping[str, NodeConfig], params: Mapping[str, Any]) -> list[str]:
-    """Return a note if no node of the mission has the name of the parameter and the mission has no similar one."""
+    """Return a note if the mission has neither the parameter nor a node of its name."""
     first = name.strip("/").split("/")[0]
-    if "/" not in name[1:] or first in params or any(node.name is None for node in nodes.values()):
+    if first in params or name in OF_ROS:
+        return []
+    if "/" not in name[1:]:
+        hint = did_you_mean(name, [f"/{each}" for each in params], before="; ")
+        return [f"{OPTION} {name}: the mission has no such parameter, so only a node that reads it sees it{hint}"]
+    if any(node.name is None for node in nodes.values()):
         return []
     known = [_full_name(node) for node in nodes.values()]
     hint = did_you_mean(f"/{first}", known, before="; ")

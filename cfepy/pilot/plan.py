@@ -17,7 +17,7 @@ from cfepy.config.platform import IDENTITIES, MOST_ID
 from cfepy.interpreter.host_system import command_line
 from cfepy.mission import CppNodesConfig, MissionSpec, cpp_nodes_of, read_mission
 from cfepy.nodes import CppNode
-from cfepy.pilot.run_loop import BOOT_S, DEFAULT_S, LONGEST_S, NODE_S
+from cfepy.pilot.run_loop import DEFAULT_S, LONGEST_S, NODE_S
 from cfepy.plugins import Hook
 from cfepy.rtos import AUTO, STALL_S
 from cfepy.schedules import Schedule
@@ -204,7 +204,7 @@ class RunPlan:
         if self.seconds is None and self.script is not None:
             return None
         usual_s = DEFAULT_S if self.command == LAUNCH else NODE_S
-        return BOOT_S + (usual_s if self.seconds is None else self.seconds)
+        return usual_s if self.seconds is None else self.seconds
 
     def command_line(self, **changes: Any) -> str:
         """Return the command that repeats this run.

@@ -23,7 +23,7 @@ SUDDEN = (BROKEN_OFF, STALLED)
 DEFAULT_S = 10.0
 LONGEST_S = 1e9  # virtual time is a signed 64-bit number of ns
 NODE_S = 60.0  # default virtual time of a single node
-BOOT_S = 0.55  # virtual time until nodes of a launch file start, which does not count as their time
+BOOT_S = 0.55  # virtual time until nodes of a launch file start; rates of their messages count from there
 
 
 class Course:

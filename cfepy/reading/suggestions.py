@@ -25,6 +25,17 @@ def like(name: str, known: Iterable[str], most: int = 1, likeness: float = LIKEN
     return [by_folded[each] for each in get_close_matches(name.casefold(), by_folded, most, likeness)]
 
 
+def known_as(name: str, known: Iterable[str]) -> str:
+    """Return the known name that a user means who types small letters for capitals; the name itself if none or several
+    differ from it only in that.
+
+    A known name with an index, such as `Wheel[3]`, is also known without it.
+    """
+    folded = name.casefold()
+    found = {each[: len(name)] for each in known if f"{each}[".casefold().startswith(f"{folded}[")}
+    return found.pop() if len(found) == 1 else name
+
+
 def did_you_mean(
     name: str,
     known: Iterable[str],

@@ -300,7 +300,7 @@ def main() -> int:
     parser.add_argument("--files", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument(
-        "--sources", type=Path, default=OWN, help="a folder with more nodes (default: that of the tests)"
+        "--sources", type=Path, default=OWN, help="a folder with more nodes (default: the folder of the tests)"
     )
     arguments = parser.parse_args()
     counts: Counter[str] = Counter()

@@ -13,10 +13,10 @@ BEGIN, END = "<!-- rules: made by python -m dev.convert.rules -->", "<!-- end of
 
 def table() -> str:
     """Return the rules as a table."""
-    lines = ["| rule | host | pool | strict | what | why | what to do |", "|---|---|---|---|---|---|---|"]
+    lines = ["| rule | host | pool | strict | problem | what to do |", "|---|---|---|---|---|---|"]
     for rule in RULES.values():
         levels = " | ".join(str(rule.level(profile) or "") for profile in Profile)
-        lines.append(f"| `{rule.id}` | {levels} | {rule.what} | {rule.why} | {rule.remedy} |")
+        lines.append(f"| `{rule.id}` | {levels} | {rule.what} | {rule.remedy} |")
     return "\n".join(lines)
 
 

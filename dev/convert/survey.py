@@ -18,7 +18,7 @@ import hashlib
 import json
 import os
 import re
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -149,13 +149,6 @@ def table(verdicts: list[Verdict]) -> str:
     lines += ["", "Rules that refuse nodes in the host profile (several rules may refuse one node):", ""]
     lines += ["| rule | nodes |", "|---|---|"]
     lines += [f"| {rule} | {count} |" for rule, count in sorted(rules.items(), key=lambda item: (-item[1], item[0]))]
-    by_repository: dict[str, list[Verdict]] = defaultdict(list)
-    for each in verdicts:
-        by_repository[each.repository].append(each)
-    lines += ["", "| repository | nodes | host | pool | strict |", "|---|---|---|---|---|"]
-    for name, those in sorted(by_repository.items(), key=lambda item: (-len(item[1]), item[0].lower())):
-        counts = (str(sum(not each.refused[profile.value] for each in those)) for profile in Profile)
-        lines.append(f"| {name} | {len(those)} | {' | '.join(counts)} |")
     return "\n".join(lines)
 
 
@@ -191,7 +184,7 @@ def main() -> None:
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
     parser.add_argument("--json", type=Path, help="verdicts, read by --report")
-    parser.add_argument("--missing", type=Path, help="gets what would free the most nodes")
+    parser.add_argument("--missing", type=Path, help="write the missing features, most frequent first")
     parser.add_argument("--report", action="store_true", help=f"write the counts of --json into {DOCUMENT.name}")
     arguments = parser.parse_args()
     if arguments.report:

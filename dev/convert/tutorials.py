@@ -170,11 +170,13 @@ def fly(sources: Path, tree: Path, scratch: Path) -> list[Verdict]:
 
 
 def table(found: Sequence[Verdict]) -> str:
-    """Return the table for the document."""
+    """Return the table for the document: the nodes that do not fly on both."""
     both = sum(each.here == each.there == FLIES for each in found)
-    lines = [f"{both} of the {len(found)} nodes of {PACKAGE} fly on both:", ""]
+    lines = [f"{both} of the {len(found)} nodes of {PACKAGE} fly on both. The others:", ""]
     lines += ["| node | beside | cfepy | NASA's cFE 7.0.0 |", "|---|---|---|---|"]
     for each in found:
+        if each.here == each.there == FLIES:
+            continue
         beside = ", ".join(other for other in crew(each.name) if other != each.name)
         lines.append(f"| {each.name} | {beside} | {each.here} | {each.there} |")
     return "\n".join(lines)

@@ -35,7 +35,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m dev.costs", description=__doc__)
     parser.add_argument("paths", nargs="*", metavar="PATH", help="files or folders of tests in place of all of them")
     parser.add_argument("--slow", action="store_true", help="measure the slow tests, once, and write no table")
-    parser.add_argument("--most", type=int, default=40, metavar="N", help="how many of the dearest tests are told")
+    parser.add_argument(
+        "--most", type=int, default=40, metavar="N", help="how many of the most expensive tests to print"
+    )
     options = parser.parse_args()
     paths = [str(Path(path).resolve()) for path in options.paths]
     with tempfile.TemporaryDirectory() as folder:

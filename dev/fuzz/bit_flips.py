@@ -1,6 +1,6 @@
 """`python -m dev.fuzz.bit_flips FORMAT ... --count 10000 --seed N`: recordings with a bit that has flipped.
 
-Each is read and recovered as `cfepy bag recover` does it. Only cfepy's own error may result, and all messages that
+Each is read and recovered as `cfepy rosbag recover` does it. Only cfepy's own error may result, and all messages that
 end before the bit must be kept. In a compressed file, these are the messages of chunks that end before it.
 """
 

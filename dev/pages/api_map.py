@@ -32,6 +32,7 @@ LISTS = ROOT / "tests" / "data" / "api"
 MODULES = ("ES", "EVS", "SB", "TBL", "TIME", "FS", "MSG", "SBR", "ResourceId", "Config", "osal", "psp")
 TITLES = {"osal": "OSAL", "psp": "PSP"}
 NAME = re.compile(r"\b(?:CFE|OS)_\w+\*?")
+REASON = re.compile(r"\(\*([^*]+)\*\) \|$")
 NO_REASON = "not yet"
 NOT_OF_PYTHON = ("ROS", "Compiled applications")
 """Sections that say nothing of NASA's functions as Python calls them."""
@@ -118,7 +119,7 @@ def differences() -> list[Difference]:
         if line.startswith("## "):
             section = line.removeprefix("## ")
         elif line.startswith("|") and not section.startswith(NOT_OF_PYTHON) and (names := NAME.findall(line)):
-            found.append(Difference(section, tuple(names), line.strip("| ").rpartition("|")[2].strip()))
+            found.append(Difference(section, tuple(names), reason[1] if (reason := REASON.search(line)) else ""))
     return found
 
 

@@ -10,20 +10,17 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from types import MappingProxyType
 
-from cfepy.cli.main import parser_for
+from cfepy.cli.main import ALIASES, parser_for
+from cfepy.cli.parser import CommandParser, parsers_below
 
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "commands.md"
 WIDTH = 120
-OWN = ("positional arguments", "options")
-"""Groups of a parser that belong to one command; commands share all others."""
-
 HEAD = """\
 # Commands and options
 
 `python -m dev.pages.commands` writes this page from the parsers of the command line. `cfepy COMMAND --help`
-prints the same text.
+prints the same text, and `cfepy help flying` the options that commands share.
 
 `MISSION` is one of these:
 
@@ -50,18 +47,19 @@ These options, the mission and the board decide a run: the same values give the 
 that does not match the mission or never triggers, and a missing greenlet package.
 """
 SHARED = {
-    "what decides the run": ("What decides the run", "run"),
-    "the wall clock and this computer": ("The wall clock and this computer", "run"),
-    "ROS on this computer": ("ROS on this computer", "run"),
-    "programs that look at the run while it goes on": ("Programs that watch the run", "run"),
-    "what the run leaves behind": ("Output files", "run"),
-    "the journal of the run": ("The journal of the run", "run"),
+    "flight": "Flight options",
+    "real time": "Real time",
+    "ROS on this computer": "ROS on this computer",
+    "viewers": "Viewers",
+    "output": "Output",
+    "journal": "Journal",
+    "processes": "Processes",
 }
-"""The title on the page of each shared group, and a command whose parser has it."""
+"""The title on the page of each group that commands share."""
 MORE = {
-    "--for": "`rostest` does not take it, because its tests have time limits of their own. `param` runs the mission "
+    "--for": "`rostest` does not take it, because its tests have time limits of their own. `rosparam` runs the mission "
     "only with `--for` or `--script`.",
-    "--board": "`cfepy boards` lists the names; a file is [a profile](board_profiles.md).",
+    "--board": "`cfepy board list` lists the names; a file is [a profile](board_profiles.md).",
     "--tasks": "The trace does not depend on it. [Why there are two](../explanation/design.md#the-kernel).",
     "--schedule": "[How to explore schedules](../how_to/explore_schedules.md); `explore` chooses its own.",
     "--points": "[Between two calls](../how_to/explore_schedules.md#between-two-calls).",
@@ -84,65 +82,37 @@ MORE = {
     "--bag": "[Bags and topics](../how_to/bags_and_topics.md).",
 }
 """Sentences with links that the help of a shared option cannot have."""
-EXAMPLES = {
-    "run": "cfepy run capture --for 20",
-    "check": "cfepy check capture",
-    "new": "cfepy new app thermal",
-    "boards": "cfepy boards",
-    "board": "cfepy board report capture --board rx64m --for 5",
-    "launch": "cfepy launch my_package robot.launch rate:=20 --for 10",
-    "node": "cfepy node my_package talker.py _rate:=20",
-    "rostest": "cfepy rostest my_package talker.test",
-    "topic": "cfepy topic echo capture /hand_pose -n 3",
-    "service": "cfepy service call my_package robot.launch /reset --at 5",
-    "param": "cfepy param get capture /arm",
-    "bag": "cfepy bag info run.bag",
-    "rosbag": "cfepy rosbag info run.bag",
-    "rosmsg": "cfepy rosmsg show sensor_msgs/JointState",
-    "rossrv": "cfepy rossrv show std_srvs/SetBool",
-    "rosnode": "cfepy rosnode info capture /arm_control",
-    "tf": "cfepy tf frames robot.launch",
-    "explore": "cfepy explore capture --for 3 --seeds 200",
-    "faults": "cfepy faults capture --seed 3",
-    "sweep": "cfepy sweep capture --rate 10..1000 --board rx64m",
-    "replay": "cfepy replay run.cfepy --break /joint_states",
-    "diff": "cfepy diff good.cfepy bad.cfepy",
-    "trace": "cfepy trace run.cfepy --perfetto run.json",
-    "report": "cfepy report run.cfepy -o run.html",
-    "plot": "cfepy plot capture /joint_states.position /phase -o plot.png",
-    "cmd": "cfepy cmd lab CFE_ES_NOOP",
-    "tlm": "cfepy tlm lab CFE_ES_HK_TLM --for 6",
-    "console": "cfepy console lab",
-    "mids": "cfepy mids capture",
-    "graph": "cfepy graph capture --svg graph.svg",
-    "export": "cfepy export xtce lab -o lab.xml",
-    "convert": "cfepy convert check my_package",
-    "build": "cfepy build thermal",
-    "tbl": "cfepy tbl show hk_cpy_tbl.tbl --yaml hk_cpy_tbl.yaml",
-    "log": "cfepy log out/ram/cfe_evs.log",
-    "completion": "cfepy completion bash",
+OF_EXPLORE = {
+    "--seeds": "With `--budget` and without `--seeds` the number is not limited.",
+    "--policy": "`random` chooses at each decision, `pct` preempts at a few places, `abreast` runs tasks side by side, "
+    "and `all` takes these in turn. `dfs` runs every schedule with few preemptions, `orders` every order of dependent "
+    "steps once.",
+    "--depth": "For `pct` the depth of bugs, for `dfs` the most preemptions, for `orders` the most steps that differ.",
+    "--hold": "The running task may wait until the next timer, if that is due within this time.",
+    "--points": "[Between two calls](../how_to/explore_schedules.md#between-two-calls).",
+    "--worst": "Also `latency:/cause->/effect` and `age:/topic`.",
+    "--livelock": "Such an application neither sends nor receives a message although its tasks run.",
+    "--results": "The same command continues from the results in the file.",
+    "--replay-all": "It runs each failure again in the mission of today. MISSION is optional.",
+    "--shrink": "The default is the number of schedules, at least 300 and at most 800; 0 shrinks nothing.",
 }
-"""One example for each command."""
+"""The same for options of the command explore, whose help has a line for each."""
 GUIDES = {
     "run": "../tutorials/first_run.md",
     "check": "mission_file.md#checking-a-mission",
     "new": "../tutorials/write_an_app.md",
-    "boards": "board_profiles.md",
     "board": "board_profiles.md#does-it-fit",
     "launch": "../how_to/run_a_ros_node.md",
     "node": "../how_to/run_a_ros_node.md",
     "rostest": "../how_to/run_a_ros_node.md#cfepy-rostest",
-    "topic": "../how_to/bags_and_topics.md",
-    "service": "../how_to/bags_and_topics.md",
-    "param": "../how_to/tables_and_parameters.md#cfepy-param",
-    "bag": "../how_to/bags_and_topics.md#cfepy-bag",
+    "rostopic": "../how_to/bags_and_topics.md",
+    "rosservice": "../how_to/bags_and_topics.md",
+    "rosparam": "../how_to/tables_and_parameters.md#cfepy-rosparam",
     "rosbag": "../how_to/bags_and_topics.md",
     "rosmsg": "../how_to/bags_and_topics.md",
-    "rossrv": "../how_to/bags_and_topics.md",
     "rosnode": "../how_to/bags_and_topics.md#nodes",
     "tf": "../how_to/bags_and_topics.md",
     "explore": "../how_to/explore_schedules.md",
-    "faults": "../how_to/faults.md",
     "sweep": "../how_to/sweep.md",
     "replay": "../how_to/replay.md",
     "diff": "../how_to/replay.md",
@@ -152,14 +122,12 @@ GUIDES = {
     "cmd": "../how_to/ground_tools.md",
     "tlm": "../how_to/ground_tools.md",
     "console": "../how_to/ground_tools.md#console-all-of-it-at-once",
-    "mids": "../how_to/ground_tools.md",
     "graph": "../how_to/ground_tools.md#the-graph",
     "export": "../how_to/ground_tools.md#export-xtce-for-other-ground-systems",
     "convert": "../how_to/convertor.md",
     "build": "../how_to/c_apps.md#building",
     "tbl": "../how_to/tables_and_parameters.md",
     "log": "../how_to/tables_and_parameters.md#files-that-cfe-writes",
-    "completion": "../how_to/install.md",
 }
 """The page that shows how to use each command."""
 
@@ -168,26 +136,34 @@ def page() -> str:
     """Return the page."""
     root = parser_for([])
     commands = _below(root)
+    shared: dict[str, argparse._ArgumentGroup] = {}
+    for parser in parsers_below(root):
+        for group in parser.shared:
+            shared.setdefault(group.title or "", group)
     parts = [HEAD]
-    for group, (title, command) in SHARED.items():
+    for name, title in SHARED.items():
         parts.append(f"### {title}\n")
-        if title == "What decides the run":
+        if name == "flight":
             parts.append(DECIDES)
-        parts.append(_options(_groups(commands[command])[group], MORE))
+        parts.append(_options(shared[name]._group_actions, MORE))
     for title, names in root._groups.items():  # type: ignore[attr-defined]
         parts.append(f"## {title}\n")
         for name in names:
-            if name in EXAMPLES:  # commands of add-ons in other packages are not on the page
+            if name in GUIDES:  # commands of add-ons in other packages are not on the page
                 parts += _command(name, commands[name], _short_help(root, name))
     return "\n".join(parts).rstrip() + "\n"
 
 
-def _command(name: str, parser: argparse.ArgumentParser, short: str) -> Iterator[str]:
+def _command(name: str, parser: CommandParser, short: str) -> Iterator[str]:
     yield f"### `cfepy {name}`\n"
+    aliases = [alias for alias, command in ALIASES.items() if command == name]
     yield _filled(parser.description or f"{short[0].upper()}{short[1:]}.")
     if not _below(parser):
         yield f"Usage: {_usage(parser)}.\n"
-    yield f"Example: `{EXAMPLES[name]}`. Guide: [{Path(GUIDES[name].partition('#')[0]).stem}]({GUIDES[name]}).\n"
+    if aliases:
+        yield f"Other name: {', '.join(f'`cfepy {alias}`' for alias in aliases)}.\n"
+    examples = _listed([f"`{each}`" for each in parser.examples])
+    yield f"Examples: {examples}. Guide: [{Path(GUIDES[name].partition('#')[0]).stem}]({GUIDES[name]}).\n"
     actions = _below(parser)
     if actions:
         yield _table(
@@ -196,20 +172,20 @@ def _command(name: str, parser: argparse.ArgumentParser, short: str) -> Iterator
         )
         shared = sorted({title for below in actions.values() for title in _shared(below)})
     else:
-        groups = _groups(parser)
-        listed = [action for title in OWN for action in groups.get(title, ()) if _is_shown(action)]
+        own = [group for group in parser._action_groups if group not in parser.shared]
+        listed = [action for group in own for action in group._group_actions if _is_shown(action)]
         if listed:
-            yield _options(listed)
+            yield _options(listed, OF_EXPLORE if name == "explore" else {})
         shared = _shared(parser)
     if shared:
-        links = [f"[{title.lower().replace('ros', 'ROS')}](#{title.lower().replace(' ', '-')})" for title in shared]
-        yield _filled(f"It also takes the options of {_listed(links)}.")
+        links = [f"[{title}](#{title.lower().replace(' ', '-')})" for title in shared]
+        yield _filled(f"More options: {_listed(links)}.")
     if parser.epilog and "exit status" in parser.epilog:
         text = parser.epilog.strip()
         yield f"```text\n{text}\n```\n" if "\n" in text else _filled(f"{text[0].upper()}{text[1:]}.")
 
 
-def _below(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
+def _below(parser: argparse.ArgumentParser) -> dict[str, CommandParser]:
     """Return the parsers of the commands below this one, by name."""
     found = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     return {name: below for action in found for name, below in action.choices.items()}
@@ -221,26 +197,28 @@ def _short_help(parser: argparse.ArgumentParser, name: str) -> str:
     return next((each.help or "" for each in found._choices_actions if each.dest == name), "")
 
 
-def _groups(parser: argparse.ArgumentParser) -> dict[str, list[argparse.Action]]:
-    return {group.title or "": group._group_actions for group in parser._action_groups if group._group_actions}
-
-
-def _shared(parser: argparse.ArgumentParser) -> list[str]:
+def _shared(parser: CommandParser) -> list[str]:
     """Return the titles of the shared groups of a parser."""
-    return [SHARED[title][0] for title in _groups(parser) if title in SHARED]
+    return [SHARED[group.title or ""] for group in parser.shared]
 
 
 def _is_shown(action: argparse.Action) -> bool:
     return action.help is not argparse.SUPPRESS and "--help" not in action.option_strings
 
 
-def _own_options(parser: argparse.ArgumentParser) -> str:
+def _own_options(parser: CommandParser) -> str:
     """Return the options of an action of a command as text for a cell of a table."""
-    options = [each for each in _groups(parser).get("options", ()) if _is_shown(each)]
+    options = [
+        each
+        for group in parser._action_groups
+        if group not in parser.shared
+        for each in group._group_actions
+        if each.option_strings and _is_shown(each)
+    ]
     return "".join(f"; {_words(each)}: {_help(each)}" for each in options)
 
 
-def _options(actions: Sequence[argparse.Action], more: Mapping[str, str] = MappingProxyType({})) -> str:
+def _options(actions: Sequence[argparse.Action], more: Mapping[str, str]) -> str:
     """Return a table of options and arguments, with more sentences about some."""
     rows = []
     for action in actions:

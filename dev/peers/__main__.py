@@ -40,7 +40,7 @@ def _parser() -> argparse.ArgumentParser:
         sub.add_argument("names", nargs="*", metavar="NAME", help="test files, or how their names begin; else all")
         sub.add_argument("--sources", type=Path, default=os.environ.get(ENVIRONMENT), help=f"default: ${ENVIRONMENT}")
         sub.add_argument("--jobs", type=int, default=1, help="how many at a time")
-        sub.add_argument("--verbose", action="store_true", help="show what failing tests say")
+        sub.add_argument("--verbose", action="store_true", help="show the output of failing tests")
         sub.set_defaults(action=action)
     return parser
 

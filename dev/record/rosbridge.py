@@ -47,6 +47,6 @@ def _answers(client: ClientConnection) -> list[Any]:
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="python -m dev.record.rosbridge", description=__doc__)
     parser.add_argument("port", metavar="PORT", help="of rosbridge_websocket on this computer")
-    parser.add_argument("file", metavar="FILE", help="for what it answers")
+    parser.add_argument("file", metavar="FILE", help="file for its answers")
     arguments = parser.parse_args()
     main(arguments.port, arguments.file)

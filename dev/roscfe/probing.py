@@ -156,7 +156,7 @@ def main() -> None:
     """Compare probes, or record them."""
     parser = argparse.ArgumentParser(prog="python -m dev.roscfe.probing", description=__doc__)
     parser.add_argument("names", nargs="*", default=NAMES, metavar="NAME")
-    parser.add_argument("--record", action="store_true", help="keep what roscpp's printed")
+    parser.add_argument("--record", action="store_true", help="keep the output of roscpp's programs")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as scratch, master(Path(scratch)) as environ:
         for name in arguments.names:

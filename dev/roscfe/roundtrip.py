@@ -200,7 +200,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--messages", type=int, default=200, metavar="N", help="of each type (default: 200)")
     parser.add_argument("--types", type=int, metavar="N", help="so many types, from the whole list (default: all)")
     parser.add_argument("--profile", nargs="+", choices=["host", "strict"], default=["host", "strict"])
-    parser.add_argument("--target", choices=list(TARGETS), default="here", help="what the programs are compiled for")
+    parser.add_argument("--target", choices=list(TARGETS), default="here", help="target of the programs")
     parser.add_argument("--genpy", action="store_true", help="let real genpy read and write the same messages")
     given = parser.parse_args(arguments)
     every = all_types()

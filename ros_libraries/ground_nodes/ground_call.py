@@ -1,4 +1,4 @@
-"""The node behind `cfepy service call`: calls a service once, and prints the result as a line of JSON.
+"""The node behind `cfepy rosservice call`: calls a service once, and prints the result as a line of JSON.
 
 Its argument is a JSON list: the service, the request as YAML values, and the virtual second of the call, or null.
 It is executed in a node's universe, with the node's own rospy.

@@ -1,4 +1,4 @@
-"""The node behind `cfepy topic pub`: publishes a message once, latched, or at a rate.
+"""The node behind `cfepy rostopic pub`: publishes a message once, latched, or at a rate.
 
 Its argument is a JSON list: topic, type, the message as YAML values, the rate in Hz or null, and the virtual second at
 which to begin, or null. It is executed in a node's universe, with the node's own rospy.

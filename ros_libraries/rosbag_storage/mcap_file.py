@@ -147,7 +147,7 @@ class McapFile(BagFile):
     # -- operations that an MCAP file does not support ---------------------------------------------------------------
 
     def reindex(self) -> Iterator[int]:
-        """Refuse: an MCAP file needs no index, see `cfepy bag recover`."""
+        """Refuse: an MCAP file needs no index, see `cfepy rosbag recover`."""
         _only_read()
 
     def create(self) -> None:
@@ -182,7 +182,7 @@ def _within(data: bytes, place: int) -> Iterator[tuple[int, int, mcap.Body]]:
 
 
 def _only_read() -> NoReturn:
-    raise ROSBagException("MCAP files are only read here; cfepy bag convert writes them")
+    raise ROSBagException("MCAP files are only read here; cfepy rosbag convert writes them")
 
 
 def opened(file: BinaryIO) -> BagFile:

@@ -56,7 +56,7 @@ class MsgIds:
         if holder == name or self._config.spread:
             return self.claim(name)
         raise UsageError(
-            f"{holder} and {name} have the same MsgId 0x{msg_id:04X}; run `cfepy mids --lock MISSION` to "
+            f"{holder} and {name} have the same MsgId 0x{msg_id:04X}; run `cfepy graph --lock MISSION` to "
             f'give each topic its own MsgId, or write in mission.yaml: "{name}: {{msg_id: '
             f'0x{next_free(msg_id, self._names):04X}}}"',
             field="topics",

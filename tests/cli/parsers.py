@@ -11,11 +11,11 @@ from cfepy.cli.main import parser_for
 
 def parsers() -> dict[str, argparse.ArgumentParser]:
     """Return the parsers that have no subcommands, such as `run` and `topic echo`."""
-    return dict(_leaves("", _whole()))
+    return dict(_leaves("", whole()))
 
 
 @functools.cache
-def _whole() -> argparse.ArgumentParser:
+def whole() -> argparse.ArgumentParser:
     """Return the parser of all commands, which takes a tenth of a second to make."""
     return parser_for([])
 

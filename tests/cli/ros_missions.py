@@ -1,4 +1,4 @@
-"""A small robot for the tests of `cfepy topic` and `cfepy service`."""
+"""A small robot for the tests of `cfepy rostopic` and `cfepy rosservice`."""
 
 from __future__ import annotations
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.cli.main import ROOMS, main, parser_for
-from cfepy.cli.shell.completion import complete
+from cfepy.cli.main import ALIASES, ROOMS, main, parser_for
+from cfepy.cli.shell_completion import complete
 from cfepy.plugins import OWN
 from tests.cli.parsers import options, parsers
 from tests.cli.ros_packages import Launch, demo, write_launch
@@ -34,7 +34,11 @@ def told(line: str, monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 
 def test_all_commands(monkeypatch: pytest.MonkeyPatch) -> None:
-    own = {name for names in ROOMS.values() for name in names} | {name for each in OWN for name in each.commands}
+    own = (
+        {name for names in ROOMS.values() for name in names}
+        | {name for each in OWN for name in each.commands}
+        | {*ALIASES}
+    )
     assert set(told("cfepy ", monkeypatch)) == own
 
 
@@ -50,7 +54,7 @@ def test_every_option_of_every_command(monkeypatch: pytest.MonkeyPatch) -> None:
     ("line", "expected"),
     [
         ("cfepy run capt", {"capture"}),
-        ("cfepy topic echo --for 2 capt", {"capture"}),
+        ("cfepy rostopic echo --for 2 capt", {"capture"}),
         ("cfepy tbl show --mission capt", {"capture"}),
         ("cfepy run lab --board rx", {"rx64m"}),
         ("cfepy run lab --tasks ", {"auto", "thread", "greenlet"}),
@@ -59,7 +63,7 @@ def test_every_option_of_every_command(monkeypatch: pytest.MonkeyPatch) -> None:
         ("cfepy cmd lab CFE_ES_RESTART Re", {"RestartType="}),
         ("cfepy tlm lab CFE_ES_H", {"CFE_ES_HK_TLM"}),
         ("cfepy cmd --show CFE_ES_NO", {"CFE_ES_NOOP"}),
-        ("cfepy completion ", {"bash", "zsh", "fish"}),
+        ("cfepy --completion ", {"bash", "zsh", "fish"}),
         ("cfepy run dem", {"demo/"}),
         ("cfepy run demo/rob", {"demo/robot.launch"}),
         ("cfepy run demo rob", {"robot.launch"}),
@@ -75,9 +79,9 @@ def test_names(
 
 
 SHELLS = {
-    "bash": 'eval "$(cfepy completion bash)"; COMP_LINE="cfepy run capt"; COMP_POINT=14; COMP_CWORD=2; COMP_TYPE=9; '
+    "bash": 'eval "$(cfepy --completion bash)"; COMP_LINE="cfepy run capt"; COMP_POINT=14; COMP_CWORD=2; COMP_TYPE=9; '
     "COMP_WORDS=(cfepy run capt); _python_argcomplete cfepy capt run; echo ${COMPREPLY[0]}",
-    "fish": "cfepy completion fish | source; complete -C 'cfepy run capt'",
+    "fish": "cfepy --completion fish | source; complete -C 'cfepy run capt'",
 }
 
 
@@ -96,5 +100,5 @@ def test_a_shell_asks(shell: str, tmp_path: Path) -> None:
 
 def test_without_the_library(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setitem(sys.modules, "argcomplete.shell_integration", None)
-    assert main(["completion", "bash"]) == 2
+    assert main(["--completion", "bash"]) == 2
     assert "pip install 'cfepy[completion]'" in capsys.readouterr().err

@@ -51,16 +51,17 @@ def ended(words: Sequence[str], when: str = "", before: str = "", after: str = "
 
 
 @pytest.mark.parametrize(
-    "when", ["cfepy.interpreter.faces", "cfepy.cli", "cfepy.cli.options", "cfepy.cli.board", "cfepy.cli.board.boards"]
+    "when",
+    ["cfepy.interpreter.faces", "cfepy.cli", "cfepy.cli.options", "cfepy.cli.board", "cfepy.cli.board.board_list"],
 )
 def test_ctrl_c_during_the_first_imports_ends_it_without_a_traceback(when: str) -> None:
-    done = ended(["boards"], when)
+    done = ended(["board", "list"], when)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
 
 
 def test_ctrl_c_while_a_command_imports_more_ends_it_without_a_traceback() -> None:
-    body = "from cfepy.cli.board import boards; boards.run = lambda chosen: __import__('wave')"
-    done = ended(["boards"], "wave", after=body)
+    body = "from cfepy.cli.board import board_list; board_list.run = lambda chosen: __import__('wave')"
+    done = ended(["board", "list"], "wave", after=body)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
 
 
@@ -72,7 +73,7 @@ def test_ctrl_c_in_its_last_steps_ends_it_without_a_traceback() -> None:
 
 def test_ctrl_c_that_comes_up_in_a_finalizer_is_not_lost() -> None:
     body = """
-from cfepy.cli.board import boards
+from cfepy.cli.board import board_list
 
 class Dying:
     def __del__(self):
@@ -84,16 +85,16 @@ def run(chosen):
     time.sleep(60)
     return 0
 
-boards.run = run
+board_list.run = run
 """
-    done = ended(["boards"], after=body)
+    done = ended(["board", "list"], after=body)
     assert (done.returncode, done.stderr) == (130, "")
 
 
 def test_a_traceback_has_no_control_characters() -> None:
-    body = "from cfepy.cli.board import boards\n"
-    body += "def run(chosen): raise RuntimeError(chr(27) + ']0;title')\nboards.run = run"
-    done = ended(["boards"], after=body)
+    body = "from cfepy.cli.board import board_list\n"
+    body += "def run(chosen): raise RuntimeError(chr(27) + ']0;title')\nboard_list.run = run"
+    done = ended(["board", "list"], after=body)
     assert done.returncode == 1
     assert r"RuntimeError: \x1b]0;title" in done.stderr
 
@@ -130,7 +131,7 @@ def test_the_command_is_known_by_its_name(
 def test_main_puts_the_answers_to_signals_back() -> None:
     signals = signal.SIGINT, signal.SIGTERM, signal.SIGHUP
     before = [signal.getsignal(each) for each in signals]
-    main(["boards"])
+    main(["board", "list"])
     assert [signal.getsignal(each) for each in signals] == before
 
 

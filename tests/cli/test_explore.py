@@ -181,11 +181,11 @@ def test_a_task_that_waits_for_ever_may_be_let(tmp_path: Path, capsys: pytest.Ca
 
 def test_a_node_is_explored_by_itself(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "lone.py").write_text("import sys\nraise ValueError(sys.argv[1])\n", encoding="utf-8")
-    words = (tmp_path / "lone.py", "today", "--for", 0.2, "--seeds", 1, "--jobs", 1)
+    words = (tmp_path / "lone.py", "today", "--for", 0.7, "--seeds", 1, "--jobs", 1)
     assert explore(*words, "--until-failure") == FOUND_PROBLEMS
     out = capsys.readouterr().out
     assert "ValueError: today (lone.py:2)" in out
-    assert f"replay: cfepy node --for 0.2 --tasks greenlet {tmp_path / 'lone.py'} today" in out
+    assert f"replay: cfepy node --for 0.7 --tasks greenlet {tmp_path / 'lone.py'} today" in out
 
 
 @pytest.mark.parametrize(

@@ -53,7 +53,7 @@ def test_without_memory_the_input_is_named(
     assert f"out of memory in `cfepy tbl show {TABLE}`" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("words", [["boards"], ["tbl", "show", TABLE, "--json", "-"]], ids=("text", "json"))
+@pytest.mark.parametrize("words", [["board", "list"], ["tbl", "show", TABLE, "--json", "-"]], ids=("text", "json"))
 def test_a_full_standard_output_is_named(words: list[str]) -> None:
     command = [sys.executable, "-m", "cfepy", *words]
     with FULL.open("w", encoding="utf-8") as full:

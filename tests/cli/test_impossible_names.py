@@ -44,7 +44,7 @@ def test_a_launch_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
         ["node", LONG],
         ["node", "rospy", LONG],
         ["rostest", LONG],
-        ["param", "dump", LONG],
+        ["rosparam", "dump", LONG],
         ["export", "xtce", LONG],
         ["replay", LONG],
     ],

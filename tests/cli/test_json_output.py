@@ -13,26 +13,35 @@ from tests.cli.parsers import options, parsers
 
 DATA = Path(__file__).parents[1] / "data"
 LAB = ["lab", "--for", "0.7"]
-LINES = ("tlm", "topic echo")  # an object a line
+LINES = ("tlm", "rostopic echo")  # an object a line
 COMMANDS: dict[str, list[str]] = {
     "run": ["run", *LAB],
     "sweep": ["sweep", *LAB, "--quiet", "--jobs", "1"],
     "board report": ["board", "report", *LAB],
     "explore": ["explore", *LAB, "--seeds", "1", "--jobs", "1", "--no-stuck"],
-    "mids": ["mids", *LAB],
+    "graph --mids": ["graph", "--mids", *LAB],
     "check": ["check", "lab"],
     "convert": ["convert", "{ping}/launch/ping.launch", "--no-check", "-o", "{made}"],
     "graph": ["graph", *LAB],
     "tlm": ["tlm", *LAB],
     "log": ["log", "{data}/cfe_evs.log"],
     "tbl show": ["tbl", "show", "{data}/sample_app_tbl.tbl"],
-    "bag info": ["bag", "info", "{data}/bags/golden_api_bz2.bag"],
-    "bag recover": ["bag", "recover", "{data}/bags/golden_api_bz2.bag", "-o", "{made}.bag"],
-    "bag convert": ["bag", "convert", "{data}/bags/golden_api_bz2.bag", "-o", "{made}.mcap"],
-    "topic list": ["topic", "list", *LAB],
-    "service list": ["service", "list", *LAB],
+    "board list": ["board", "list"],
+    "rosbag verify": ["rosbag", "verify", "{data}/bags/golden_api_bz2.bag"],
+    "rosbag recover": ["rosbag", "recover", "{data}/bags/golden_api_bz2.bag", "-o", "{made}.bag"],
+    "rosbag convert": ["rosbag", "convert", "{data}/bags/golden_api_bz2.bag", "-o", "{made}.mcap"],
+    "rostopic list": ["rostopic", "list", *LAB],
+    "rosservice list": ["rosservice", "list", *LAB],
 }
-FLOWN_ALIKE = ("launch", "node", "replay", "topic ", "service ")  # for nodes; they print and write as those above
+FLOWN_ALIKE = (
+    "launch",
+    "roslaunch",
+    "node",
+    "rosrun",
+    "replay",
+    "rostopic ",
+    "rosservice ",
+)  # for nodes; they print and write as those above
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -44,7 +53,7 @@ def test_nothing_else_is_on_standard_output(command: str, tmp_path: Path, capsys
         json.loads(text)
 
 
-@pytest.mark.parametrize("command", ["tlm", "log", "mids"])
+@pytest.mark.parametrize("command", ["tlm", "log", "graph --mids"])
 def test_with_a_file_the_text_is_shown_as_well(
     command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

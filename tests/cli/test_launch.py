@@ -117,7 +117,7 @@ def test_what_is_shown(write_launch: Launch, capsys: pytest.CaptureFixture[str])
     )
     listener = '<node pkg="demo" type="listener.py" name="listener"/>'
     file = write_launch(f"{TALKER.format('', COUNT.format(5))}{respawned}{listener}")
-    assert main(["launch", file, "--for", "2"]) == 0
+    assert main(["launch", file, "--for", "2.55"]) == 0
     shown = capsys.readouterr().out
     assert shown.startswith("[talker] argv ")
     assert "CFE_" not in shown
@@ -129,18 +129,24 @@ def test_what_is_shown(write_launch: Launch, capsys: pytest.CaptureFixture[str])
     assert ["/b/late", "running", "5"] in tables
     assert not any(row[:1] == ["/rosout"] for row in tables)
     assert "2.550 virtual s" in shown
-    assert main(["launch", file, "--for", "2", "--console"]) == 0
+    assert main(["launch", file, "--for", "2.55", "--console"]) == 0
     whole = capsys.readouterr().out
     assert whole.startswith("CFE_PSP: ")
     assert "\nApplications\n" in whole
     assert whole.splitlines()[-1] == shown.splitlines()[-1]
 
 
-def test_even_a_short_run_is_one_of_the_nodes(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["launch", write_launch(TALKER.format("", "")), "--for", "0.3"]) == 0
-    shown = capsys.readouterr()
-    assert shown.out.startswith("[talker] argv ")
-    assert shown.err == ""
+def test_time_of_a_run_counts_from_the_boot(
+    write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mission, node = write_launch(TALKER.format("", "")), str(demo / "scripts/talker.py")
+    for words in (["launch", mission], ["run", mission, "--quiet"]):
+        assert main([*words, "--for", "0.9"]) == 0
+        assert "\n0.900 virtual s in " in capsys.readouterr().out
+        assert main([*words, "--for", "0.3"]) == 2
+        assert "not OPERATIONAL after 0.3 virtual seconds" in capsys.readouterr().err
+    assert main(["node", node, "--for", "0.3"]) == 2
+    assert "the node has not started after 0.3 virtual seconds; --for runs longer" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -156,7 +162,7 @@ def test_what_is_no_mission(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], file: str, text: str, said: str
 ) -> None:
     (tmp_path / file).write_text(text, encoding="utf-8")
-    for command in ("export xtce",) if "program" in said else ("run", "check", "mids"):
+    for command in ("export xtce",) if "program" in said else ("run", "check", "graph"):
         assert main([*command.split(), str(tmp_path / file)]) == 2
         assert said in capsys.readouterr().err
 
@@ -164,9 +170,22 @@ def test_what_is_no_mission(
 def test_hints_at_what_was_meant(write_launch: Launch, demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", write_launch(TALKER.format("", "")), "n=3"]) == 2
     assert "invalid argument 'n=3'; expected NAME:=VALUE" in capsys.readouterr().err
+
+
+def test_a_node_gets_the_options_that_the_command_lacks(demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    script = str(demo / "scripts/talker.py")
+    for words in ("--xyzzy 3 -v", "--for 2 --xyzzy 3 --seed 7 -v", "_count:=1 --xyzzy 3 -v --stall=5"):
+        assert main(["node", script, *words.split()]) == 0
+        assert "'--xyzzy', '3', '-v'] cwd " in capsys.readouterr().out, words
+
+
+def test_an_option_that_is_almost_one_of_the_command_is_reported(
+    demo: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["node", str(demo / "scripts/talker.py"), "_count:=1", "--sed", "7"]) == 0
+    assert "cfepy: --sed is passed to the node; did you mean --seed?" in capsys.readouterr().err
     with pytest.raises(SystemExit):
-        main(["node", str(demo / "scripts/talker.py"), "--xyzzy"])
-    assert "unrecognized arguments: --xyzzy; put the options of the node itself after --" in capsys.readouterr().err
+        main(["run", "lab", "--sed", "7"])
 
 
 @pytest.mark.slow
@@ -178,19 +197,19 @@ def test_a_launch_file_where_a_mission_is_meant(write_launch: Launch, capsys: py
     assert capsys.readouterr().out.splitlines()[-1] == digest
     assert main(["run", file, "--board", "rx64m", "--quiet"]) == 0
     capsys.readouterr()
-    assert main(["param", "get", file, "/talker/count"]) == 0
+    assert main(["rosparam", "get", file, "/talker/count"]) == 0
     assert capsys.readouterr().out == "3\n"
-    assert main(["mids", file]) == 0
+    assert main(["graph", "--mids", file]) == 0
     assert ["/chatter", "std_msgs/String", "/talker", "-"] in [
         row.split()[1:] for row in capsys.readouterr().out.splitlines()
     ]
-    assert main(["mids", file, "--lock"]) == 2
+    assert main(["graph", "--mids", file, "--lock"]) == 2
     assert "cannot have a topics.lock" in capsys.readouterr().err
     assert main(["check", file]) == 0
     with_argument = write_launch(f'<arg name="n"/>{TALKER.format("", COUNT.format("$(arg n)"))}')
     capsys.readouterr()
-    assert main(["param", "get", with_argument, "/talker/count", "--arg", "n:=7"]) == 0
-    assert main(["topic", "echo", with_argument, "/chatter", "--arg", "n:=2"]) == 0
+    assert main(["rosparam", "get", with_argument, "/talker/count", "--arg", "n:=7"]) == 0
+    assert main(["rostopic", "echo", with_argument, "/chatter", "--arg", "n:=2"]) == 0
     assert main(["run", with_argument, "--arg", "n:=1", "--quiet", "--check-determinism", "2"]) == 0
     assert capsys.readouterr().out.startswith('7\ndata: "hello 0"\n---\ndata: "hello 1"\n---\n2 runs: ')
     assert main(["check", with_argument]) == 1

@@ -84,6 +84,7 @@ def test_names_of_cfe_cannot_be_used(name: str, capsys: pytest.CaptureFixture[st
 
 
 def test_only_applications_are_in_c(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["new", "mission", "orbit", "--c"]) == 2
-    assert "--c: only valid for an application" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["new", "mission", "orbit", "--c"])
+    assert "unrecognized arguments: --c; only applications can be in C" in capsys.readouterr().err
     assert list(Path().iterdir()) == []

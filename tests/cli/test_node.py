@@ -73,6 +73,6 @@ def test_where_the_master_serves_is_told_once(
         '<launch><node pkg="demo" type="talker.py" name="talker"/></launch>', encoding="utf-8"
     )
     what = tmp_path / ("nodes.launch" if words == ["launch"] else "node.py")
-    assert main([*words, str(what), "--for", "0.1", "--realtime", "1000", "--ros-master", "serve:0"]) == 0
+    assert main([*words, str(what), "--for", "0.7", "--realtime", "1000", "--ros-master", "serve:0"]) == 0
     shown = capsys.readouterr()
     assert (shown.out + shown.err).count("ROS master at http://127.0.0.1:") == 1

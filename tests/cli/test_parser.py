@@ -56,9 +56,10 @@ def test_every_help_fits_a_narrow_terminal(monkeypatch: pytest.MonkeyPatch) -> N
     ("words", "hint"),
     [
         ("rnu lab", "argument COMMAND: invalid choice: 'rnu'; did you mean run?"),
-        ("rostopic list lab", "argument COMMAND: invalid choice: 'rostopic'; did you mean topic?"),
-        ("rosrun demo talker.py", "argument COMMAND: invalid choice: 'rosrun'; did you mean node?"),
-        ("topic ecko lab /x", "argument ACTION: invalid choice: 'ecko'; did you mean echo?"),
+        ("topic list lab", "argument COMMAND: invalid choice: 'topic'; did you mean rostopic?"),
+        ("boards", "argument COMMAND: invalid choice: 'boards'; did you mean board list?"),
+        ("rqt_graph", "argument COMMAND: invalid choice: 'rqt_graph'; did you mean graph?"),
+        ("rostopic ecko lab /x", "argument ACTION: invalid choice: 'ecko'; did you mean echo?"),
         ("run lab --sed 7", "unrecognized arguments: --sed 7; did you mean --seed?"),
         ("run lab --tasks greenlt", "argument --tasks: invalid choice: 'greenlt'; did you mean greenlet?"),
         ("run captrue", "or a shipped mission; did you mean capture?"),
@@ -70,11 +71,11 @@ def test_every_help_fits_a_narrow_terminal(monkeypatch: pytest.MonkeyPatch) -> N
         ("node demo talkr.py", "did you mean talker.py?"),
         ("launch demo robot.launch cuont:=4", "did you mean count?"),
         ("run demo robot.launch --arg cuont:=4", "did you mean count?"),
-        ("topic echo demo robot.launch /chater", "did you mean /chatter?"),
-        ("topic hz demo robot.launch /chater", "did you mean /chatter?"),
-        ("topic info demo robot.launch /chater", "did you mean /chatter?"),
-        ("service info demo robot.launch /talker/get_logers --arg count:=999", "did you mean /talker/get_loggers?"),
-        ("param get demo robot.launch /talker/cuont", "did you mean /talker/count?"),
+        ("rostopic echo demo robot.launch /chater", "did you mean /chatter?"),
+        ("rostopic hz demo robot.launch /chater", "did you mean /chatter?"),
+        ("rostopic info demo robot.launch /chater", "did you mean /chatter?"),
+        ("rosservice info demo robot.launch /talker/get_logers --arg count:=999", "did you mean /talker/get_loggers?"),
+        ("rosparam get demo robot.launch /talker/cuont", "did you mean /talker/count?"),
         ("cmd lab CFE_ES_NOP", "did you mean CFE_ES_NOOP"),
         ("tlm lab CFE_ES_HK_TML", "did you mean CFE_ES_HK_TLM"),
         ("run lab --board linxu", "did you mean linux?"),
@@ -112,7 +113,7 @@ def test_launch_files_are_known_by_the_same_names() -> None:
         ("check demo --board b robot.launch", None),  # not side by side
         ("run --board demo robot.launch", {"board": "demo", "mission": "robot.launch"}),
         ("run --quiet demo robot.launch", {"quiet": True, "mission": "demo robot.launch"}),
-        ("topic echo demo robot.launch /odom -n 1", {"source": "demo robot.launch", "topic": "/odom"}),
+        ("rostopic echo demo robot.launch /odom -n 1", {"source": "demo robot.launch", "topic": "/odom"}),
         ("cmd demo robot.launch CFE_ES_NOOP", {"target": "demo robot.launch", "name": "CFE_ES_NOOP"}),
         ("tlm --mission demo robot.launch CFE_ES_HK_TLM", {"mission": "demo robot.launch", "words": ["CFE_ES_HK_TLM"]}),
         ("explore talker.py x.launch", {"mission": "talker.py", "node_args": ["x.launch"]}),
@@ -133,8 +134,16 @@ def test_a_package_and_a_file_are_one_mission(words: str, expected: dict[str, ob
 @pytest.mark.parametrize(
     "words",
     [
-        *(["run"], ["mids"], ["check"], ["trace"], ["param", "list"], ["topic", "list"], ["rosnode", "list"]),
-        *(["faults"], ["export", "xtce"], ["launch"], ["launch", "--nodes"], ["report", "-o", "/dev/null"]),
+        *(
+            ["run"],
+            ["graph", "--mids"],
+            ["check"],
+            ["trace"],
+            ["rosparam", "list"],
+            ["rostopic", "list"],
+            ["rosnode", "list"],
+        ),
+        *(["new", "faults"], ["export", "xtce"], ["launch"], ["launch", "--nodes"], ["report", "-o", "/dev/null"]),
     ],
 )
 def test_every_command_takes_a_package_and_a_file(
@@ -151,5 +160,5 @@ def test_every_command_takes_a_package_and_a_file(
 
 
 def test_a_node_is_flown_where_a_mission_is(demo: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["mids", str(demo / "scripts/talker.py"), "--for", "1"]) == 0
+    assert main(["graph", "--mids", str(demo / "scripts/talker.py"), "--for", "1"]) == 0
     assert "/chatter" in capsys.readouterr().out

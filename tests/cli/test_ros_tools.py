@@ -105,7 +105,7 @@ def test_filter_and_compress_write_bags(tmp_path: Path, capsys: Capture) -> None
     [
         (["record"], "cfepy: rosbag record: `cfepy run MISSION --bag FILE` records"),
         (["play", "x.bag"], "cfepy: rosbag play: `cfepy run MISSION --play FILE` plays"),
-        (["fix", "a.bag", "b.bag"], "cfepy: rosbag fix: there are no migration rules"),
+        (["fix", "a.bag", "b.bag"], "cfepy: rosbag fix: cfepy has no migration rules"),
     ],
 )
 def test_what_other_commands_do_is_told(words: list[str], hint: str, capsys: Capture) -> None:

@@ -15,61 +15,60 @@ import pytest
 from tests.cli.parsers import options, parsers
 
 MEANINGS: dict[str, tuple[str | None, str]] = {
-    "--arg": ("NAME:=VALUE", "an argument of the launch file"),
-    "--at": ("SECONDS", "virtual time of the run"),
+    "--arg": ("NAME:=VALUE", "set an argument of the launch file"),
+    "--at": ("SECONDS", "virtual time of the (run|action)"),
     "--bag": ("FILE", "record the ROS topics of the run into a bag"),
     "--bag-topics": ("TOPIC", "record only these"),
-    "--board": ("NAME|FILE", "board instead of the mission's own"),
+    "--board": ("NAME|FILE", "(this board instead of the mission's own|boards, with commas between)"),
     "--cluster": ("ADDRESS", "dask cluster"),
-    "--compression": (None, "of the chunks"),
     "--console": (None, "show the flight computer's console"),
     "-n --count": ("N", "end after so many"),
-    "--cpp-nodes": ("PROFILE|MISSION", "section cpp_nodes of this mission's file"),
+    "--cpp-nodes": ("PROFILE|MISSION", "section cpp_nodes of"),
     "--dot": ("FILE|-", "for graphviz"),
     "--enable": ("HOST[:PORT]", "ask TO_LAB there to begin to send"),
     "--faults": ("FILE|seed:N", "fault"),
     "--for": ("SECONDS", "seconds"),
-    "--from": ("SECONDS", "begin at this virtual time"),
-    "--from-disk": (None, "take the mission's files as they are on this computer now"),
-    "--guard": (None, "let compiled applications fault where they write past a buffer, or use one that was freed"),
+    "--from": ("SECONDS", "(begin at this virtual time|vary the order from here on)"),
+    "--from-disk": (None, "use the mission's files on this computer, not those in the journal"),
+    "--guard": (None, "report writes of compiled applications past a buffer, and uses of freed buffers"),
     "--jobs": ("N", "processes on this computer"),
-    "--json": ("FILE|-", "as JSON to a file, or with - to standard output and nothing else there"),
-    "--layout": ("FILE.yaml", "takes a table's layout from a YAML file"),
-    "--longest": ("SECONDS", "wall time that one"),
+    "--json": ("FILE|-", "as JSON; - writes to standard output"),
+    "--layout": ("FILE.yaml", "take a table's layout from a YAML file"),
+    "--longest": ("SECONDS", "wall time limit of one run"),
     "--mission": ("MISSION", "(names|tables)"),
     "-o --output": ("PATH", "where to write (default: "),
     "--perfetto": ("FILE", "write a trace in the Trace Event Format"),
-    "--play": ("BAG", "play a bag's topics into the mission"),
+    "--play": ("BAG", "play the topics of a bag or an MCAP file into the mission"),
     "--play-options": ("TEXT", "options and remappings of rosbag play"),
-    "--points": ("KIND[:MODULE,...]", "in at more points of the mission's Python code than at its calls"),
+    "--points": ("KIND", "lines, attributes or calls[:MODULE,...]"),
     "--port": ("PORT=HERE", "open the mission's port PORT"),
     "--quiet": (None, "no "),
     "--quote-formulas": (None, "put ' before a text that a spreadsheet takes for a formula"),
-    "--races": (None, "find accesses of Python code to one attribute, item or variable that nothing orders"),
-    "-r --rate": ("HZ", "how often"),
+    "--races": (None, "report unordered accesses of Python code"),
+    "-r --rate": ("HZ", "(how often|VALUES in Hz)"),
     "--spacecraft-id": ("N", "number of the spacecraft"),
     "--processor-id": ("N", "number of the processor"),
     "--realtime": ("FACTOR", "pace virtual time to the wall clock"),
     "--record": ("FILE", "write a journal"),
     "--record-no-files": (None, "leave the mission's files out of the journal"),
-    "--results": ("FILE", "write the result of every (schedule|test) to a file"),
-    "--save-files": ("DIR", "at the end write the files that the mission wrote"),
+    "--results": ("FILE", "write (all results|the result of every test)"),
+    "--save-files": ("DIR", "write the mission's files, such as /ram/x.log, to this folder at the end"),
     "--check-determinism": ("N", "run it N times side by side"),
     "--ros-master": ("URI", "be one graph with ROS on this computer"),
-    "--schedule": ("TEXT", "who runs next where there is a choice"),
-    "--script": ("FILE", "send commands and check what comes of them"),
-    "--seed": ("N", "of everything random in"),
+    "--schedule": ("TEXT", "order of tasks where several could run"),
+    "--script": ("FILE", "send commands and check their effects"),
+    "--seed": ("N", "(seed of all random values|seeds|plan of this seed)"),
     "--set": ("/PARAM=VALUE", "a ROS parameter"),
-    "--stall": ("SECONDS", "end the run as failed when a task computes for so many seconds of wall time"),
+    "--stall": ("SECONDS", "fail if a task computes for so many seconds of wall time"),
     "--stop-on-failure": (None, "end the run with the script's first failed step"),
-    "--tasks": (None, "what tasks run on"),
-    "--trace": ("FILE", "write everything that happened to a file"),
+    "--tasks": (None, "kind of tasks"),
+    "--trace": ("FILE", "write all records of the run to a file"),
     "--until": ("SECONDS", "ends at this virtual time"),
     "--foxglove": ("[HOST:]PORT", "serve Foxglove"),
     "--rosbridge": ("[HOST:]PORT", "serve clients of rosbridge"),
-    "--viewer-origin": ("ORIGIN", "let pages of a web site connect"),
-    "--viewer-token": ("TOKEN", "what such a program must know to connect"),
-    "--with": ("MISSION[@SECONDS]", "let another processor fly beside it"),
+    "--viewer-origin": ("ORIGIN", "let pages of a web site"),
+    "--viewer-token": ("TOKEN", "the token that a program must send to connect"),
+    "--with": ("MISSION[@SECONDS]", "run another processor in the same virtual time and network"),
     "-w --window": ("N", "the newest N messages count"),
 }
 """Of each option that more than one command has: the name of its value, and what its help says everywhere."""
@@ -96,12 +95,12 @@ def key(action: Action) -> str:
 
 def pattern(core: str) -> str:
     """Return the core of a help text as a regular expression: `(a|b)` is a choice, all else is literal."""
-    parts = re.split(r"(\([\w ]+(?:\|[\w ]+)+\))", core)
+    parts = re.split(r"(\([\w', ]+(?:\|[\w', ]+)+\))", core)
     return "".join(part if number % 2 else re.escape(part) for number, part in enumerate(parts))
 
 
-AS_ROS_HAS_THEM = ("rosbag ", "rosmsg ", "rossrv ", "rosnode ")
-"""Commands whose options are those of ROS's tools, which get them as they are."""
+AS_ROS_HAS_THEM = ("rosbag ", "rosmsg ", "rossrv ", "rosnode ", "roslaunch", "rosrun")
+"""Commands whose options are those of ROS's tools, which get them unchanged, and other names of commands."""
 
 
 def own_parsers() -> dict[str, argparse.ArgumentParser]:

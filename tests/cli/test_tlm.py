@@ -185,4 +185,4 @@ def test_bad_usage(words: list[str], said: str, capsys: pytest.CaptureFixture[st
 
 def test_a_topic_without_a_subscriber(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["tlm", str(robot(tmp_path)), "/odom", "--for", "1"]) == 1
-    assert "a topic is sent only while it has a subscriber; `cfepy topic echo`" in capsys.readouterr().err
+    assert "a topic is sent only while it has a subscriber; `cfepy rostopic echo`" in capsys.readouterr().err

@@ -52,9 +52,9 @@ def page_with(text: str, folder: Path) -> Path:
 
 
 def test_a_command_in_a_page_without_a_scene_is_overlooked(tmp_path: Path) -> None:
-    assert overlooked(page_with("```\ncfepy boards\n```\n", tmp_path)) == ["cfepy boards"]
+    assert overlooked(page_with("```\ncfepy board list\n```\n", tmp_path)) == ["cfepy board list"]
     assert overlooked(page_with("```sh\ntrue\n```\n", tmp_path)) == ["true"]
-    assert overlooked(page_with("```\nname  value\ncfepy boards\n```\n", tmp_path)) == ["cfepy boards"]
+    assert overlooked(page_with("```\nname  value\ncfepy board list\n```\n", tmp_path)) == ["cfepy board list"]
     assert overlooked(page_with("```\nname  value\n```\n", tmp_path)) == []
 
 
@@ -94,8 +94,8 @@ def test_command_that_never_becomes_ready_is_named(tmp_path: Path) -> None:
 
 
 def test_commands_are_recognized_in_a_block() -> None:
-    assert Block("", "$ cfepy boards\nlinux\n").session == [("cfepy boards", "linux\n")]
-    assert Block("sh", "cfepy boards   # all\n# none\nls\n").lines == ["cfepy boards", "ls"]
+    assert Block("", "$ cfepy board list\nlinux\n").session == [("cfepy board list", "linux\n")]
+    assert Block("sh", "cfepy board list   # all\n# none\nls\n").lines == ["cfepy board list", "ls"]
     assert Block("", "A=1 bin/server\n").lines == ["A=1 bin/server"]
     assert Block("", "cfepy: what it says\n").lines == []
     assert Block("yaml", "cfepy: 1\n").lines == []

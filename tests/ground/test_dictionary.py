@@ -127,11 +127,24 @@ def small() -> Dictionary:
     return found
 
 
-@pytest.mark.parametrize("name", ["APP_SETT", "app_set", "APP_ST"])
+@pytest.mark.parametrize("name", ["APP_SETT", "app_sett", "APP_ST"])
 def test_unknown_name_suggests_similar_names(small: Dictionary, name: str) -> None:
     with pytest.raises(UsageError) as error:
         small.command(name)
     assert str(error.value) == f"unknown command {name}; did you mean APP_SET?"
+
+
+def test_names_and_fields_may_be_in_small_letters(small: Dictionary) -> None:
+    assert small.command("app_set") is SET
+    assert small.telemetry_of("app_hk_tlm") is HK
+    for path in SET.payload.cells():
+        assert packet_of(SET, [f"{path.path.lower()}=1"]) == packet_of(SET, [f"{path.path}=1"])
+
+
+def test_telemetry_by_pattern(small: Dictionary) -> None:
+    assert small.telemetry_like("APP_*") == small.telemetry_like("app_hk_tlm") == [HK.msg_id]
+    with pytest.raises(UsageError, match="unknown telemetry packet NO_"):
+        small.telemetry_like("NO_*")
 
 
 def test_telemetry_by_name_and_by_number(small: Dictionary) -> None:

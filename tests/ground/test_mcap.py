@@ -115,7 +115,7 @@ def test_flushed_messages_are_in_the_file_of_a_killed_run(tmp_path: Path) -> Non
     fly(tmp_path, SCRIPTS, str(file), ended=lambda _: left.append(file.read_bytes()))
     (tmp_path / "killed.mcap").write_bytes(left[0])
     assert len(left[0]) > 1000
-    with pytest.raises(UsageError, match=r"the recording was not finished.*cfepy bag recover"):
+    with pytest.raises(UsageError, match=r"the recording was not finished.*cfepy rosbag recover"):
         BagReader(str(tmp_path / "killed.mcap"))
 
 

@@ -92,7 +92,7 @@ def test_mission_with_colliding_topics_flies_after_it_is_locked(
 ) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE)
     assert SECOND not in ids_of(mission) or FIRST not in ids_of(mission)
-    assert main(["mids", "--lock", mission]) == 0
+    assert main(["graph", "--mids", "--lock", mission]) == 0
     assert "of them new" in capsys.readouterr().out
     spec = read_mission(mission)
     assert {FIRST, SECOND, "/rosout"} <= spec.ros.locked_topics.keys()
@@ -105,14 +105,14 @@ def test_mission_with_colliding_topics_flies_after_it_is_locked(
 
 def test_second_lock_only_adds_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE)
-    main(["mids", "--lock", mission])
+    main(["graph", "--mids", "--lock", mission])
     before = (tmp_path / "topics.lock").read_text(encoding="utf-8")
-    main(["mids", "--lock", mission])
+    main(["graph", "--mids", "--lock", mission])
     assert (tmp_path / "topics.lock").read_text(encoding="utf-8") == before
     (tmp_path / "n.py").write_text(
         (tmp_path / "n.py").read_text(encoding="utf-8").replace(f'"{FIRST}")', f'"{FIRST}", "/new")'), encoding="utf-8"
     )
-    main(["mids", "--lock", mission])
+    main(["graph", "--mids", "--lock", mission])
     assert capsys.readouterr().out.endswith("1 of them new\n")
     added = set((tmp_path / "topics.lock").read_text(encoding="utf-8").splitlines()) - set(before.splitlines())
     assert [line.split(":")[0].strip() for line in added] == ["/new"]

@@ -65,8 +65,8 @@ def test_demand_that_was_never_judged_is_reported(tmp_path: Path, demands: str) 
     [
         ["run", "--quiet"],
         ["explore", "--seeds", "1", "--jobs", "1", "--quiet"],
-        ["mids"],
-        ["topic", "echo", "/energy", "-n", "1"],
+        ["graph", "--mids"],
+        ["rostopic", "echo", "/energy", "-n", "1"],
         ["tlm"],
     ],
     ids=lambda words: words[0],
@@ -76,9 +76,9 @@ def test_commands_report_an_invariant_that_was_never_judged(
 ) -> None:
     demands = next(iter(DEMANDS))
     words = [str(mission(tmp_path, demands)), "--for", "2"]
-    if command[0] == "topic":
+    if command[0] == "rostopic":
         words = [words[0], *command[2:], "--for", "2"]
-        main(["topic", "echo", *words])
+        main(["rostopic", "echo", *words])
     else:
         main([command[0], words[0], *command[1:], *words[1:]])
     shown = capsys.readouterr()

@@ -299,6 +299,6 @@ PACKAGE_TRICKS = (
     ),
     *(
         Trick(f"a pipe: {words}", f"{words} {{}}/p", PIPE, pipe("p"))
-        for words in ("replay --info", "bag recover", "log", "tbl show", "param build")
+        for words in ("replay --info", "rosbag recover", "log", "tbl show", "rosparam build")
     ),
 )

@@ -134,7 +134,7 @@ CASES = [
     Case("a key of a mission file", "check {}", yaml_key),
     Case("a key of a mission file that is to run", "run {}", yaml_key),
     Case("a folder that is no mission", "check {}", lambda at: named(at, lambda folder: None)),
-    Case("a file that is not there", "bag info {}", lambda at: at / NASTY),
+    Case("a file that is not there", "rosbag verify {}", lambda at: at / NASTY),
     Case("a file that is none of cFE", "log {}", lambda at: at / NASTY),
     Case("a file that is no table", "tbl show {}", lambda at: at / NASTY),
     Case("a file that is no journal", "replay {}", lambda at: at / NASTY),
@@ -146,20 +146,20 @@ CASES = [
     Case("an app of a startup script", "check {}", lambda at: mission(at / "m", app=NASTY.replace("\r", "")), ""),
     Case("syntax of an app", "check {}", lambda at: mission(at / "m", f"def {NASTY}:"), ""),
     Case("events, log, printf", "run {} --for 1", lambda at: mission(at / "m")),
-    Case("a mission's name", "mids {}", lambda at: named(at, mission)),
+    Case("a mission's name", "graph --mids {}", lambda at: named(at, mission)),
     Case("an error of an app", "run {} --for 1", lambda at: mission(at / "m", DIES)),
     Case("pipes", "graph {} --for 1", lambda at: mission(at / "m"), ""),
     Case("telemetry", "tlm {} CFE_EVS_LONG_EVENT_MSG --for 1", lambda at: mission(at / "m")),
     Case("what a command brings", "cmd {} CFE_ES_NOOP", lambda at: mission(at / "m")),
     Case("a trace", "trace {} --for 1", lambda at: mission(at / "m")),
     Case("schedules", "explore {} --for 1 --seeds 2 --jobs 1", lambda at: mission(at / "m", DIES), ""),
-    Case("topics of a bag", "topic list {}", bag),
-    Case("topics of a bag with their nodes", "topic list {} -v", bag),
-    Case("topics of a type", "topic find {} std_msgs/Header", bag),
-    Case("messages of a bag", "topic echo {} /*", bag, ""),
-    Case("a summary of a bag", "bag info {}", bag),
+    Case("topics of a bag", "rostopic list {}", bag),
+    Case("topics of a bag with their nodes", "rostopic list {} -v", bag),
+    Case("topics of a type", "rostopic find {} std_msgs/Header", bag),
+    Case("messages of a bag", "rostopic echo {} /*", bag, ""),
+    Case("a summary of a bag", "rosbag verify {}", bag),
     Case("a summary by ROS", "rosbag info {}", lambda at: bag(at, [f"/{NASTY}"])),
-    Case("a bag whose name is nasty", "bag info {}", lambda at: bag(named(at, lambda folder: None))),
+    Case("a bag whose name is nasty", "rosbag verify {}", lambda at: bag(named(at, lambda folder: None))),
     Case("a log of the system", "log {}", lambda at: dumped(at, SYSLOG, 80)),
     Case("the description of a file", "log {}", lambda at: dumped(at, SYSLOG, 32)),
     Case("events in a file", "log {}", lambda at: dumped(at, EVENTS, 64 + 40), ""),
@@ -177,10 +177,10 @@ CASES = [
     ),
     Case("what a node prints", "node {} --for 1", node_file),
     Case("all of a run with a node", "run {} --for 1", node_file),
-    Case("topics of a node", "topic echo {} /t -n 1 --for 1", node_file, r"\e]0;title"),
-    Case("columns of topics", "topic echo {} /t -n 1 -p --for 1", node_file),
-    Case("parameters of a node", "param list {} --for 1", node_file, r"/p/\x9b31m"),
-    Case("values of a node's parameters", "param get {} /p --for 1", node_file, r"\u202e"),
+    Case("topics of a node", "rostopic echo {} /t -n 1 --for 1", node_file, r"\e]0;title"),
+    Case("columns of topics", "rostopic echo {} /t -n 1 -p --for 1", node_file),
+    Case("parameters of a node", "rosparam list {} --for 1", node_file, r"/p/\x9b31m"),
+    Case("values of a node's parameters", "rosparam get {} /p --for 1", node_file, r"\u202e"),
     Case("what is told of a node", "rosnode info {} /n", node_file, ""),
 ]
 
@@ -233,11 +233,11 @@ def test_differing_traces_print_no_control_characters(tmp_path: Path, capsys: py
 
 def test_json_output_keeps_control_characters_escaped(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = str(bag(tmp_path))
-    assert main(["topic", "list", file, "--json", "-"]) == 0
+    assert main(["rostopic", "list", file, "--json", "-"]) == 0
     text = capsys.readouterr().out
     assert FORBIDDEN.findall(text) == []
     assert {row["name"] for row in json.loads(text)} == {f"/{NASTY}", "/good\n/forged"}
-    assert main(["topic", "echo", str(bag(tmp_path, ["/t"])), "/t", "--json", "-"]) == 0
+    assert main(["rostopic", "echo", str(bag(tmp_path, ["/t"])), "/t", "--json", "-"]) == 0
     assert json.loads(capsys.readouterr().out.splitlines()[0])["message"]["frame_id"] == NASTY
 
 
@@ -281,7 +281,7 @@ def test_run_on_a_terminal_prints_only_colours_of_nodes(tmp_path: Path) -> None:
 
 
 def test_tables_on_a_terminal_are_safe(tmp_path: Path) -> None:
-    text = on_a_terminal(["bag", "info", str(bag(tmp_path))])
+    text = on_a_terminal(["rosbag", "verify", str(bag(tmp_path))])
     assert DANGEROUS.findall(text) == []
     assert TOLD in text
     assert "\x1b[" in text  # rich's own

@@ -81,7 +81,7 @@ def expression(name: str, said: str, text: str) -> Trick:
 
 def parameters(name: str, said: str, text: str) -> Trick:
     """Return a file of parameters, built into tables."""
-    return Trick(f"yaml: {name}", "param build {}/robot.yaml -o {}/out", said, _file("robot.yaml", text))
+    return Trick(f"yaml: {name}", "rosparam build {}/robot.yaml -o {}/out", said, _file("robot.yaml", text))
 
 
 def mission(name: str, said: str, text: str, **more: str) -> Trick:

@@ -1,4 +1,4 @@
-"""The commands boards and board; their options are defined here.
+"""The command board; its options are defined here.
 
 A command belongs here if it is about boards, or writes the profile of one.
 """
@@ -9,7 +9,7 @@ import argparse
 from collections.abc import Callable
 from typing import Any
 
-from cfepy.cli.options import seconds_of
+from cfepy.cli.options import add_json, seconds_of
 from cfepy.plugins import Hook
 
 FASTEST_CPU_HZ = 1e11
@@ -19,21 +19,34 @@ ACTIONS: Hook[Callable[[Any], None]] = Hook("board_actions")
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to the parser of `cfepy`."""
-    boards = commands.add_parser("boards", help="list the boards and their main numbers")
-    boards.set_defaults(module="cfepy.cli.board.boards")
-    _add_board(commands)
-
-
-def _add_board(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    board = commands.add_parser("board", help="what a mission needs of a board, and a profile from measurements")
+    board = commands.add_parser(
+        "board",
+        help="list boards, show whether a mission fits, write a profile",
+        description="List boards, report the needs of a mission, or write the profile of your own board.",
+        examples=("cfepy board list", "cfepy board report capture --board rx64m"),
+    )
     actions = board.add_subparsers(metavar="ACTION", required=True)
+    boards = actions.add_parser(
+        "list",
+        help="list the boards and their main numbers",
+        description="List the boards that cfepy has profiles of, and their main numbers.",
+        examples=("cfepy board list",),
+    )
+    add_json(boards, "the table")
+    boards.set_defaults(module="cfepy.cli.board.board_list")
     for add_actions in ACTIONS.all():
         add_actions(actions)
+    _add_new(actions)
+    _add_program(actions)
+
+
+def _add_new(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     new = actions.add_parser(
         "new",
         help="write a profile from three measurements",
+        examples=("cfepy board new mine.yaml --cpu-hz 120e6 --round-trip 8us --short 6us --long 20us",),
         description="Write a profile of a board, whose costs follow from three times that were measured on it; "
-        "docs/reference/board_profiles.md says how.",
+        "docs/reference/board_profiles.md explains it.",
     )
     new.add_argument("file", metavar="FILE.yaml", help="the profile to write; the board has the name of this file")
     new.add_argument("--cpu-hz", type=_cycles_of, required=True, metavar="HZ", help="processor clock, such as 120e6")
@@ -56,11 +69,15 @@ def _add_board(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     new.add_argument("--ram", metavar="SIZE", help="such as 512KiB or 8MiB (default: no limit)")
     new.add_argument("--flash", metavar="SIZE", help="such as 4MiB (default: no limit)")
     new.set_defaults(module="cfepy.cli.board.new")
+
+
+def _add_program(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     program = actions.add_parser(
         "program",
         help="write the application, in C, that takes these measurements",
-        description="Write an application of cFS, in C, that measures the three times on a board and tells them in an "
-        "event, as options of `cfepy board new`.",
+        examples=("cfepy board program measure_board",),
+        description="Write an application of cFS, in C, that measures the three times on a board and reports them in "
+        "an event, as options of `cfepy board new`.",
     )
     program.add_argument("folder", metavar="FOLDER", help="of the application; it must not be there yet")
     program.set_defaults(module="cfepy.cli.board.program")

@@ -22,15 +22,16 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 def _add_tbl(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     tbl = commands.add_parser(
         "tbl",
-        help="make table files from YAML, show them, compare them, check them",
-        description="Table files: from YAML and back, by the names of their fields.",
+        help="make, show, compare and check table files",
+        description="Convert table files from YAML and back, by the names of their fields; compare and check them.",
+        examples=("cfepy tbl show hk_cpy_tbl.tbl --yaml hk_cpy_tbl.yaml", "cfepy tbl build hk_cpy_tbl.yaml"),
         epilog=TBL_STATUS,
     )
     actions = tbl.add_subparsers(metavar="ACTION", dest="action", required=True)
-    build = _add_action(actions, "build", "make a table file from a YAML file")
+    build = _add_action(actions, "build", "make a table file from a YAML file", "hk_cpy_tbl.yaml")
     build.add_argument("file", metavar="FILE.yaml", help="the table's headers and rows")
     add_output(build, "the YAML file's name with .tbl")
-    show = _add_action(actions, "show", "show a table file")
+    show = _add_action(actions, "show", "show a table file", "hk_cpy_tbl.tbl --yaml hk_cpy_tbl.yaml")
     show.add_argument("file", metavar="FILE.tbl", help="a table file")
     show.add_argument(
         "--yaml",
@@ -38,20 +39,26 @@ def _add_tbl(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         help="write it as YAML, from which build makes the same bytes again, to a file, or with - to standard output "
         "and nothing else there",
     )
-    add_json(show, "it")
-    diff = _add_action(actions, "diff", "show the fields in which two tables differ")
+    add_json(show, "the table")
+    diff = _add_action(actions, "diff", "show the fields in which two tables differ", "old.tbl new.tbl")
     diff.add_argument("file", metavar="A", help="a table file, or a YAML file")
     diff.add_argument("other", metavar="B", help="another")
-    verify = _add_action(actions, "verify", "find what is wrong with table files")
+    verify = _add_action(actions, "verify", "check table files", "tables/hk_cpy_tbl.tbl --mission lab")
     verify.add_argument("files", metavar="FILE.tbl", nargs="+", help="table files")
 
 
 def _add_action(
-    actions: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str
+    actions: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, example: str
 ) -> argparse.ArgumentParser:
-    action = actions.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".", epilog=TBL_STATUS)
-    add_mission(action, "--mission", help=f"whose tables are known by name: {MISSION_HELP}")
-    action.add_argument("--layout", metavar="FILE.yaml", help="takes a table's layout from a YAML file that has one")
+    action = actions.add_parser(
+        name,
+        help=text,
+        description=f"{text[0].upper()}{text[1:]}.",
+        examples=(f"cfepy tbl {name} {example}",),
+        epilog=TBL_STATUS,
+    )
+    add_mission(action, "--mission", help=f"take the tables' layouts from this mission: {MISSION_HELP}")
+    action.add_argument("--layout", metavar="FILE.yaml", help="take a table's layout from a YAML file that has one")
     action.set_defaults(module="cfepy.cli.files.tbl")
     return action
 
@@ -59,8 +66,9 @@ def _add_action(
 def _add_log(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     log = commands.add_parser(
         "log",
-        help="read the files that cFE writes: logs, registries, performance data",
-        description="Show what is in files that cFE wrote; the header says which kind each is.",
+        help="show cFE's files: logs, registries, performance data",
+        description="Show the contents of files that cFE wrote; their headers say which kind they are.",
+        examples=("cfepy log out/ram/cfe_evs.log", "cfepy log out/ram/cfe_es_perf.dat --perfetto perf.json"),
         epilog="exit status: 0 well, 2 a file that cannot be read or is cut off",
     )
     log.add_argument("files", metavar="FILE", nargs="+", help="a file with a cFE header")

@@ -1,4 +1,4 @@
-"""The commands of a ground system: cmd, tlm, console, mids, graph, export; their options are defined here.
+"""The commands of a ground system: cmd, tlm, console, graph, export; their options are defined here.
 
 A command belongs here if it works with cFE's packets by their names, over the network or with a mission that it flies.
 """
@@ -32,7 +32,6 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     _add_cmd(commands)
     _add_tlm(commands)
     _add_console(commands)
-    _add_mids(commands)
     _add_graph(commands)
     _add_export(commands)
 
@@ -40,10 +39,11 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 def _add_cmd(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     cmd = commands.add_parser(
         "cmd",
-        help="send a command by its name, or list the commands",
-        description="Send a command to a flight computer, or to a mission that is flown for it in virtual time.",
-        epilog="exit status: 0 well, 1 an ERROR or CRITICAL event followed, an application died, or nobody takes it; "
-        "2 bad usage",
+        help="send a command by name, or list the commands",
+        description="Send a command to a flight computer, or to a mission, which the command runs in virtual time.",
+        examples=("cfepy cmd lab CFE_ES_NOOP", "cfepy cmd 127.0.0.1 CFE_EVS_ENABLE_APP_EVENTS AppName=HK"),
+        epilog="exit status: 0 well, 1 an ERROR or CRITICAL event followed, an application died, or no application "
+        "received the command; 2 bad usage",
     )
     add_mission(
         cmd,
@@ -63,7 +63,7 @@ def _add_cmd(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         dest="seconds",
         type=seconds_of,
         metavar="SECONDS",
-        help="virtual seconds to wait for what it causes (default: 2)",
+        help="virtual seconds to wait for its effects (default: 2)",
     )
     add_run_options(cmd, without=["seconds"])
     cmd.set_defaults(module="cfepy.cli.ground.cmd")
@@ -73,8 +73,10 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     tlm = commands.add_parser(
         "tlm",
         help="show telemetry by name",
-        description="Show telemetry that arrives over UDP, or that of a mission which is flown in virtual time.",
-        epilog="exit status: 0 well, 1 no packet came, 2 bad usage, 130 ended by Ctrl-C",
+        description="Show telemetry that arrives over UDP, or telemetry of a mission, which the command runs in "
+        "virtual time.",
+        examples=("cfepy tlm lab 'CFE_*_HK_TLM' --for 6", "cfepy tlm --enable 127.0.0.1 --json -"),
+        epilog="exit status: 0 well, 1 no packet arrived, 2 bad usage, 130 ended by Ctrl-C",
     )
     add_mission(
         tlm,
@@ -82,10 +84,16 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         nargs="*",
         metavar="WORD",
         help="first a mission, or this computer's address to listen at, HOST[:PORT] (default: any, port 1235); then "
-        "the packets by their names or MsgIds (default: all)",
+        "the packets by their names, patterns such as 'CFE_*', or MsgIds (default: all)",
     )
     add_mission(tlm, "--mission", help=DICTIONARY_HELP)
-    tlm.add_argument("--enable", metavar="HOST[:PORT]", help="ask TO_LAB there to begin to send (default port: 1234)")
+    tlm.add_argument(
+        "--enable",
+        nargs="?",
+        const="",
+        metavar="HOST[:PORT]",
+        help="ask TO_LAB there to begin to send (default: 127.0.0.1:1234)",
+    )
     add_count(tlm, "packets")
     tlm.add_argument(
         "--for",
@@ -102,10 +110,11 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
 def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     console = commands.add_parser(
         "console",
-        help="a standing ground console: commands, telemetry pages, events",
-        description="Speak with a mission that is flown meanwhile, or over UDP with a flight computer. Lines are "
-        "commands by name, steps of a mission script, or words of the console; help lists them. Without a terminal, "
-        "lines are read from standard input.",
+        help="a ground console: commands, telemetry pages, events",
+        description="Command a mission while it runs, or a flight computer over UDP. Lines are commands by name, steps "
+        "of a mission script, or words of the console; the word help lists them. Without a terminal, the console reads "
+        "lines from standard input.",
+        examples=("cfepy console lab", "cfepy console --udp 192.168.1.20 --mission lab --enable"),
         epilog="exit status: 0 well, 1 a step or a line failed, or an application died; 2 bad usage; 130 ended by "
         "Ctrl-C, SIGTERM or SIGHUP",
     )
@@ -123,7 +132,7 @@ def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     console.add_argument(
         "--save-script",
         metavar="FILE",
-        help="write what was sent, with its times, as a script: `cfepy run MISSION --script FILE` repeats the run",
+        help="write the commands and their times as a script; `cfepy run MISSION --script FILE` repeats the run",
     )
     console.add_argument("--plain", action="store_true", help="lines of text, on a terminal too")
     add_run_options(console)
@@ -133,30 +142,13 @@ def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
     console.set_defaults(module="cfepy.cli.ground.console")
 
 
-def _add_mids(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    mids = commands.add_parser(
-        "mids",
-        help="show a mission's MsgIds: who sends and who subscribes",
-        description="Run a mission quietly for 10 virtual seconds, and show its MsgIds.",
-    )
-    add_mission(mids)
-    add_run_options(mids)
-    add_json(mids, "the table")
-    mids.add_argument(
-        "--lock",
-        action="store_true",
-        help="write topics.lock in the mission's folder, which gives every ROS topic and service a MsgId of its own; "
-        "ids that are in it already stay",
-    )
-    mids.set_defaults(module="cfepy.cli.ground.mids")
-
-
 def _add_graph(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     graph = commands.add_parser(
         "graph",
-        help="show who sends which messages into whose pipes",
+        help="show senders, messages and pipes, or the table of MsgIds",
         description="Run a mission quietly for 10 virtual seconds, and show its graph: applications and nodes, the "
         "messages between them with MsgIds, the pipes with depths and limits, services and actions.",
+        examples=("cfepy graph capture --svg graph.svg", "cfepy graph capture --mids"),
     )
     add_mission(graph)
     add_run_options(graph)
@@ -164,9 +156,16 @@ def _add_graph(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "--all",
         dest="everything",
         action="store_true",
-        help="with cFE's services one by one and what they send to each other, and what every node has for its logs",
+        help="include each of cFE's services, their messages to each other, and the topics that nodes log to",
     )
-    add_json(graph, "the graph")
+    graph.add_argument("--mids", action="store_true", help="show the table of MsgIds, with senders and subscribers")
+    graph.add_argument(
+        "--lock",
+        action="store_true",
+        help="write topics.lock in the mission's folder, which gives every ROS topic and service a fixed MsgId; ids "
+        "that the file already has stay",
+    )
+    add_json(graph, "the graph, or with --mids the table,")
     add_drawing(graph, "svg", "draw the graph")
     add_drawing(graph, "dot", "write the graph for graphviz")
     graph.set_defaults(module="cfepy.cli.ground.graph")
@@ -175,8 +174,9 @@ def _add_graph(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     export = commands.add_parser(
         "export",
-        help="write values over time as CSV or Parquet, or a mission's packets for a ground system",
-        description="Write what other programs read: values over time, or what a mission's packets mean.",
+        help="write values as CSV or Parquet, or packets as XTCE",
+        description="Write files for other programs: values over time, or the definitions of a mission's packets.",
+        examples=("cfepy export csv run.bag /odom.pose.pose.position -o odom.csv", "cfepy export xtce lab -o lab.xml"),
     )
     export.set_defaults(module="cfepy.cli.ground.export")
     formats = export.add_subparsers(metavar="FORMAT", dest="format", required=True)
@@ -186,6 +186,7 @@ def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "xtce",
         help="commands and telemetry of a mission in XTCE 1.2, which ground systems read",
         description="Describe a mission's packets in XTCE 1.2, an XML format which ground systems read.",
+        examples=("cfepy export xtce lab -o lab.xml",),
     )
     add_mission(xtce)
     add_output(xtce, "standard output", "-")
@@ -194,6 +195,7 @@ def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         help="telemetry of a mission as ROS messages: a catkin package, for programs beside `--ros-master`",
         description="Write a catkin package of the message types that a mission's telemetry has in ROS (`ros_bridge:` "
         "of its mission file), so that rostopic echo and your own nodes know them by name.",
+        examples=("cfepy export ros capture -o catkin_ws/src/cfe_tlm",),
     )
     add_mission(ros)
     add_output(ros, "a folder", "cfe_tlm")
@@ -205,6 +207,7 @@ def _add_values(formats: argparse._SubParsersAction[argparse.ArgumentParser], na
         help=text,
         description=f"Write {text}: a row for each message, with its virtual time and its time on board in s, and a "
         "column for each field.",
+        examples=(f"cfepy export {name} capture /joint_states CFE_ES_HK_TLM -o values.{name}",),
         epilog=LOOK_STATUS,
     )
     add_looked_at(values, with_bags=True)

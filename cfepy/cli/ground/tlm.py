@@ -27,7 +27,7 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_MS, NS_PER_S
 from cfepy.writing.escapes import keep_output_safe, rich_console, visible_line
 
-ANY_ADDRESS = "0.0.0.0"
+ANY_ADDRESS, OWN_ADDRESS = "0.0.0.0", "127.0.0.1"
 PIECE_NS = 100 * NS_PER_MS
 REFRESH_S = 0.2
 
@@ -194,7 +194,7 @@ def run(arguments: argparse.Namespace) -> int:
     refuse_run_options(arguments, "requires a mission, and none is named; leave it out", but=["seconds"])
     names = words if host is None else words[1:]
     dictionary = dictionary_for(arguments.mission)
-    wanted = {dictionary.telemetry_of(name).msg_id for name in names}
+    wanted = {msg_id for name in names for msg_id in dictionary.telemetry_like(name)}
     return _listen(host or RemoteHost(ANY_ADDRESS, TO_PORT), dictionary, wanted, arguments)
 
 
@@ -247,7 +247,7 @@ def _is_telemetry(packet: bytes) -> bool:
 
 def _enable(address: str, dictionary: Dictionary) -> None:
     """Ask TO_LAB to send to this computer."""
-    host = host_of(address, CI_PORT) or RemoteHost(address, CI_PORT)
+    host = host_of(address or OWN_ADDRESS, CI_PORT) or RemoteHost(address, CI_PORT)
     packet = packet_of(dictionary.command("TO_LAB_OUTPUT_ENABLE"), [f"dest_IP={udp.own_address(host.name)}"])
     if not udp.send(host.name, host.port, packet):
         raise UsageError(
@@ -259,7 +259,7 @@ def _enable(address: str, dictionary: Dictionary) -> None:
 def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
     spec = plan.spec()
     dictionary = dictionary_of(spec)
-    wanted = {_msg_id(spec, dictionary, name) for name in names}
+    wanted = {msg_id for name in names for msg_id in _msg_ids(spec, dictionary, name)}
     seen: list[Seen] = []
     watch = PacketWatch(seen.append, lambda msg_id: msg_id in wanted if wanted else msg_id & 0x1800 == 0x0800)
     with (
@@ -274,12 +274,14 @@ def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
         )
     tell(problems)
     is_topic = any(name.startswith("/") for name in names)
-    hint = "; a topic is sent only while it has a subscriber; `cfepy topic echo` subscribes to it" if is_topic else ""
+    hint = (
+        "; a topic is sent only while it has a subscriber; `cfepy rostopic echo` subscribes to it" if is_topic else ""
+    )
     return ENDED_WELL if shown else _nothing(f"no matching packet was sent in {end_s:g} virtual seconds{hint}")
 
 
-def _msg_id(spec: MissionSpec, dictionary: Dictionary, name: str) -> int:
-    return topic_id(spec, name) if name.startswith("/") else dictionary.telemetry_of(name).msg_id
+def _msg_ids(spec: MissionSpec, dictionary: Dictionary, name: str) -> list[int]:
+    return [topic_id(spec, name)] if name.startswith("/") else dictionary.telemetry_like(name)
 
 
 def _show_flight(run: LiveRun, seen: list[Seen], output: Output, dictionary: Dictionary, most: int | None) -> int:

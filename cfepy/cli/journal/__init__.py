@@ -15,11 +15,10 @@ from cfepy.plugins import Hook
 STOPS: Hook[Callable[[argparse.ArgumentParser], None]] = Hook("replay_options")
 """Functions that add the options which stop the whole mission for a debugger. `NO_STOPS` has the default values."""
 NO_STOPS = {"stops": [], "step": False, "pdb": None, "gdb": None, "back": False, "back_to": None}
-_REPLAY_STATUS = """exit status:
-  0    the same run as far as it is known: every checkpoint, and at the end the digests of trace and numbers
-  1    another run; it is said where the two part
-  2    bad usage, a file that is no journal, or a mission that cannot boot
-  130  ended by Ctrl-C, SIGTERM or SIGHUP"""
+_REPLAY_STATUS = (
+    "exit status: 0 the same run: all checkpoints, and at the end the digests of trace and numbers; 1 another run, "
+    "whose first difference is shown; 2 bad usage, not a journal, or a mission that cannot boot; 130 ended by Ctrl-C"
+)
 _DIFF_STATUS = "exit status: 0 the same run, 1 other runs, 2 bad usage"
 
 
@@ -32,19 +31,20 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     replay = commands.add_parser(
         "replay",
-        help="do the run of a journal again",
-        description="Do a run again that `cfepy run --record FILE` wrote down, in virtual time and without network, "
+        help="repeat the run of a journal, also step by step",
+        description="Repeat a run that `cfepy run --record FILE` wrote down, in virtual time and without network, "
         "and compare.",
+        examples=("cfepy replay run.cfepy", "cfepy replay run.cfepy --break /joint_states --pdb ARM_CONTROL"),
         epilog=_REPLAY_STATUS,
     )
     replay.add_argument("journal", metavar="FILE", help="the journal")
-    replay.add_argument("--info", action="store_true", help="only show what the journal has, and run nothing")
+    replay.add_argument("--info", action="store_true", help="only show the contents of the journal")
     add_until(replay, "the replay")
     replay.set_defaults(**NO_STOPS)
     for add_stops in STOPS.all():
         add_stops(replay)
     add_from_disk(replay)
-    replay.add_argument("--tasks", choices=TASK_KINDS, help="what tasks run on (default: as recorded)")
+    replay.add_argument("--tasks", choices=TASK_KINDS, help="kind of tasks (default: as recorded)")
     replay.add_argument("--console", action="store_true", help="show the flight computer's console of a launch, too")
     add_outputs(replay)
     replay.set_defaults(module="cfepy.cli.journal.replay")
@@ -53,9 +53,10 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
 def _add_diff(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     diff = commands.add_parser(
         "diff",
-        help="show where two runs part",
-        description="Show the first record in which two runs differ, what both did before it, and what else they "
-        "differ in. Journals are replayed for that, each with its own files.",
+        help="show where two runs differ first",
+        examples=("cfepy diff good.cfepy bad.cfepy", "cfepy diff monday.trace tuesday.trace --lines 20"),
+        description="Show the first record in which two runs differ, the records before it, and other differences. "
+        "Journals are replayed for that, each with its own files.",
         epilog=_DIFF_STATUS,
     )
     diff.add_argument("one", metavar="A", help="a journal, or a file that `cfepy run --trace FILE` wrote")

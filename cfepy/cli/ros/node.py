@@ -8,13 +8,13 @@ import sys
 from typing import TextIO
 
 from cfepy.cli.display import Display, SilentDisplay
-from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
+from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.run import View, fly_and_tell
 from cfepy.cli.user_notes import tell
 from cfepy.mission import Mission
-from cfepy.pilot import BOOT_S, ENDED, NODE, FailureKind, Flown
+from cfepy.pilot import ENDED, NODE, FailureKind, Flown
 from cfepy.writing.escapes import node_text, raw
 
 FAULT = "cfepy fault "  # prefix of lines about faults
@@ -100,7 +100,10 @@ def _status(flown: Flown, longer: str) -> int:
         return end
     if results.problems:
         return FOUND_PROBLEMS
+    if results.booted_s is None and not mission.over:
+        tell([f"the node has not started after {results.virtual_s:g} virtual seconds; {longer}"])
+        return BAD_USAGE
     is_over = app in statuses or any(each.name in mission.spec.built and each.state == ENDED for each in results.apps)
     if flown.outcome is None and not is_over:
-        tell([f"the node still runs after {results.virtual_s - BOOT_S:g} virtual seconds; {longer}"])
+        tell([f"the node still runs after {results.virtual_s:g} virtual seconds; {longer}"])
     return ENDED_WELL

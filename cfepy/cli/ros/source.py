@@ -1,4 +1,4 @@
-"""The source of `cfepy topic` and `cfepy service`: a bag, or a mission that is flown for them in virtual time."""
+"""The source of `cfepy rostopic` and `cfepy rosservice`: a bag, or a mission that is flown for them in virtual time."""
 
 from __future__ import annotations
 

@@ -17,6 +17,8 @@ from cfepy.cli.options import (
     add_run_options,
 )
 
+INTENSITIES = ("low", "medium", "high")
+
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add these commands to the parser of `cfepy`."""
@@ -29,7 +31,11 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     run = commands.add_parser(
         "run",
         help="run a mission",
-        description="Run a mission in virtual time, and report what happened.",
+        examples=(
+            "cfepy run capture --for 20",
+            "cfepy run my_mission --board rx64m --script checks.txt --record run.cfepy",
+        ),
+        description="Run a mission in virtual time, and print a report.",
         epilog=STATUS_HELP,
     )
     add_mission_or_node(run)
@@ -41,9 +47,9 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
 def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     check = commands.add_parser(
         "check",
-        help="find everything that is wrong with a mission before it boots",
-        description="Find what is wrong with a mission, a launch file or a node, and with all that it consists of; "
-        "nothing of it is executed.",
+        help="find mistakes in a mission before it boots",
+        examples=("cfepy check my_mission", "cfepy check robot.launch --board rx64m --json -"),
+        description="Check a mission, a launch file or a node, and all files that it consists of. Nothing is executed.",
         epilog="exit status: 0 nothing found but warnings, 1 something is wrong, 2 no such mission",
     )
     add_mission(check)
@@ -60,8 +66,48 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 
 
 def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    new = commands.add_parser("new", help="start an application or a mission from a skeleton that runs at once")
-    new.add_argument("kind", choices=("app", "mission"), help="what to start")
-    new.add_argument("name", metavar="NAME", help="also the name of the folder that is made")
-    new.add_argument("--c", action="store_true", help="an application in C, which `cfepy build` compiles")
-    new.set_defaults(module="cfepy.cli.run.new")
+    new = commands.add_parser(
+        "new",
+        help="write a new application, mission or fault plan",
+        description="Write the skeleton of an application or a mission, which runs unchanged, or a random fault plan.",
+        examples=("cfepy new app thermal", "cfepy new faults capture --seed 3"),
+    )
+    kinds = new.add_subparsers(metavar="KIND", dest="kind", required=True)
+    app = kinds.add_parser(
+        "app",
+        help="an application in Python or C, and a mission around it",
+        description="Write an application and the smallest mission around it, with a test.",
+        examples=("cfepy new app thermal", "cfepy new app thermal --c"),
+    )
+    app.add_argument("--c", action="store_true", help="an application in C, which `cfepy build` compiles")
+    mission = kinds.add_parser(
+        "mission",
+        help="a mission of an application and two ROS nodes",
+        description="Write a mission of an application and two ROS nodes, with a test.",
+        examples=("cfepy new mission rover",),
+    )
+    mission.set_defaults(c=False, hint="; only applications can be in C: cfepy new app NAME --c")
+    for kind in (app, mission):
+        kind.add_argument("name", metavar="NAME", help="also the name of the new folder")
+        kind.set_defaults(module="cfepy.cli.run.new")
+    _add_new_faults(kinds)
+
+
+def _add_new_faults(kinds: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    faults = kinds.add_parser(
+        "faults",
+        help="a random fault plan, or a list of possible faults",
+        description="Run a mission quietly for 3 virtual seconds, and list the faults that it can have. With --seed, "
+        "print a plan of random faults as YAML, for `cfepy run --faults FILE`.",
+        examples=("cfepy new faults capture", "cfepy new faults capture --seed 3 --intensity low > faults.yaml"),
+        epilog="exit status: 0 well, 2 bad usage, or a mission that cannot boot",
+    )
+    add_mission(faults)
+    RUN_OPTIONS["launch_args"](faults)
+    faults.add_argument(
+        "--seed", type=int, metavar="N", help="print the plan of this seed; `--faults seed:N` has the same faults"
+    )
+    faults.add_argument(
+        "--intensity", choices=INTENSITIES, default="medium", help="how many faults the plan has (default: medium)"
+    )
+    faults.set_defaults(module="cfepy.cli.run.new_faults")

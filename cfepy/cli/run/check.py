@@ -34,6 +34,9 @@ def run(arguments: argparse.Namespace) -> int:
     warnings = [finding for finding in findings if finding.is_warning]
     for finding in (*errors, *warnings):
         print(_line(finding))
+    packages = sorted({finding.package for finding in findings if finding.package})
+    if packages:
+        print(f"install the missing packages: pip install {' '.join(packages)}")
     counts = [_counted(len(errors), "problem"), _counted(len(warnings), "warning")]
     print(f"{', '.join(filter(None, counts)) or 'nothing'} found")
     write_json(arguments, _as_json(errors, warnings))
@@ -46,7 +49,13 @@ def _counted(number: int, what: str) -> str:
 
 def _as_json(errors: list[MissionProblem], warnings: list[MissionProblem]) -> dict[str, object]:
     found = [
-        {"file": str(each.file), "line": each.line or None, "text": each.text, "is_warning": each.is_warning}
+        {
+            "file": str(each.file),
+            "line": each.line or None,
+            "text": each.text,
+            "is_warning": each.is_warning,
+            "package": each.package,
+        }
         for each in (*errors, *warnings)
     ]
     return {"problems": len(errors), "warnings": len(warnings), "found": found}

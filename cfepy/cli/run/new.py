@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     if os.path.exists(folder):
         raise UsageError("already exists and is not overwritten; choose another name", file=folder)
     if arguments.c:
-        _check_c(kind, name)
+        _check_c(name)
     files = mission_files(name) if kind != "app" else c_app_files(name) if arguments.c else app_files(name)
     try:
         for path, content in files.items():
@@ -102,9 +102,7 @@ def _check_name(kind: str, name: str) -> None:
         raise UsageError(f"the name {name!r} is already taken; choose another name", field="NAME")
 
 
-def _check_c(kind: str, name: str) -> None:
-    if kind != "app":
-        raise UsageError("only valid for an application: cfepy new app NAME --c", field="--c")
+def _check_c(name: str) -> None:
     if name.startswith(OF_CFE):
         raise UsageError(f"C names made from {name!r} would clash with cFE's own; choose another name", field="NAME")
 

@@ -20,7 +20,7 @@ from cfepy.attachment import Attachment
 from cfepy.extra.exploration.verdict import STUCK, Failure
 from cfepy.interpreter.own_code import is_library, is_shown
 from cfepy.mission import CORE_APPS, Mission
-from cfepy.pilot import BOOT_S, RUN, RunPlan, fly
+from cfepy.pilot import RunPlan, fly
 from cfepy.rtos import Kernel, Policy, Task, wrapping
 from cfepy.units import NS_PER_S
 
@@ -155,8 +155,7 @@ def waits_of(plan: RunPlan, end_ns: int, policy: Policy | None) -> Waits:
         policy: decides which task goes first.
     """
     watch = WaitWatch()
-    start_s = 0 if plan.command == RUN else BOOT_S
-    fly(replace(plan, seconds=2 * end_ns / NS_PER_S - start_s), attachments=[watch], policy=policy)
+    fly(replace(plan, seconds=2 * end_ns / NS_PER_S), attachments=[watch], policy=policy)
     return watch.waits
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from cfepy.cli.flight_add_ons import FlightAddOn
 from cfepy.cli.flight_options import HIGHEST_PORT
+from cfepy.cli.parser import shared_group
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -38,12 +39,12 @@ class RosMaster(FlightAddOn):
 
     @classmethod
     def add(cls, parser: argparse.ArgumentParser) -> None:
-        parser.add_argument_group("ROS on this computer").add_argument(
+        shared_group(parser, "ROS on this computer").add_argument(
             OPTION,
             type=master_of,
             metavar="URI",
-            help="with --realtime: be one graph with ROS on this computer. URI is that of a running roscore, such as "
-            "http://localhost:11311; serve or serve:PORT serves a ROS master for others",
+            help="join ROS on this computer; requires --realtime. URI is the address of a running roscore, such as "
+            "http://localhost:11311; serve or serve:PORT starts a ROS master for other nodes",
         )
 
     @classmethod

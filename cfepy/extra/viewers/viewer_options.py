@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar
 
 from cfepy.cli.flight_add_ons import FlightAddOn
+from cfepy.cli.parser import shared_group
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ class Viewers(FlightAddOn):
 
     @classmethod
     def add(cls, parser: argparse.ArgumentParser) -> None:
-        viewers = parser.add_argument_group("programs that look at the run while it goes on")
+        viewers = shared_group(parser, "viewers")
         viewers.add_argument(
             FOXGLOVE,
             metavar="[HOST:]PORT",
@@ -50,14 +51,14 @@ class Viewers(FlightAddOn):
             action="append",
             default=[],
             metavar="ORIGIN",
-            help="let pages of a web site connect from a browser without a token, such as https://example.org; those "
-            "of this computer may in any case",
+            help="let pages of a web site, such as https://example.org, connect without a token; pages of this "
+            "computer always may",
         )
         viewers.add_argument(
             TOKEN,
             metavar="TOKEN",
-            help="what such a program must know to connect (default: that of the variable CFEPY_VIEWER_TOKEN; from "
-            "other computers always one, which is made and shown if nobody gives one)",
+            help="the token that a program must send to connect (default: the variable CFEPY_VIEWER_TOKEN; programs on "
+            "other computers always need one, by default a random one, which is printed)",
         )
 
     def __init__(self, arguments: argparse.Namespace, name: str, tell: Callable[[str], object]) -> None:

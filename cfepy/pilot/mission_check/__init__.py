@@ -27,6 +27,7 @@ from cfepy.mission import (
 )
 from cfepy.monitors import read_demands
 from cfepy.pilot.mission_check.cfe_names import wrong_names
+from cfepy.pilot.mission_check.missing_imports import check_imports_of_app, check_imports_of_nodes
 from cfepy.pilot.mission_check.mission_sections import (
     check_board,
     check_bridge,
@@ -88,13 +89,13 @@ def _sorted(found: Iterable[MissionProblem]) -> list[MissionProblem]:
 def _check_launch_file(file: Path, args: Mapping[str, str], config: CppNodesConfig | None) -> list[MissionProblem]:
     """Check a launch file without a startup script, in the user's environment."""
     found, scripts = check_launch(file, args, dict(os.environ), alone=True, config=config)
-    return [*found, *check_nodes(scripts), *check_definitions_of(scripts, file)]
+    return [*found, *check_nodes(scripts), *check_imports_of_nodes(scripts), *check_definitions_of(scripts, file)]
 
 
 def _check_node(file: Path) -> list[MissionProblem]:
     """Check a single node, in the user's environment."""
     scripts = [NodeScript(file, dict(os.environ))]
-    return [*check_nodes(scripts), *check_definitions_of(scripts, file)]
+    return [*check_nodes(scripts), *check_imports_of_nodes(scripts), *check_definitions_of(scripts, file)]
 
 
 def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None) -> list[MissionProblem]:
@@ -111,6 +112,7 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
         found += check_code(script, started, said)
     for source, entry_point in dict.fromkeys(app_sources(script.parent, started)):
         found += wrong_names(source, entry_point)
+        found += check_imports_of_app(source, script.parent)
     nodes = _nodes_of(script.parent, started, said)
     for file, args in said.launch:
         problems, scripts = check_launch(
@@ -127,7 +129,7 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
         found += check_said(said)
     found += check_lock(script.parent, said)
     found += check_board(script, started, said, board, script.parent)
-    return [*found, *check_nodes(nodes), *check_definitions_of(nodes, script)]
+    return [*found, *check_nodes(nodes), *check_imports_of_nodes(nodes), *check_definitions_of(nodes, script)]
 
 
 def _nodes_of(folder: Path, started: list[StartupEntry], said: MissionSections) -> list[NodeScript]:

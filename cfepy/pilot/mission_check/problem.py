@@ -16,12 +16,14 @@ class MissionProblem(NamedTuple):
         line: the line in the file, from 1; 0 for the whole file.
         text: the mistake and the remedy.
         is_warning: whether the mission runs anyway, but probably not as its author intended.
+        package: a package that `pip install` needs to solve it; "" for other problems.
     """
 
     file: Path
     line: int
     text: str
     is_warning: bool = False
+    package: str = ""
 
 
 def problem_of(error: UsageError, file: Path, is_warning: bool = False) -> MissionProblem:

@@ -92,9 +92,9 @@ def main() -> None:
     parser.add_argument("--converts", type=Path, required=True, help="the verdicts of dev.convert.survey --json")
     parser.add_argument("--json", type=Path, help="results; those that are there already are kept")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--keep", type=Path, help="a folder for what is made")
+    parser.add_argument("--keep", type=Path, help="a folder for the outputs")
     parser.add_argument(
-        "--report", action="store_true", help="write what is in --json into results.tsv and the document"
+        "--report", action="store_true", help="write the results of --json into results.tsv and the document"
     )
     arguments = parser.parse_args()
     verdicts = json.loads(arguments.converts.read_text(encoding="utf-8"))

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.c import Built, CompilerError, Options, build
+from cfepy.cli.main import main
+from cfepy.extra.c import Built, CompilerError, Options, TableFiles, build
 from cfepy.extra.c.elf import elf_file
 from cfepy.extra.c.toolchain.compiler import compile_file
 from cfepy.extra.c.toolchain.source_files import find_sources, read_cmake_lists
@@ -275,6 +276,39 @@ def test_a_table_is_the_file_that_nasas_tools_make(app: Path, tmp_path: Path) ->
     (made,) = build(app, tmp_path / "out/probe.so").tables
     assert made == tmp_path / "out/sample_app_tbl.tbl"
     assert made.read_bytes() == (DATA / "sample_app_tbl.tbl").read_bytes()
+
+
+def test_table_file_with_other_contents_stays_unless_wanted(app: Path, tmp_path: Path) -> None:
+    write(app, {"fsw/tables/sample_app_tbl.c": TABLE})
+    table, library = tmp_path / "out/sample_app_tbl.tbl", tmp_path / "out/probe.so"
+    first = build(app, library)
+    usual = table.read_bytes()
+    assert (first.tables, first.kept) == ([table], [])
+    assert build(app, library).tables == [table]
+    table.write_bytes(b"the mission's own")
+    again = build(app, library)
+    assert (again.tables, again.kept) == ([], [table])
+    assert table.read_bytes() == b"the mission's own"
+    assert build(app, library, Options(tables=TableFiles.NONE)).kept == []
+    assert table.read_bytes() == b"the mission's own"
+    assert build(app, library, Options(tables=TableFiles.WRITE)).tables == [table]
+    assert table.read_bytes() == usual
+
+
+@pytest.mark.parametrize(("option", "is_there"), [([], True), (["--tables"], True), (["--no-tables"], False)])
+def test_command_writes_table_files(
+    option: list[str], is_there: bool, app: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write(app, {"fsw/tables/sample_app_tbl.c": TABLE})
+    table, library = tmp_path / "sample_app_tbl.tbl", str(tmp_path / "probe.so")
+    assert main(["build", str(app), "-o", library, *option]) == 0
+    assert table.exists() is is_there
+    table.write_bytes(b"the mission's own")
+    capsys.readouterr()
+    assert main(["build", str(app), "-o", library, *option]) == 0
+    kept = table.read_bytes() == b"the mission's own"
+    note = f"{table}: kept: it differs from the table in the application's sources; --tables overwrites it"
+    assert (kept, note in capsys.readouterr().err) == (option != ["--tables"], not option)
 
 
 def test_table_of_zeros_keeps_its_zeros(app: Path) -> None:

@@ -79,11 +79,11 @@ def test_ros_tools_query_a_node_in_cpp_at_its_uri(launch: str, capfd: pytest.Cap
 
 
 def test_service_command_describes_a_service_in_cpp(launch: str, capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["service", "info", launch, "/count", "--for", "2"]) == 0
+    assert main(["rosservice", "info", launch, "/count", "--for", "2"]) == 0
     node, uri, kind, fields = capfd.readouterr().out.splitlines()
     assert (node, kind, fields) == ("Node: /server", "Type: ping/Count", "Args: first last")
     port = uri.removeprefix("URI: rosrpc://cfepy:")
     assert port.isdigit()
-    assert main(["service", "list", launch, "--for", "2", "--json", "-"]) == 0
+    assert main(["rosservice", "list", launch, "--for", "2", "--json", "-"]) == 0
     found = {each["service"]: each for each in json.loads(capfd.readouterr().out)}
     assert found["/count"]["args"] == ["first", "last"]

@@ -119,7 +119,7 @@ def test_two_names_of_one_msg_id_are_reported(
 
     (mission / "mission.yaml").write_text(f"topics:\n  /other: {{msg_id: {msg_id_of('/pulse')}}}\n", encoding="utf-8")
     assert convert(package, tmp_path / "made", "--ids", str(mission)) == 2
-    assert "cfepy mids --lock" in capsys.readouterr().err
+    assert "cfepy graph --lock" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from cfepy.cli.parser import CommandParser
 from cfepy.extra.exploration import Expedition, Report, Trial
 from cfepy.extra.exploration import commands as room
 from cfepy.extra.exploration.commands.explore import show
@@ -33,7 +34,7 @@ PLAN = RunPlan((ODOMETER,), seconds=1.3, tasks="greenlet")
 
 
 def options() -> argparse.Namespace:
-    parser = argparse.ArgumentParser()
+    parser = CommandParser()
     room.add(parser.add_subparsers())
     return parser.parse_args(["explore", "capture"])
 

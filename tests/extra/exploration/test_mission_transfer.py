@@ -81,7 +81,7 @@ def test_shipped_nodes_of_a_package_give_the_same_trace(
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(package.parent))
     monkeypatch.chdir(tmp_path)
     words = ("greetings", "greeter.py") if command == NODE else ("greetings", "greet.launch")
-    plan = RunPlan(words, command, seconds=0.1)
+    plan = RunPlan(words, command, seconds=0.7)
     files = files_read(plan)
     assert str(package / "scripts/greeting.txt") in files
     here = fly(plan).trace

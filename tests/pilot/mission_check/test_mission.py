@@ -120,7 +120,7 @@ def test_sources_that_are_not_python(tmp_path: Path) -> None:
         "from .part import Main",
         "from .part import Main_Function as Main",
         "from .part import *",
-        "from elsewhere import *",
+        "from os import *",
         "def __getattr__(name): ...",
     ],
 )

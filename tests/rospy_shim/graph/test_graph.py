@@ -35,7 +35,7 @@ def test_collision_names_both_topics_and_the_remedy() -> None:
     graph.topic(pair[0])
     free = msg_id_of(pair[0]) + 1
     with pytest.raises(
-        UsageError, match=rf'{pair[0]} and {pair[1]} .*mids --lock.*"{pair[1]}: {{msg_id: 0x{free:04X}}}"'
+        UsageError, match=rf'{pair[0]} and {pair[1]} .*graph --lock.*"{pair[1]}: {{msg_id: 0x{free:04X}}}"'
     ):
         graph.topic(pair[1])
 

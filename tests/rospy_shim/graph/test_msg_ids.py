@@ -53,7 +53,8 @@ def test_locked_ids_are_kept_and_new_names_avoid_them() -> None:
 
 def test_new_topic_on_a_locked_id_is_an_error_that_names_the_command() -> None:
     ids = MsgIds(RosConfig(locked_topics={SECOND: msg_id_of(SECOND)}))
-    with pytest.raises(UsageError, match=rf"{SECOND} and {FIRST} have the same MsgId .*`cfepy mids --lock MISSION`"):
+    command = "`cfepy graph --lock MISSION`"
+    with pytest.raises(UsageError, match=rf"{SECOND} and {FIRST} have the same MsgId .*{command}"):
         ids.of_topic(FIRST)
 
 

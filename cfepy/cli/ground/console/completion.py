@@ -11,6 +11,7 @@ from cfepy.cli.ground.console.pages import ALL, HK
 from cfepy.cli.ground.console.session import MAXIMUM, TIMES, VERBS, ConsoleSession
 from cfepy.ground import EVENT_TYPES, Dictionary
 from cfepy.msg import Command, Layout, Telemetry
+from cfepy.reading.suggestions import known_as
 from cfepy.script import APP_STATES, OPERATORS, RESET_TYPES
 from cfepy.writing.escapes import visible_line
 
@@ -109,7 +110,8 @@ class Completer:
         return [app.name for app in scene.mission.cfe.es.apps] if scene.has_mission else []
 
     def _fields(self, words: list[str], last: str) -> Iterable[Candidate]:
-        command = self._dictionary.commands.get(words[0], self._dictionary.commands.get(words[0].upper()))
+        commands = self._dictionary.commands
+        command = commands.get(known_as(words[0], commands))
         if command is None:
             return []
         path, equals, _ = last.partition("=")

@@ -266,16 +266,10 @@ class ConsoleSession:
             if name in self.words:
                 self.words[name].act(rest)
             else:
-                self._add(line if name in VERBS or name in TIMES else self._as_send(line))
+                self._add(line if name in VERBS or name in TIMES else f"send {line}")
         except UsageError as error:
             self._fail(f"{error.field}: {error.text}" if error.field else error.text)
         self.gather()
-
-    def _as_send(self, line: str) -> str:
-        """Return the step that sends a command by its name; the name may be in lower case."""
-        name, blank, fields = line.partition(" ")
-        commands = self.craft.script.scene.dictionary.commands
-        return f"send {name.upper() if name not in commands else name}{blank}{fields}"
 
     def _fail(self, text: str) -> None:
         self.say(BAD, text)

@@ -14,13 +14,19 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     """Add this command to the parser of `cfepy`."""
     build = commands.add_parser(
         "build",
-        help="compile an application in C to a shared object and table files",
+        help="compile an application in C, and its tables",
+        examples=("cfepy build thermal", "cfepy build apps/hk -o my_mission/hk.so --cfs cFS"),
         description="Compile a cFS application, a folder with fsw/src, fsw/inc and fsw/tables, to NAME.so and its "
         "table files. No cFS tree is needed: cfepy has headers of cFE, OSAL and the PSP.",
         epilog="exit status: 0 built, 1 the compiler refused a file, 2 bad usage, nothing to build or no compiler",
     )
     build.add_argument("folder", metavar="FOLDER", nargs="?", help="the application's folder")
     add_output(build, "NAME.so in the application's folder; table files come beside it")
+    tables = build.add_mutually_exclusive_group()
+    text = "write all table files; by default a file with other contents stays"
+    tables.add_argument("--tables", dest="tables", action="store_const", const="write", default="keep", help=text)
+    text = "write no table files"
+    tables.add_argument("--no-tables", dest="tables", action="store_const", const="none", help=text)
     build.add_argument("--cfs", metavar="TREE", help="take the headers of this cFS tree in place of cfepy's")
     build.add_argument(
         "--defs", metavar="DIR", help="a folder of a mission's headers, which go before the application's own"
@@ -39,7 +45,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "--coverage", action="store_true", help="make the code count the lines that it executes, for gcov"
     )
     build.add_argument(
-        "--sanitize-thread", action="store_true", help="have the code tell its accesses to memory (-fsanitize=thread)"
+        "--sanitize-thread", action="store_true", help="compile with -fsanitize=thread, so that a run finds races"
     )
     build.add_argument(
         "--headers", action="store_true", help="print the folder of cfepy's headers, for an editor or another build"

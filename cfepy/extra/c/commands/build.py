@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.user_notes import writing
-from cfepy.extra.c import Built, CompilerError, Options, build, headers_folder
+from cfepy.extra.c import Built, CompilerError, Options, TableFiles, build, headers_folder
 from cfepy.status import UsageError
 
 
@@ -47,6 +47,7 @@ def _options(arguments: argparse.Namespace) -> Options:
         coverage=arguments.coverage,
         sanitize_thread=arguments.sanitize_thread,
         flags=arguments.flag,
+        tables=TableFiles(arguments.tables),
     )
 
 
@@ -55,3 +56,6 @@ def _tell(built: Built) -> None:
         print(warning, file=sys.stderr)
     for file in (built.library, *built.tables):
         print(file)
+    for file in built.kept:
+        note = "kept: it differs from the table in the application's sources; --tables overwrites it"
+        print(f"{file}: {note}", file=sys.stderr)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.extra.c.toolchain.application import Built, Options, build
+    from cfepy.extra.c.toolchain.application import Built, Options, TableFiles, build
     from cfepy.extra.c.toolchain.cmake_script import CMakeBudget, CMakeScript
     from cfepy.extra.c.toolchain.compiler import CompilerError, call_bounded, cpp_compiler, end_bounded, start_bounded
     from cfepy.extra.c.toolchain.headers import headers_folder
@@ -24,6 +24,7 @@ __all__ = [
     "CMakeScript",
     "CompilerError",
     "Options",
+    "TableFiles",
     "build",
     "call_bounded",
     "cpp_compiler",
@@ -36,7 +37,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".application": ("Built", "Options", "build"),
+            ".application": ("Built", "Options", "TableFiles", "build"),
             ".cmake_script": ("CMakeBudget", "CMakeScript"),
             ".compiler": ("CompilerError", "call_bounded", "cpp_compiler", "end_bounded", "start_bounded"),
             ".headers": ("headers_folder",),

@@ -6,10 +6,12 @@ and its bytes are copied unchanged from the object file.
 
 from __future__ import annotations
 
+import os
 import struct
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -35,6 +37,14 @@ LAYOUT = struct.Struct("<64s40s32s20sI")
 """CFE_TBL_FileDef_t: name of the object, full name of the table, description, name of the file, bytes."""
 
 
+class TableFiles(Enum):
+    """The table files that a build writes: all, none, or all but those whose place has a file with other contents."""
+
+    KEEP = "keep"
+    WRITE = "write"
+    NONE = "none"
+
+
 @dataclass(frozen=True, slots=True)
 class Options:
     """Options for the build of an application.
@@ -50,6 +60,7 @@ class Options:
         sanitize_thread: whether the code reports its memory accesses (-fsanitize=thread); the loader chooses the
             receiver.
         flags: more flags of the compiler.
+        tables: the table files to write.
     """
 
     cfs: Path | None = None
@@ -60,6 +71,7 @@ class Options:
     coverage: bool = False
     sanitize_thread: bool = False
     flags: Sequence[str] = ()
+    tables: TableFiles = TableFiles.KEEP
 
 
 @dataclass(slots=True)
@@ -68,12 +80,14 @@ class Built:
 
     Attributes:
         library: the shared object.
-        tables: table files.
+        tables: table files that were written, or that have these contents already.
+        kept: existing table files with other contents, which were not written.
         warnings: warnings of the compiler and of the table reader.
     """
 
     library: Path
     tables: list[Path] = field(default_factory=list)
+    kept: list[Path] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
 
@@ -82,7 +96,8 @@ def build(folder: str | Path, library: str | Path | None = None, options: Option
 
     Args:
         folder: of the application, in the form that cFS has: fsw/src, fsw/inc, fsw/tables, CMakeLists.txt.
-        library: the shared object to write; NAME.so in the folder itself when None. Table files come beside it.
+        library: the shared object to write; NAME.so in the folder itself when None. Table files come beside it, where a
+            different file stays.
         options: the build options; the defaults when None.
 
     Returns:
@@ -131,10 +146,21 @@ class _Builder:
     def build(self) -> None:
         """Build code and tables. Nothing is written before everything is compiled."""
         code = self._code()
-        tables = self._tables()
+        tables = [] if self._options.tables is TableFiles.NONE else self._tables()
         flags = [*(["--coverage"] if self._options.coverage else []), *self._options.flags]
         link(code, self._built.library, flags, with_cpp=any(is_cpp(each) for each in self._sources.code))
-        self._built.tables = [table.write(self._built.library.parent) for table in tables]
+        for table in tables:
+            self._write(table)
+
+    def _write(self, table: TableObject) -> None:
+        """Write a table file. One with other contents stays, because a mission may have its own."""
+        path = self._built.library.parent / table.file
+        data = table_file(table.table)
+        if self._options.tables is TableFiles.KEEP and os.path.lexists(path) and not _has(path, data):
+            self._built.kept.append(path)
+            return
+        write_contained(path.parent, f"/{table.file}", data)
+        self._built.tables.append(path)
 
     def _code(self) -> list[Path]:
         options = self._options
@@ -200,20 +226,13 @@ class TableObject(NamedTuple):
     table: TableImage
     addresses: int
 
-    def write(self, folder: Path) -> Path:
-        """Write the table file.
 
-        Args:
-            folder: folder for the file.
-
-        Returns:
-            Its path.
-
-        Raises:
-            UsageError: the table's name is not a valid file name.
-        """
-        write_contained(folder, f"/{self.file}", table_file(self.table))
-        return folder / self.file
+def _has(path: Path, data: bytes) -> bool:
+    """Return whether a file exists and has these contents."""
+    try:
+        return os.path.getsize(path) == len(data) and path.read_bytes() == data
+    except OSError:
+        return False
 
 
 def read_table(data: bytes, source: Path) -> TableObject:

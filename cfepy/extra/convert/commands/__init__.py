@@ -43,10 +43,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     convert = commands.add_parser(
         "convert",
         help="make cFE applications of ROS nodes in C++",
+        examples=("cfepy convert check my_package", "cfepy convert my_package robot.launch -o flight"),
         description="Make applications for a cFS 7.0.0 mission tree, and a mission for cfepy, of the ROS nodes in C++ "
-        "of a launch file or a package. Their sources stay as they are. `cfepy convert check WORD` makes nothing, but "
-        "tells all that keeps nodes from being converted and what is to be known of them, by the rules of "
-        "docs/how_to/convertor.md.",
+        "of a launch file or a package. Their sources stay unchanged. `cfepy convert check WORD` writes nothing, and "
+        "reports the parts of nodes that cannot be converted, by the rules of docs/how_to/convertor.md.",
         epilog=_STATUS,
     )
     convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS)
@@ -54,8 +54,8 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     convert.add_argument(
         "--profile",
         choices=("host", "pool", "strict"),
-        help="what nodes may do: host: exceptions and the heap; pool: an arena of their own as a heap, no exceptions; "
-        "strict: nothing of both (default: that of --cpp-nodes, or host)",
+        help="rules for the nodes: host allows exceptions and the heap; pool has an arena in place of the heap, and no "
+        "exceptions; strict allows neither (default: the profile of --cpp-nodes, or host)",
     )
     convert.add_argument(
         "--cpp-nodes",
@@ -73,7 +73,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     convert.add_argument(
         "--sarif",
         metavar="FILE|-",
-        help="write what check finds as SARIF 2.1.0 to a file, or with - to standard output and nothing else there",
+        help="write the findings of check as SARIF 2.1.0; - writes to standard output",
     )
     add_json(convert, "the report")
     convert.set_defaults(module=f"{__name__}.convert")

@@ -34,9 +34,11 @@ def _add_trace(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     trace = _command(
         commands,
         "trace",
-        "show everything that happened in a run, or write it for Perfetto",
-        "Print what happened in a run, a line each: virtual time, task, what. With --perfetto write it to a file that "
+        "show all records of a run, or write them for Perfetto",
+        "Print the records of a run, a line each: virtual time, task, call. With --perfetto write them to a file that "
         "ui.perfetto.dev opens.",
+        "run.cfepy --topic '/arm/*' --from 2",
+        "capture --for 5 --perfetto run.json",
     )
     add_perfetto(trace)
     add_from(trace)
@@ -57,6 +59,8 @@ def _add_report(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "write a run as an HTML page",
         "Write one HTML page about a run, which needs nothing else: timeline, rates, latencies, pipes, processor time, "
         "events, console, deadlines.",
+        "capture --for 20 -o capture.html",
+        "run.cfepy",
     )
     add_output(report, REPORT_FILE, REPORT_FILE)
 
@@ -68,6 +72,8 @@ def _add_plot(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "draw values over time",
         "Draw fields of ROS topics and cFE packets over virtual time into a PNG, SVG or PDF file. An array gives a "
         "line for each of its items; a text, such as the phase of a mission, marks where it changes.",
+        "capture /joint_states.position /phase -o plot.png",
+        "run.bag /odom/pose/pose/position --subplots",
     )
     plot.add_argument("names", metavar="NAME.FIELD", nargs="+", help=VALUES_HELP)
     add_output(plot, f"{PLOT_FILE}; also .svg and .pdf", PLOT_FILE)
@@ -81,14 +87,15 @@ def add_board_report(actions: argparse._SubParsersAction[argparse.ArgumentParser
     """Add the action report to the command board."""
     report = actions.add_parser(
         "report",
-        help="RAM by owner, flash, CPU, headroom, and what makes a mission fit",
-        description="Fly a mission on a board with as much RAM as it asks for; tell what it needs of RAM, flash and "
-        "CPU, and the fewest changes that make it fit.",
+        help="show RAM by owner, flash, CPU, headroom, and changes that make a mission fit",
+        description="Run a mission on a board with as much RAM as it asks for; report the RAM, flash and CPU time that "
+        "it needs, and the fewest changes that make it fit.",
+        examples=("cfepy board report capture --board rx64m", "cfepy board report my_mission --for 60 --json -"),
         epilog="exit status: 0 it fits, 1 it does not, 2 bad usage, or a mission that cannot boot",
     )
     add_mission_or_node(report)
     add_run_options(report)
-    add_json(report, "what was found")
+    add_json(report, "the report")
     report.set_defaults(module=f"{__name__}.board_report")
 
 
@@ -107,12 +114,17 @@ def size_of(text: str) -> tuple[float, float]:
 
 
 def _command(
-    commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, help_text: str, description: str
+    commands: argparse._SubParsersAction[argparse.ArgumentParser],
+    name: str,
+    help_text: str,
+    description: str,
+    *examples: str,
 ) -> argparse.ArgumentParser:
     command = commands.add_parser(
         name,
         help=help_text,
         description=description,
+        examples=[f"cfepy {name} {each}" for each in examples],
         epilog=LOOK_STATUS,
     )
     add_looked_at(command, with_bags=name == "plot")

@@ -1,4 +1,4 @@
-"""`cfepy service`: the services of a mission that the command flies, and a call."""
+"""`cfepy rosservice`: the services of a mission that the command flies, and a call."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def mission(tmp_path: Path) -> str:
 
 def said(capsys: Capture, *words: str) -> str:
     """Return the output of a successful command."""
-    assert main(["service", *words]) == 0
+    assert main(["rosservice", *words]) == 0
     return capsys.readouterr().out
 
 
@@ -38,11 +38,11 @@ def test_what_is_offered(mission: str, capsys: Capture) -> None:
 
 
 def test_nothing_of_the_kind(mission: str, tmp_path: Path, capsys: Capture) -> None:
-    assert main(["service", "list", mission, "/arm", "--for", "1"]) == 1
-    assert main(["service", "info", mission, "/none", "--for", "1"]) == 2
+    assert main(["rosservice", "list", mission, "/arm", "--for", "1"]) == 1
+    assert main(["rosservice", "info", mission, "/none", "--for", "1"]) == 2
     assert "Unknown service [/none]" in capsys.readouterr().err
     (tmp_path / "x.bag").write_bytes(b"#ROSBAG V2.0\n")
-    assert main(["service", "list", str(tmp_path / "x.bag")]) == 2
+    assert main(["rosservice", "list", str(tmp_path / "x.bag")]) == 2
     assert "a bag has no services" in capsys.readouterr().err
 
 
@@ -92,9 +92,9 @@ def test_requests_and_answers_have_names_on_the_bus(tmp_path: Path, capsys: Capt
 
 
 def test_calls_that_fail(mission: str, capsys: Capture) -> None:
-    assert main(["service", "call", mission, "/switch", "{dta: true}"]) == 1
+    assert main(["rosservice", "call", mission, "/switch", "{dta: true}"]) == 1
     assert "No field name [dta]" in capsys.readouterr().err
-    assert main(["service", "call", mission, "/none", "--for", "2"]) == 1
+    assert main(["rosservice", "call", mission, "/none", "--for", "2"]) == 1
     assert "no answer from /none until the run was over" in capsys.readouterr().err
-    assert main(["service", "call", mission, "/none", "--for", "2", "--json", "-"]) == 1
+    assert main(["rosservice", "call", mission, "/none", "--for", "2", "--json", "-"]) == 1
     assert "no answer" in json.loads(capsys.readouterr().out)["error"]

@@ -1,4 +1,4 @@
-"""`cfepy param`: parameters of missions, and their table files."""
+"""`cfepy rosparam`: parameters of missions, and their table files."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NODE = """
 
 
 def said(capsys: pytest.CaptureFixture[str], *arguments: object, status: int = 0) -> str:
-    assert main(["param", *map(str, arguments)]) == status
+    assert main(["rosparam", *map(str, arguments)]) == status
     done = capsys.readouterr()
     return done.out + done.err
 

@@ -1,4 +1,4 @@
-"""`cfepy topic`: the answers of rostopic, from a mission that is flown for them or from a bag."""
+"""`cfepy rostopic`: the answers of rostopic, from a mission that is flown for them or from a bag."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from typing import Any
 
 from cfepy.cli.json_output import STDOUT, json_lines, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.ros.rostopic_output import Bandwidth, Delay, Echo, Hz, Meter
 from cfepy.cli.ros.source import FlightSource, SeenTopic, source_of
-from cfepy.cli.ros.topic_output import Bandwidth, Delay, Echo, Hz, Meter
 from cfepy.cli.text_table import print_lines
 from cfepy.cli.user_notes import tell
 from cfepy.cli.viewed_runs import flight_plan

@@ -1,4 +1,4 @@
-"""The output formats of `cfepy topic`: those of rostopic's echo, hz, bw and delay, and JSON."""
+"""The output formats of `cfepy rostopic`: those of rostopic's echo, hz, bw and delay, and JSON."""
 
 from __future__ import annotations
 

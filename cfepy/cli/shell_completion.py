@@ -1,4 +1,4 @@
-"""`cfepy completion SHELL`: completion of commands, options and names in a shell, by argcomplete.
+"""`cfepy --completion SHELL`: completion of commands, options and names in a shell, by argcomplete.
 
 The shell asks this command for the completions of a word. They are taken from the parsers and from files; no mission is
 flown.
@@ -9,11 +9,11 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TextIO
 
-from cfepy.cli.parser import LAUNCH_FILES, CommandParser, MissionAction
+from cfepy.cli.parser import LAUNCH_FILES, MissionAction, parsers_below
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -27,11 +27,11 @@ _FILES = ("FILE", "FILE|-", "FILE|seed:N", "PATH", "BAG", "FILE.yaml", "FILE.tbl
 _Complete = Callable[..., Iterable[str]]
 
 
-def run(arguments: argparse.Namespace) -> int:
-    """Print the script of the shell that the command line names.
+def script(shell: str) -> str:
+    """Return the script that a shell must evaluate.
 
-    Returns:
-        The exit status.
+    Args:
+        shell: "bash", "zsh" or "fish".
 
     Raises:
         UsageError: argcomplete is not installed.
@@ -39,9 +39,8 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         from argcomplete.shell_integration import shellcode
     except ImportError:
-        raise UsageError(NEEDS, field="completion") from None
-    print(shellcode(["cfepy"], shell=arguments.shell))
-    return 0
+        raise UsageError(NEEDS, field="--completion") from None
+    return str(shellcode(["cfepy"], shell=shell))
 
 
 def complete(
@@ -62,7 +61,7 @@ def complete(
         sys.exit(1)  # its script was left in the shell; a message would reach no one
     safe_actions.add(MissionAction)
     parser = make_parser(os.environ["COMP_LINE"].split()[1:])
-    for each in _all(parser):
+    for each in parsers_below(parser):
         each.mixes = False
         for action in each._actions:
             completer = _completer(action)
@@ -81,15 +80,6 @@ def complete(
             return [*found, *_second_words(active_parsers[-1], parsed_args, cword_prefix)]
 
     Finder()(parser, always_complete_options=False, exit_method=end, output_stream=stream)
-
-
-def _all(parser: argparse.ArgumentParser) -> Iterator[CommandParser]:
-    assert isinstance(parser, CommandParser)
-    yield parser
-    for action in parser._actions:
-        if isinstance(action, argparse._SubParsersAction):
-            for each in action.choices.values():
-                yield from _all(each)
 
 
 def _completer(action: argparse.Action) -> _Complete | None:

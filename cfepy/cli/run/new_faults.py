@@ -1,4 +1,4 @@
-"""`cfepy faults`: write a random fault plan for a mission, or list what faults can strike in it."""
+"""`cfepy new faults`: print a random fault plan for a mission, or list the faults that it can have."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.seed is not None:
         print(random_plan(arguments.seed, found.targets, arguments.intensity).to_yaml(), end="")
         return ENDED_WELL
-    table = Table("What faults can strike", ("kind", "name", "number"), right=(2,))
+    table = Table("Possible targets of faults", ("kind", "name", "number"), right=(2,))
     targets = found.targets
     for name, count in targets.messages:
         table.add("message", name, count)

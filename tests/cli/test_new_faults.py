@@ -1,4 +1,4 @@
-"""`--faults` of the commands that run missions, `cfepy faults`, and `cfepy check --faults`."""
+"""`--faults` of the commands that run missions, `cfepy new faults`, and `cfepy check --faults`."""
 
 from __future__ import annotations
 
@@ -116,12 +116,12 @@ def test_check_compares_a_plan_with_the_mission(tmp_path: Path, capsys: pytest.C
 
 @pytest.mark.slow
 def test_the_command_lists_targets_and_makes_plans(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    assert main(["faults", "lab"]) == 0
+    assert main(["new", "faults", "lab"]) == 0
     out = capsys.readouterr().out
     assert "SAMPLE_APP_HK_TLM" in out
     assert "HK.CopyTable" in out
     assert "SAMPLE_APP" in out
-    assert main(["faults", "lab", "--seed", "7", "--intensity", "high"]) == 0
+    assert main(["new", "faults", "lab", "--seed", "7", "--intensity", "high"]) == 0
     text = capsys.readouterr().out
     assert len(yaml.safe_load(text)["faults"]) == 12
     path = tmp_path / "seven.yaml"

@@ -1,4 +1,4 @@
-"""`cfepy bag`: show a bag or an MCAP file, recover a damaged one, and convert one format to the other."""
+"""`cfepy rosbag verify`, `recover` and `convert`: bags and MCAP files, damaged ones too."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is no such recording, or a file cannot be written or exists already.
     """
     check_json(arguments)
-    if arguments.action == "info":
+    if arguments.action == "verify":
         found = summary_of(arguments.file)
         write_json(arguments, found.to_dict())
         _show(found)

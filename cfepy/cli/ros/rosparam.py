@@ -1,4 +1,4 @@
-"""`cfepy param`: the ROS parameters of a mission, and the table files that hold them."""
+"""`cfepy rosparam`: the ROS parameters of a mission, and the table files that hold them."""
 
 from __future__ import annotations
 

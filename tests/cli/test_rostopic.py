@@ -1,4 +1,4 @@
-"""`cfepy topic`, and `cfepy run --bag`: a mission that the command flies, and the bag of a run."""
+"""`cfepy rostopic`, and `cfepy run --bag`: a mission that the command flies, and the bag of a run."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Capture = pytest.CaptureFixture[str]
 
 def said(capsys: Capture, *words: str, status: int = 0) -> str:
     """Return the output of the command."""
-    assert main(["topic", *words]) == status
+    assert main(["rostopic", *words]) == status
     return capsys.readouterr().out
 
 
@@ -37,9 +37,9 @@ def test_lists_of_topics(tmp_path: Path, capsys: Capture, bag: str) -> None:
     assert said(capsys, "list", bag) == "/odom\n/said\n"
     rows = json.loads(said(capsys, "list", bag, "--json", "-"))
     assert rows[0] == {"name": "/odom", "type": "nav_msgs/Odometry", "publishers": ["/robot"], "subscribers": []}
-    assert main(["topic", "list", bag, "/none"]) == 1
+    assert main(["rostopic", "list", bag, "/none"]) == 1
     assert capsys.readouterr() == ("", f"cfepy: no topic in /none/ in {bag}\n")
-    assert main(["topic", "find", bag, "std_msgs/Int8"]) == 1
+    assert main(["rostopic", "find", bag, "std_msgs/Int8"]) == 1
     assert capsys.readouterr() == ("", f"cfepy: no topic of type std_msgs/Int8 in {bag}\n")
     assert said(capsys, "find", bag, "nav_msgs/Odometry") == "/odom\n"
 
@@ -52,7 +52,7 @@ def test_one_topic(tmp_path: Path, capsys: Capture, bag: str) -> None:
     assert lines[4:] == ["", "Subscribers: None", "", ""]
     assert "Subscribers: \n * /robot (" in said(capsys, "info", mission, "orders", "--for", "1")
     assert said(capsys, "type", bag, "/odom/pose/pose") == "nav_msgs/Odometry\n"
-    assert main(["topic", "info", bag, "/none"]) == 2
+    assert main(["rostopic", "info", bag, "/none"]) == 2
     assert "Unknown topic /none" in capsys.readouterr().err
 
 
@@ -97,13 +97,13 @@ def test_echo(tmp_path: Path, capsys: Capture, bag: str) -> None:
 
 
 def test_nothing_to_echo(capsys: Capture, bag: str) -> None:
-    assert main(["topic", "echo", bag, "/none"]) == 1
+    assert main(["rostopic", "echo", bag, "/none"]) == 1
     assert "no message on /none" in capsys.readouterr().err
     assert said(capsys, "echo", bag, "/said/nothing", status=1) == ""
-    assert main(["topic", "echo", bag, "/said", "--filter", "m."]) == 2
-    assert main(["topic", "echo", bag, "/said", "--filter", "m.x > 1"]) == 2
+    assert main(["rostopic", "echo", bag, "/said", "--filter", "m."]) == 2
+    assert main(["rostopic", "echo", bag, "/said", "--filter", "m.x > 1"]) == 2
     assert "no attribute 'x'; m is the message, here of type std_msgs/String" in capsys.readouterr().err
-    assert main(["topic", "echo", bag + "x", "/said"]) == 2
+    assert main(["rostopic", "echo", bag + "x", "/said"]) == 2
 
 
 def test_numbers(tmp_path: Path, capsys: Capture, bag: str) -> None:
@@ -115,8 +115,8 @@ def test_numbers(tmp_path: Path, capsys: Capture, bag: str) -> None:
     lines = said(capsys, "bw", bag, "/said", "-n", "11").split("\n")
     assert lines == ["average: 67.00B/s", "\tmean: 6.09B min: 6.00B max: 7.00B window: 11", ""]
     assert json.loads(said(capsys, "hz", bag, "/said", "--json", "-"))["window"] == 25
-    assert main(["topic", "hz", bag, "/said", "-n", "1"]) == 1
-    assert main(["topic", "delay", bag, "/said"]) == 2
+    assert main(["rostopic", "hz", bag, "/said", "-n", "1"]) == 1
+    assert main(["rostopic", "delay", bag, "/said"]) == 2
     assert "the messages of this topic have no header" in capsys.readouterr().err
 
 
@@ -137,9 +137,9 @@ def test_publishing(tmp_path: Path, capsys: Capture) -> None:
     )
     found = json.loads(said(capsys, *words, "go", "-r", "2", "--at", "1", "--for", "2.9", "--json", "-"))
     assert found == {"topic": "/orders", "published": 4, "printed": ["[robot] got go"] * 4, "problems": []}
-    assert main(["topic", "pub", mission, "/orders", "std_msgs/None", "x"]) == 1
+    assert main(["rostopic", "pub", mission, "/orders", "std_msgs/None", "x"]) == 1
     assert "unknown message type std_msgs/None" in capsys.readouterr().err
-    assert main(["topic", *words, "{no: 1}"]) == 1
+    assert main(["rostopic", *words, "{no: 1}"]) == 1
     assert "/orders: " in capsys.readouterr().err
 
 

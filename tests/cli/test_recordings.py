@@ -1,4 +1,4 @@
-"""`cfepy bag`: info, recover and convert, and MCAP files where other commands take bags."""
+"""`cfepy rosbag`: info, recover and convert, and MCAP files where other commands take bags."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def count(file: Path) -> int:
 
 
 def test_info(here: Path, capsys: Capture) -> None:
-    assert main(["bag", "info", "drive.bag", "--json", "info.json"]) == 0
+    assert main(["rosbag", "verify", "drive.bag", "--json", "info.json"]) == 0
     out = capsys.readouterr().out
     found = json.loads((here / "info.json").read_text(encoding="utf-8"))
     assert out.startswith(f"\ndrive.bag: bag, {GOLDEN.stat().st_size:,} bytes, {count(GOLDEN):,} messages, ")
@@ -39,19 +39,19 @@ def test_info(here: Path, capsys: Capture) -> None:
 
 
 def test_there_and_back(here: Path, capsys: Capture) -> None:
-    assert main(["bag", "convert", "drive.bag", "--compression", "lz4"]) == 0
+    assert main(["rosbag", "convert", "drive.bag", "--compression", "lz4"]) == 0
     assert f"drive.mcap: {count(GOLDEN):,} messages" in capsys.readouterr().out
-    assert main(["bag", "convert", "drive.mcap", "-o", "back.bag"]) == 0
+    assert main(["rosbag", "convert", "drive.mcap", "-o", "back.bag"]) == 0
     assert count(here / "back.bag") == count(here / "drive.mcap") == count(GOLDEN)
 
 
 def test_what_is_left_of_a_bag_that_is_cut_off(here: Path, capsys: Capture) -> None:
     (here / "cut.bag").write_bytes(GOLDEN.read_bytes()[:40_000])
-    assert main(["bag", "info", "cut.bag"]) == 1
+    assert main(["rosbag", "verify", "cut.bag"]) == 1
     assert "cut.bag: the recording was not finished" in capsys.readouterr().err
-    assert main(["bag", "convert", "cut.bag"]) == 2
+    assert main(["rosbag", "convert", "cut.bag"]) == 2
     assert "cut.bag: is damaged: " in capsys.readouterr().err
-    assert main(["bag", "recover", "cut.bag"]) == 1
+    assert main(["rosbag", "recover", "cut.bag"]) == 1
     captured = capsys.readouterr()
     assert 0 < count(here / "cut.recovered.bag") < count(GOLDEN)
     assert "at byte " in captured.err
@@ -70,28 +70,28 @@ def test_nothing_is_written_over_unasked(words: str, file: str, why: str, here: 
     if file != "drive.bag":
         (here / file).write_bytes(b"precious")
     before = (here / file).read_bytes()
-    assert main(["bag", *words.split()]) == 2
+    assert main(["rosbag", *words.split()]) == 2
     assert why in capsys.readouterr().err
     assert (here / file).read_bytes() == before
 
 
 def test_what_is_named_is_written_over(here: Path) -> None:
     (here / "drive.mcap").write_bytes(b"old")
-    assert main(["bag", "convert", "drive.bag", "-o", "drive.mcap"]) == 0
+    assert main(["rosbag", "convert", "drive.bag", "-o", "drive.mcap"]) == 0
     assert count(here / "drive.mcap") == count(GOLDEN)
-    assert main(["bag", "convert", "drive.bag", "-o", "drive.bag", "--compression", "lz4"]) == 0
+    assert main(["rosbag", "convert", "drive.bag", "-o", "drive.bag", "--compression", "lz4"]) == 0
     assert count(here / "drive.bag") == count(GOLDEN)
 
 
 def test_other_commands_read_mcap_files_as_they_do_bags(here: Path, capsys: Capture) -> None:
-    main(["bag", "convert", "drive.bag"])
+    main(["rosbag", "convert", "drive.bag"])
     capsys.readouterr()
     said = []
     for file in ("drive.bag", "drive.mcap"):
-        assert main(["topic", "list", file]) == 0
+        assert main(["rostopic", "list", file]) == 0
         said.append(capsys.readouterr().out)
         topic = said[-1].split()[0]
-        assert main(["topic", "echo", file, topic, "-n", "1"]) == 0
+        assert main(["rostopic", "echo", file, topic, "-n", "1"]) == 0
         said[-1] += capsys.readouterr().out
         assert main(["export", "csv", file, topic, "-o", f"{file}.csv"]) == 0
         said[-1] += (here / f"{file}.csv").read_text(encoding="utf-8")
@@ -102,7 +102,7 @@ def test_other_commands_read_mcap_files_as_they_do_bags(here: Path, capsys: Capt
 @pytest.mark.parametrize(
     ("words", "why"),
     [
-        (["info", "none.bag"], "none.bag: could not be read: No such file"),
+        (["verify", "none.bag"], "none.bag: could not be read: No such file"),
         (["convert", "drive.txt"], "drive.txt: must end with .bag or .mcap"),
         (["convert", "drive.bag", "--compression", "bz2"], "--compression: unknown compression bz2 for a file .mcap"),
         (
@@ -112,5 +112,5 @@ def test_other_commands_read_mcap_files_as_they_do_bags(here: Path, capsys: Capt
     ],
 )
 def test_what_cannot_be(words: list[str], why: str, here: Path, capsys: Capture) -> None:
-    assert main(["bag", *words]) == 2
+    assert main(["rosbag", *words]) == 2
     assert why in capsys.readouterr().err

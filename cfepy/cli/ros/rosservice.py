@@ -1,4 +1,4 @@
-"""`cfepy service`: the answers and calls of rosservice, on a mission that is flown for them."""
+"""`cfepy rosservice`: the answers and calls of rosservice, on a mission that is flown for them."""
 
 from __future__ import annotations
 
