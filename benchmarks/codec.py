@@ -27,8 +27,8 @@ def codec() -> dict[str, float]:
     figures: dict[str, float] = {}
     for name, message in _messages().items():
         cls = type(message)
-        encoded = message._pack()
-        pack, unpack = _microseconds(partial(cls._pack, message)), _microseconds(partial(cls._unpack, encoded))
+        encoded = message.__pack__()
+        pack, unpack = _microseconds(partial(cls.__pack__, message)), _microseconds(partial(cls.__unpack__, encoded))
         library = shipped()
         plain = _microseconds(partial(encode, library.spec(cls._type), library.spec, message))
         plain += _microseconds(partial(_decode, cls._type, encoded, 0))

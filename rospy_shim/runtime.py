@@ -281,6 +281,7 @@ class RosRuntime:
             on_thread_start=tasks.thread,
         )
         universe.pid = self._pids.take(universe.pid)
+        universe.make_hidden_objects = lambda: universe.importer.load("rospy.impl.masterslave")
         node = Node(self._cfe, self.graph, universe, config, tasks, self._call_ns, self._publish_slot_ns)
         universe.importer.path[1:1] = [*_python_path(universe), *map(str, node.packages.code_folders())]
         find = _finder(

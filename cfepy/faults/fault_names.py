@@ -125,7 +125,7 @@ class MissionNames:
             message = library_of(topic).message_class(topic.type)().deserialize(packet[msg.TLM_HEADER_SIZE :])
             for path, value in values.items():
                 _set(message, path, value, name)
-            payload = message._pack()
+            payload = message.__pack__()
         except UsageError:
             raise
         except Exception as error:  # any exception of the generated code for values that do not fit

@@ -167,4 +167,4 @@ def _as_bytes_message(header: dict[str, str], packet: bytes) -> tuple[dict[str, 
     """Return header and data of a raw topic's message; like nodes, a bag gets the whole packet as its data."""
     from rospy_shim.types.msgs import message_class
 
-    return _header_of_bytes(header), message_class(RAW_TYPE)(data=packet)._pack()
+    return _header_of_bytes(header), message_class(RAW_TYPE)(data=packet).__pack__()

@@ -132,6 +132,7 @@ class Universe:
         # The current task polled: it uses virtual CPU time, and others get their turn.
         self.charge: Callable[[], object] = partial(kernel.charge, call_cost_ns) if call_cost_ns else _free
         self.ordered_sets = ordered_sets
+        self.make_hidden_objects: Callable[[], object] = _free  # those that programs find only through `gc`
         self.main_task: Task | None = None
         self.exit_status: int | None = None
         self.error: BaseException | None = None  # error that ended the script

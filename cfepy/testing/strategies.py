@@ -148,7 +148,7 @@ def messages(
 
 def _as_class(kind: type, message: Any) -> Any:
     """Return the message as one of `kind`, a class of the same type created elsewhere."""
-    return message if type(message) is kind else kind().deserialize(message._pack())
+    return message if type(message) is kind else kind().deserialize(message.__pack__())
 
 
 def cell_values(cell: Cell) -> st.SearchStrategy[Any]:

@@ -169,8 +169,8 @@ class Program(Reader):
 def frames_of(full_name: str, count: int, seed: int = 0) -> list[bytes]:
     """Return the bytes of random messages, the first of them empty."""
     source = Source(hash_of(full_name) + seed, capacities())
-    empty = LIBRARY.message_class(full_name)()._pack()
-    return [empty, *(source.message(full_name)._pack() for _ in range(count - 1))]
+    empty = LIBRARY.message_class(full_name)().__pack__()
+    return [empty, *(source.message(full_name).__pack__() for _ in range(count - 1))]
 
 
 def hash_of(text: str) -> int:

@@ -113,20 +113,20 @@ class ActionClient:
         self.last_status_msg: Any = None
         ActionTypes(ActionSpec).give_to(self)
         self.pub_queue_size = _at_least_zero(rospy.get_param("actionlib_client_pub_queue_size", 10), 10)
-        self.pub_goal = self._publisher("goal", self.ActionGoal)
-        self.pub_cancel = self._publisher("cancel", GoalID)
+        self.pub_goal = self.__publisher("goal", self.ActionGoal)
+        self.pub_cancel = self.__publisher("cancel", GoalID)
         self.manager = GoalManager(ActionSpec)
         self.manager.register_send_goal_fn(self.pub_goal.publish)
         self.manager.register_cancel_fn(self.pub_cancel.publish)
         self.sub_queue_size = _at_least_zero(rospy.get_param("actionlib_client_sub_queue_size", -1), None)
-        self.status_sub = self._subscriber("status", GoalStatusArray, self._status_cb)
-        self.result_sub = self._subscriber("result", self.ActionResult, self.manager.update_results)
-        self.feedback_sub = self._subscriber("feedback", self.ActionFeedback, self.manager.update_feedbacks)
+        self.status_sub = self.__subscriber("status", GoalStatusArray, self._status_cb)
+        self.result_sub = self.__subscriber("result", self.ActionResult, self.manager.update_results)
+        self.feedback_sub = self.__subscriber("feedback", self.ActionFeedback, self.manager.update_feedbacks)
 
-    def _publisher(self, topic: str, kind: Any) -> Any:
+    def __publisher(self, topic: str, kind: Any) -> Any:
         return rospy.Publisher(f"{rospy.remap_name(self.ns)}/{topic}", kind, queue_size=self.pub_queue_size)
 
-    def _subscriber(self, topic: str, kind: Any, callback: Callable[[Any], object]) -> Any:
+    def __subscriber(self, topic: str, kind: Any, callback: Callable[[Any], object]) -> Any:
         name = f"{rospy.remap_name(self.ns)}/{topic}"
         return rospy.Subscriber(name, kind, callback=callback, queue_size=self.sub_queue_size)
 
@@ -176,14 +176,14 @@ class ActionClient:
         """
         end = rospy.get_rostime() + timeout
         while not rospy.is_shutdown():
-            if self._is_connected():
+            if self.__is_connected():
                 return True
             if timeout != rospy.Duration(0) and rospy.get_rostime() >= end:
                 return False
             time.sleep(0.01)
         return False
 
-    def _is_connected(self) -> bool:
+    def __is_connected(self) -> bool:
         if self.last_status_msg is None:
             return False
         server = self.last_status_msg._connection_header["callerid"]

@@ -131,30 +131,30 @@ class ActionServer:
         """Open the topics and start the timer of the status."""
         size = rospy.get_param("actionlib_server_pub_queue_size", 50)
         self.pub_queue_size = 50 if size < 0 else size
-        self.status_pub = self._publisher("status", GoalStatusArray, latch=True)
-        self.result_pub = self._publisher("result", self.ActionResult)
-        self.feedback_pub = self._publisher("feedback", self.ActionFeedback)
+        self.status_pub = self.__publisher("status", GoalStatusArray, latch=True)
+        self.result_pub = self.__publisher("result", self.ActionResult)
+        self.feedback_pub = self.__publisher("feedback", self.ActionFeedback)
         size = rospy.get_param("actionlib_server_sub_queue_size", -1)
         self.sub_queue_size = None if size < 0 else size
-        self.goal_sub = self._subscriber("goal", self.ActionGoal, self.internal_goal_callback)
-        self.cancel_sub = self._subscriber("cancel", GoalID, self.internal_cancel_callback)
-        self.status_frequency = self._status_frequency()
-        self.status_list_timeout = rospy.Duration(rospy.get_param(self._name("status_list_timeout"), 5.0))
+        self.goal_sub = self.__subscriber("goal", self.ActionGoal, self.internal_goal_callback)
+        self.cancel_sub = self.__subscriber("cancel", GoalID, self.internal_cancel_callback)
+        self.status_frequency = self.__status_frequency()
+        self.status_list_timeout = rospy.Duration(rospy.get_param(self.__name("status_list_timeout"), 5.0))
         if self.status_frequency > 0:
             period = rospy.Duration(1.0 / self.status_frequency)
             self.status_timer = rospy.Timer(period, self.publish_status_async)
 
-    def _name(self, part: str) -> str:
+    def __name(self, part: str) -> str:
         return f"{rospy.remap_name(self.ns)}/{part}"
 
-    def _publisher(self, part: str, kind: Any, **options: Any) -> Any:
-        return rospy.Publisher(self._name(part), kind, queue_size=self.pub_queue_size, **options)
+    def __publisher(self, part: str, kind: Any, **options: Any) -> Any:
+        return rospy.Publisher(self.__name(part), kind, queue_size=self.pub_queue_size, **options)
 
-    def _subscriber(self, part: str, kind: Any, callback: Callable[[Any], object]) -> Any:
-        return rospy.Subscriber(self._name(part), kind, callback=callback, queue_size=self.sub_queue_size)
+    def __subscriber(self, part: str, kind: Any, callback: Callable[[Any], object]) -> Any:
+        return rospy.Subscriber(self.__name(part), kind, callback=callback, queue_size=self.sub_queue_size)
 
-    def _status_frequency(self) -> float:
-        old = self._name("status_frequency")
+    def __status_frequency(self) -> float:
+        old = self.__name("status_frequency")
         if rospy.has_param(old):
             rospy.logwarn(
                 "You're using the deprecated status_frequency parameter, please switch to actionlib_status_frequency."
@@ -168,13 +168,13 @@ class ActionServer:
     def publish_result(self, status: Any, result: Any) -> None:
         """Publish the result of a goal, then all statuses."""
         with self.lock:
-            self._send(self.result_pub, self.ActionResult(status=status, result=result))
+            self.__send(self.result_pub, self.ActionResult(status=status, result=result))
             self.publish_status()
 
     def publish_feedback(self, status: Any, feedback: Any) -> None:
         """Publish feedback on a goal."""
         with self.lock:
-            self._send(self.feedback_pub, self.ActionFeedback(status=status, feedback=feedback))
+            self.__send(self.feedback_pub, self.ActionFeedback(status=status, feedback=feedback))
 
     def publish_status_async(self, event: object) -> None:
         """Publish all statuses on the timer."""
@@ -189,9 +189,9 @@ class ActionServer:
             oldest_ns = now.to_nsec() - self.status_list_timeout.to_nsec()
             self.status_list[:] = [tracker for tracker in self.status_list if not _is_over(tracker, now, oldest_ns)]
             statuses = [tracker.status for tracker in self.status_list]
-            self._send(self.status_pub, GoalStatusArray(status_list=statuses))
+            self.__send(self.status_pub, GoalStatusArray(status_list=statuses))
 
-    def _send(self, publisher: Any, message: Any) -> None:
+    def __send(self, publisher: Any, message: Any) -> None:
         message.header.stamp = rospy.Time.now()
         if not rospy.is_shutdown():
             publisher.publish(message)
@@ -206,21 +206,21 @@ class ActionServer:
             rospy.logdebug("The action server has received a new goal request")
             for tracker in self.status_list:
                 if goal.goal_id.id == tracker.status.goal_id.id:
-                    self._goal_again(tracker)
+                    self.__goal_again(tracker)
                     return
             tracker = StatusTracker(None, None, goal)
             self.status_list.append(tracker)
-            handle = self._handle(tracker)
+            handle = self.__handle(tracker)
             if goal.goal_id.stamp != rospy.Time() and goal.goal_id.stamp <= self.last_cancel:
                 handle.set_canceled(None, _TOO_LATE)
             else:
                 self.goal_callback(handle)
 
-    def _handle(self, tracker: StatusTracker) -> ServerGoalHandle:
+    def __handle(self, tracker: StatusTracker) -> ServerGoalHandle:
         tracker.handle_tracker = tracker.handle_tracker or HandleTrackerDeleter(self, tracker)
         return ServerGoalHandle(tracker, self, tracker.handle_tracker)
 
-    def _goal_again(self, tracker: StatusTracker) -> None:
+    def __goal_again(self, tracker: StatusTracker) -> None:
         """A goal came twice, or after the request to cancel it."""
         status = tracker.status
         rospy.logdebug("Goal %s was already in the status list with status %i", status.goal_id.id, status.status)
@@ -239,7 +239,7 @@ class ActionServer:
             known = any(goal_id.id == tracker.status.goal_id.id for tracker in self.status_list)
             for tracker in self.status_list[:]:
                 if _is_meant(goal_id, tracker.status.goal_id):
-                    self._cancel(tracker)
+                    self.__cancel(tracker)
             if goal_id.id != "" and not known:
                 # The goal may still be on its way.
                 tracker = StatusTracker(goal_id, GoalStatus.RECALLING)
@@ -247,10 +247,10 @@ class ActionServer:
                 self.status_list.append(tracker)
             self.last_cancel = max(self.last_cancel, goal_id.stamp)
 
-    def _cancel(self, tracker: StatusTracker) -> None:
+    def __cancel(self, tracker: StatusTracker) -> None:
         if tracker.handle_tracker is None:
             tracker.handle_destruction_time = rospy.Time.now()
-        handle = self._handle(tracker)
+        handle = self.__handle(tracker)
         if handle.set_cancel_requested():
             self.cancel_callback(handle)
 

@@ -165,22 +165,22 @@ class SimpleActionClient:
             return
         state = gh.get_comm_state()
         if state in (CommState.ACTIVE, CommState.PREEMPTING):
-            self._on_active(state)
+            self.__on_active(state)
         elif state == CommState.RECALLING:
             if self.simple_state != SimpleGoalState.PENDING:
-                self._complain(state)
+                self.__complain(state)
         elif state == CommState.DONE:
-            self._on_done(gh)
+            self.__on_done(gh)
 
-    def _on_active(self, state: int) -> None:
+    def __on_active(self, state: int) -> None:
         if self.simple_state == SimpleGoalState.PENDING:
             self._set_simple_state(SimpleGoalState.ACTIVE)
             if self.active_cb:
                 self.active_cb()
         elif self.simple_state == SimpleGoalState.DONE:
-            self._complain(state)
+            self.__complain(state)
 
-    def _on_done(self, gh: ClientGoalHandle) -> None:
+    def __on_done(self, gh: ClientGoalHandle) -> None:
         if self.simple_state == SimpleGoalState.DONE:
             rospy.logerr("SimpleActionClient received DONE twice")
             return
@@ -190,7 +190,7 @@ class SimpleActionClient:
             self._set_simple_state(SimpleGoalState.DONE)
             self.done_condition.notify_all()
 
-    def _complain(self, state: int) -> None:
+    def __complain(self, state: int) -> None:
         texts = CommState.to_string(state), SimpleGoalState.to_string(self.simple_state)
         place = rospy.resolve_name(self.action_client.ns)
         rospy.logerr(

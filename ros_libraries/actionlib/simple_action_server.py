@@ -120,20 +120,20 @@ class SimpleActionServer:
     def set_succeeded(self, result: Any = None, text: str = "") -> None:
         """The goal is reached."""
         with self.action_server.lock, self.lock:
-            self.current_goal.set_succeeded(self._or_empty(result), text)
+            self.current_goal.set_succeeded(self.__or_empty(result), text)
 
     def set_aborted(self, result: Any = None, text: str = "") -> None:
         """The server failed."""
         with self.action_server.lock, self.lock:
-            self.current_goal.set_aborted(self._or_empty(result), text)
+            self.current_goal.set_aborted(self.__or_empty(result), text)
 
     def set_preempted(self, result: Any = None, text: str = "") -> None:
         """The goal is given up as asked."""
         with self.action_server.lock, self.lock:
             rospy.logdebug("Setting the current goal as canceled")
-            self.current_goal.set_canceled(self._or_empty(result), text)
+            self.current_goal.set_canceled(self.__or_empty(result), text)
 
-    def _or_empty(self, result: Any) -> Any:
+    def __or_empty(self, result: Any) -> Any:
         return self.get_default_result() if result is None else result
 
     # -- receiving ---------------------------------------------------------------------------------------------------
@@ -148,12 +148,12 @@ class SimpleActionServer:
                 if not (_is_newer(goal, self.current_goal) and _is_newer(goal, self.next_goal)):
                     goal.set_canceled(None, _REPLACED)
                     return
-                self._line_up(goal)
+                self.__line_up(goal)
                 self.execute_condition.notify()
             except Exception as error:  # whatever a callback of the user raises
                 rospy.logerr("SimpleActionServer.internal_goal_callback - exception %s", str(error))
 
-    def _line_up(self, goal: ServerGoalHandle) -> None:
+    def __line_up(self, goal: ServerGoalHandle) -> None:
         waits = self.next_goal.get_goal() is not None
         if waits and (self.current_goal.get_goal() is None or self.next_goal != self.current_goal):
             self.next_goal.set_canceled(None, _REPLACED)
@@ -189,11 +189,11 @@ class SimpleActionServer:
                 rospy.logerr("Should never reach this code with an active goal")
                 return
             if self.is_new_goal_available():
-                self._execute(self.accept_new_goal())
+                self.__execute(self.accept_new_goal())
             with self.execute_condition:
                 self.execute_condition.wait(_POLL_S)
 
-    def _execute(self, goal: Any) -> None:
+    def __execute(self, goal: Any) -> None:
         if not self.execute_callback:
             rospy.logerr("execute_callback_ must exist. This is a bug in SimpleActionServer")
             return

@@ -40,7 +40,7 @@ class Cache(SimpleFilter):
             del self.cache_msgs[0], self.cache_times[0]
         self.signalMessage(msg)
 
-    def _pairs(self) -> Iterator[tuple[Any, Any]]:
+    def __pairs(self) -> Iterator[tuple[Any, Any]]:
         return zip(self.cache_times, self.cache_msgs, strict=True)
 
     def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
@@ -50,15 +50,15 @@ class Cache(SimpleFilter):
             AssertionError: the first time is after the second.
         """
         assert from_stamp <= to_stamp
-        return [msg for stamp, msg in self._pairs() if from_stamp <= stamp <= to_stamp]
+        return [msg for stamp, msg in self.__pairs() if from_stamp <= stamp <= to_stamp]
 
     def getElemAfterTime(self, stamp: Any) -> Any:
         """Return the first message that came with this stamp or a later one, or None."""
-        return next((msg for time, msg in self._pairs() if time >= stamp), None)
+        return next((msg for time, msg in self.__pairs() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Any) -> Any:
         """Return the last message that came with this stamp or an earlier one, or None."""
-        older = [msg for time, msg in self._pairs() if time <= stamp]
+        older = [msg for time, msg in self.__pairs() if time <= stamp]
         return older[-1] if older else None
 
     def getLatestTime(self) -> Any:

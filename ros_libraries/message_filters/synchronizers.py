@@ -49,14 +49,14 @@ class TimeSynchronizer(SimpleFilter):
             my_queue_index: that queue's place.
         """
         with self.lock:
-            behind = self._follow_clock(my_queue, my_queue_index)
-            self._keep(msg, msg.header.stamp, my_queue)
+            behind = self.__follow_clock__(my_queue, my_queue_index)
+            self.__keep__(msg, msg.header.stamp, my_queue)
             if behind:
                 return
             for stamp in sorted(set(self.queues[0]).intersection(*self.queues[1:])):
-                self._emit([stamp] * len(self.queues))
+                self.__emit__([stamp] * len(self.queues))
 
-    def _follow_clock(self, queue: Queue, index: int | None) -> bool:
+    def __follow_clock__(self, queue: Queue, index: int | None) -> bool:
         """Detect that simulated time jumped back. Returns whether other filters have yet to detect it."""
         if not self.enable_reset or rospy.rostime.is_wallclock():
             return False
@@ -68,12 +68,12 @@ class TimeSynchronizer(SimpleFilter):
             self.latest_stamps[index] = now
         return bool(max(self.latest_stamps) != now)
 
-    def _keep(self, msg: Any, stamp: Any, queue: Queue) -> None:
+    def __keep__(self, msg: Any, stamp: Any, queue: Queue) -> None:
         queue[stamp] = msg
         while len(queue) > self.queue_size:
             del queue[min(queue)]
 
-    def _emit(self, stamps: Sequence[Any]) -> None:
+    def __emit__(self, stamps: Sequence[Any]) -> None:
         """Pass on the messages with these stamps, one for each queue, and forget them."""
         pairs = list(zip(self.queues, stamps, strict=True))
         self.signalMessage(*(queue[stamp] for queue, stamp in pairs))
@@ -111,13 +111,13 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         if stamp is None:
             return
         with self.lock:
-            behind = self._follow_clock(my_queue, my_queue_index)
-            self._keep(msg, stamp, my_queue)
-            self._forget_the_future()
+            behind = self.__follow_clock__(my_queue, my_queue_index)
+            self.__keep__(msg, stamp, my_queue)
+            self.__forget_the_future()
             if not behind:
-                self._match(stamp, my_queue_index)
+                self.__match(stamp, my_queue_index)
 
-    def _forget_the_future(self) -> None:
+    def __forget_the_future(self) -> None:
         now = rospy.Time.now()
         if now < self.last_added:
             rospy.loginfo("ApproximateTimeSynchronizer: Detected jump back in time. Clearing buffer.")
@@ -125,18 +125,18 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
                 queue.clear()
         self.last_added = now
 
-    def _match(self, stamp: Any, index: int | None) -> None:
+    def __match(self, stamp: Any, index: int | None) -> None:
         """Pass on the messages that lie nearest to a new one, if there is one in each of the other queues."""
-        candidates = [self._near(stamp, queue) for queue in self.queues]
+        candidates = [self.__near(stamp, queue) for queue in self.queues]
         if index is not None:
             candidates[index] = [stamp]
         for stamps in itertools.product(*candidates):
             complete = all(each in queue for queue, each in zip(self.queues, stamps, strict=True))
             if complete and max(stamps) - min(stamps) < self.slop:
-                self._emit(stamps)
+                self.__emit__(stamps)
                 return
 
-    def _near(self, stamp: Any, queue: Queue) -> list[Any]:
+    def __near(self, stamp: Any, queue: Queue) -> list[Any]:
         """Return the stamps in a queue that differ by at most the slop, nearest first."""
         near = [each for each in queue if abs(each - stamp) <= self.slop]
         return sorted(near, key=lambda each: abs(each - stamp))

@@ -98,13 +98,13 @@ class Bag(Indexed):
         self._skip_index = skip_index
         self._mode = mode
         self._filename = None if isinstance(f, io.IOBase) else f
-        self._file: Any = self._open_file(f) if self._filename is not None else f
-        self._storage = opened(self._file) if mode == "r" else BagFile(self._file)
+        self._file: Any = self.__open_file(f) if self._filename is not None else f
+        self.__storage__ = opened(self._file) if mode == "r" else BagFile(self._file)
         self._topic_connections: dict[str, Connection] = {}
         self._connection_indexes_read = True
-        self._begin(allow_unindexed)
+        self.__begin(allow_unindexed)
 
-    def _open_file(self, name: Any) -> Any:
+    def __open_file(self, name: Any) -> Any:
         if self._mode != "a":
             return open(name, "rb" if self._mode == "r" else "w+b")  # closed by `close`
         try:
@@ -112,23 +112,23 @@ class Bag(Indexed):
         except OSError:
             return open(name, "w+b")
 
-    def _begin(self, allow_unindexed: bool) -> None:
+    def __begin(self, allow_unindexed: bool) -> None:
         try:
             if self._mode == "w":
-                self._storage.create()
+                self.__storage__.create()
             else:
-                self._storage.read_version()
-                self._read_index(allow_unindexed)
+                self.__storage__.read_version()
+                self.__read_index(allow_unindexed)
         except BaseException:
             self._close_file()
             raise
 
-    def _read_index(self, allow_unindexed: bool) -> None:
+    def __read_index(self, allow_unindexed: bool) -> None:
         try:
-            self._storage.open(with_entries=not self._skip_index)
+            self.__storage__.open(with_entries=not self._skip_index)
             self._connection_indexes_read = not self._skip_index
             if self._mode == "a":
-                self._storage.append()
+                self.__storage__.append()
         except ROSBagUnindexedException:
             if not allow_unindexed:
                 raise
@@ -148,7 +148,7 @@ class Bag(Indexed):
     @property
     def version(self) -> int:
         """Version of the format, 200 for 2.0."""
-        return self._storage.version
+        return self.__storage__.version
 
     @property
     def mode(self) -> str:
@@ -158,11 +158,11 @@ class Bag(Indexed):
     @property
     def size(self) -> int:
         """Bytes of the file, including unwritten data."""
-        file = self._opened()
+        file = self.__opened__()
         at = file.tell()
         size = int(file.seek(0, 2))
         file.seek(at)
-        return size + self._storage.pending
+        return size + self.__storage__.pending
 
     @property
     def compression(self) -> str:
@@ -204,15 +204,15 @@ class Bag(Indexed):
         if topic_filters is not None:
             topics = self.get_type_and_topic_info(topic_filters).topics
             return sum(topic.message_count for topic in topics.values())
-        return info.count(self._all_chunks(), self._connections.values())
+        return info.count(self.__all_chunks__(), self._connections.values())
 
     def get_start_time(self) -> float:
         """Return the time of the first message in s. Raises ROSBagException if there is none."""
-        return info.times_of(self._all_chunks())[0]
+        return info.times_of(self.__all_chunks__())[0]
 
     def get_end_time(self) -> float:
         """Return the time of the last message in s. Raises ROSBagException if there is none."""
-        return info.times_of(self._all_chunks())[1]
+        return info.times_of(self.__all_chunks__())[1]
 
     def get_type_and_topic_info(self, topic_filters: str | list[str] | None = None) -> views.TypesAndTopicsTuple:
         """Return the types of messages, and the data of each topic (or of some topics)."""
@@ -220,7 +220,7 @@ class Bag(Indexed):
 
     def get_compression_info(self) -> views.CompressionTuple:
         """How most chunks are compressed, and the bytes of all without and with compression."""
-        return info.compression_of(self._storage.contents.chunks, self._compression)
+        return info.compression_of(self.__storage__.contents.chunks, self._compression)
 
     # -- reading -----------------------------------------------------------------------------------------------------
 
@@ -249,10 +249,10 @@ class Bag(Indexed):
         """
         self.flush()
         entries = search.entries(self, self._get_connections(topics, connection_filter), start_time, end_time)
-        return (self._message_at(entry, raw, return_connection_header) for entry in entries)
+        return (self.__message_at(entry, raw, return_connection_header) for entry in entries)
 
-    def _message_at(self, entry: Entry | tuple[int, int], raw: bool, with_header: bool) -> Any:
-        connection, ns, data = self._storage.read(entry)
+    def __message_at(self, entry: Entry | tuple[int, int], raw: bool, with_header: bool) -> Any:
+        connection, ns, data = self.__storage__.read(entry)
         kind = message_type(connection)
         message: Any = (connection.datatype, data, connection.md5sum, tuple(entry[-2:]), kind)
         if not raw:
@@ -268,7 +268,7 @@ class Bag(Indexed):
     ) -> Any:
         """Return the message at the position of an index entry."""
         self.flush()
-        return self._message_at(position, raw, return_connection_header)
+        return self.__message_at(position, raw, return_connection_header)
 
     def _get_yaml_info(self, key: str | None = None) -> Any:
         """Return the output of `rosbag info --yaml`, or one value of it."""
@@ -292,7 +292,7 @@ class Bag(Indexed):
             ValueError: no topic, no message, or the bag is closed.
             ROSBagException: the class of a raw message is unknown.
         """
-        self._opened()
+        self.__opened__()
         if not topic:
             raise ValueError("topic is invalid")
         if not msg:
@@ -303,23 +303,23 @@ class Bag(Indexed):
         connection = self._topic_connections.get(topic)
         if connection is None:
             made = connection_header if connection_header is not None else header()
-            connection = self._storage.connect(topic, made, self._compression)
+            connection = self.__storage__.connect(topic, made, self._compression)
             self._topic_connections[topic] = connection
-        size = self._storage.write(connection, t.to_nsec(), data, self._compression)
+        size = self.__storage__.write(connection, t.to_nsec(), data, self._compression)
         if size > self._chunk_threshold:
             self.flush()
 
     def flush(self) -> None:
         """Write buffered data to the file; ValueError if the bag is closed."""
-        self._opened()
-        self._storage.flush()
+        self.__opened__()
+        self.__storage__.flush()
 
     def reindex(self) -> Iterator[int]:
         """Rebuild the index of a bag. Iterate over the result to do it; it yields the positions of the chunks."""
-        self._opened()
+        self.__opened__()
         self._topic_connections.clear()
         self._connection_indexes_read = True
-        return self._storage.reindex()
+        return self.__storage__.reindex()
 
     def close(self) -> None:
         """Close the bag. Further calls do nothing."""
@@ -327,7 +327,7 @@ class Bag(Indexed):
             return
         try:
             if self._mode in "wa":
-                self._storage.finish()
+                self.__storage__.finish()
         finally:
             self._close_file()
 
@@ -338,12 +338,12 @@ class Bag(Indexed):
             ROSBagException: there are chunks already.
             ROSBagEncryptNotSupportedException: an encryptor was given.
         """
-        if self._storage.contents.chunks:
+        if self.__storage__.contents.chunks:
             raise ROSBagException("Cannot set encryptor after chunks are written")
         if encryptor == AES_CBC:
             raise ROSBagEncryptNotSupportedException("AES CBC encryptor is not supported on the simulated computer")
 
-    def _opened(self) -> Any:
+    def __opened__(self) -> Any:
         if self._file is None:
             raise ValueError("I/O operation on closed bag")
         return self._file

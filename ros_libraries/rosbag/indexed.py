@@ -14,52 +14,52 @@ from .search import Filter
 class Indexed:
     """The index of a `Bag`. `_connection_indexes_read` is true if the positions of messages have been read."""
 
-    _storage: BagFile
+    __storage__: BagFile
     _connection_indexes_read: bool
 
     def flush(self) -> None:
         """See `Bag.flush`."""
         raise NotImplementedError
 
-    def _index(self) -> Contents:
+    def __contents__(self) -> Contents:
         """Return the contents, with the entries."""
         self.flush()
         if not self._connection_indexes_read:
             self._connection_indexes_read = True
-            self._storage.read_entries()
-        return self._storage.contents
+            self.__storage__.read_entries()
+        return self.__storage__.contents
 
-    def _all_chunks(self) -> list[Chunk]:
+    def __all_chunks__(self) -> list[Chunk]:
         """Return the chunks, with the one that is being written."""
-        return self._storage.all_chunks()
+        return self.__storage__.all_chunks()
 
     @property
     def _connections(self) -> dict[int, Connection]:
-        return self._storage.contents.connections
+        return self.__storage__.contents.connections
 
     @property
     def _chunks(self) -> list[views.ChunkInfo]:
-        return [views.chunk_view(chunk) for chunk in self._storage.contents.chunks]
+        return [views.chunk_view(chunk) for chunk in self.__storage__.contents.chunks]
 
     @property
     def _connection_indexes(self) -> dict[int, list[views.IndexEntry]]:
-        return {key: [views.entry_view(each) for each in index] for key, index in self._index().indexes.items()}
+        return {key: [views.entry_view(each) for each in index] for key, index in self.__contents__().indexes.items()}
 
     @property
     def _file_header_pos(self) -> int:
-        return self._storage.header_pos
+        return self.__storage__.header_pos
 
     @property
     def _uncompressed_size(self) -> int:
-        return sum(chunk.size for chunk in self._storage.contents.chunks) or self._storage.file.seek(0, 2)
+        return sum(chunk.size for chunk in self.__storage__.contents.chunks) or self.__storage__.file.seek(0, 2)
 
     @property
     def _has_compressed_chunks(self) -> bool:
-        return any(chunk.compression != "none" for chunk in self._storage.contents.chunks)
+        return any(chunk.compression != "none" for chunk in self.__storage__.contents.chunks)
 
     @property
     def _version(self) -> int:
-        return self._storage.version
+        return self.__storage__.version
 
     def _get_connections(
         self, topics: str | Iterable[str] | None = None, connection_filter: Filter | None = None

@@ -96,7 +96,7 @@ def types_and_topics(bag: Bag, topic_filters: str | list[str] | None = None) -> 
 
 
 def _topic(bag: Bag, connections: list[Connection]) -> TopicTuple:
-    messages = count(bag._all_chunks(), connections)
+    messages = count(bag.__all_chunks__(), connections)
     return TopicTuple(connections[0].datatype, messages, len(connections), _frequency(bag, connections))
 
 
@@ -104,7 +104,7 @@ def _frequency(bag: Bag, connections: list[Connection]) -> float | None:
     """Return the frequency in Hz from the median period; None without the index, or with less than two messages."""
     if not bag._connection_indexes_read:
         return None
-    stamps = [seconds(entry.time) for entry in bag._storage.contents.entries(connections)]
+    stamps = [seconds(entry.time) for entry in bag.__storage__.contents.entries(connections)]
     periods = sorted(later - earlier for earlier, later in pairwise(stamps))
     if not periods:
         return None
@@ -120,13 +120,13 @@ def text_of(bag: Bag) -> str:
     """Return the output of `rosbag info`."""
     rows: list[tuple[str, str]] = [("path", str(bag.filename))] if bag.filename else []
     rows.append(("version", _version(bag)))
-    chunks = bag._all_chunks()
+    chunks = bag.__all_chunks__()
     if chunks:
         rows += _time_rows(chunks)
     rows.append(("size", human_size(bag.size)))
     if chunks:
         rows.append(("messages", str(bag.get_message_count())))
-        rows += _compression_rows(bag._storage.contents.chunks, *times_of(chunks))
+        rows += _compression_rows(bag.__storage__.contents.chunks, *times_of(chunks))
         rows += _type_rows(bag)
     width = max(len(name) for name, _ in rows) + 1
     lines = (f"{name + ':' if name else '':<{width}} {value}" for name, value in rows)
@@ -258,7 +258,7 @@ def yaml_of(bag: Bag, key: str | None) -> Any:
 def _yaml(bag: Bag) -> str:
     lines = [f"path: {bag.filename}"] if bag.filename else []
     lines.append(f"version: {_version(bag)}")
-    chunks = bag._all_chunks()
+    chunks = bag.__all_chunks__()
     if not chunks:
         return "\n".join([*lines, f"size: {bag.size}", "indexed: False", ""])
     start, end = times_of(chunks)

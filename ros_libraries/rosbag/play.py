@@ -46,7 +46,7 @@ class Player:
     def __init__(self, options: argparse.Namespace) -> None:
         self._options = options
         self._bags = [self._opened(name) for name in options.bags]
-        chunks = [chunk for bag in self._bags for chunk in bag._all_chunks() if chunk.connection_counts]
+        chunks = [chunk for bag in self._bags for chunk in bag.__all_chunks__() if chunk.connection_counts]
         first = min((chunk.start for chunk in chunks), default=0) + round(options.start * NS_PER_S)
         last = max((chunk.end for chunk in chunks), default=0)
         if options.duration is not None:

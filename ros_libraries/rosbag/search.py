@@ -40,7 +40,7 @@ def _canonical(topic: str) -> str:
 
 def entries(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: Any) -> Iterator[Entry]:
     """Yield the entries of connections (None: of all) from one time to another, both included, None without limit."""
-    contents = bag._index()
+    contents = bag.__contents__()
     first = start.to_nsec() if start else None
     last_ns = end.to_nsec() if end else None
     for entry in contents.entries(list(contents.connections.values() if chosen is None else chosen)):

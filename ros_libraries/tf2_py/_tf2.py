@@ -44,9 +44,9 @@ class BufferCore:
     """
 
     def __init__(self, cache_time: Any = None) -> None:
-        self._keep_ns = _CACHE_TIME_NS if cache_time is None else to_ns(cache_time)
-        self._tree = Tree()
-        self._authorities: dict[str, str] = {}
+        self.__keep_ns = _CACHE_TIME_NS if cache_time is None else to_ns(cache_time)
+        self.__tree = Tree()
+        self.__authorities: dict[str, str] = {}
 
     # -- filling -----------------------------------------------------------------------------------------------------
 
@@ -60,13 +60,13 @@ class BufferCore:
         Raises:
             TypeError: `transform` lacks a part.
         """
-        self._set(transform, authority, TimeCache(self._keep_ns))
+        self.__set(transform, authority, TimeCache(self.__keep_ns))
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
         """Add a transform that is valid at all times. The arguments are those of `set_transform`."""
-        self._set(transform, authority, StaticCache())
+        self.__set(transform, authority, StaticCache())
 
-    def _set(self, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
+    def __set(self, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
         child, parent = message.child_frame_id.removeprefix("/"), message.header.frame_id.removeprefix("/")
         stamp, rigid = to_ns(message.header.stamp), rigid_of(message.transform)
         problems = problems_of(child, parent, rigid, authority)
@@ -74,7 +74,7 @@ class BufferCore:
             _report("Error:  ", text)
         if problems:
             return
-        caches = self._tree.caches
+        caches = self.__tree.caches
         known = caches.get(child)
         if known is None:
             known = caches[child] = cache
@@ -84,11 +84,11 @@ class BufferCore:
             at = f"for frame {child} (parent {parent}) at time {seconds(stamp):f} according to authority {authority}"
             _report("Warning:", f"{refused} {at}")
         else:
-            self._authorities[child] = authority
+            self.__authorities[child] = authority
 
     def clear(self) -> None:
         """Remove all samples that are not static. The frames stay known."""
-        for cache in self._tree.caches.values():
+        for cache in self.__tree.caches.values():
             if cache is not None:
                 cache.clear()
 
@@ -109,7 +109,7 @@ class BufferCore:
             LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not
                 available.
         """
-        return message_of(target_frame, source_frame, *self._lookup(target_frame, source_frame, to_ns(time)))
+        return message_of(target_frame, source_frame, *self.__lookup(target_frame, source_frame, to_ns(time)))
 
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
@@ -132,20 +132,20 @@ class BufferCore:
         """
         at_target, at_source = to_ns(target_time), to_ns(source_time)
         for role, name in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
-            self._validate(f"lookupTransform argument {role}_frame", name)
-        _, first = self._lookup(fixed_frame, source_frame, at_source)
-        when, second = self._lookup(target_frame, fixed_frame, at_target)
+            self.__validate(f"lookupTransform argument {role}_frame", name)
+        _, first = self.__lookup(fixed_frame, source_frame, at_source)
+        when, second = self.__lookup(target_frame, fixed_frame, at_target)
         return message_of(target_frame, source_frame, when, product(second, first))
 
-    def _lookup(self, target: str, source: str, time: int) -> tuple[int, Rigid]:
+    def __lookup(self, target: str, source: str, time: int) -> tuple[int, Rigid]:
         """Return the time and transform of a way through the tree."""
-        tree = self._tree
+        tree = self.__tree
         if target == source:
             cache = None if time else tree.caches.get(target)
             return (time if cache is None else cache.latest()[0]), IDENTITY
         if target not in tree.caches or source not in tree.caches:
-            self._validate("lookupTransform argument target_frame", target)
-            self._validate("lookupTransform argument source_frame", source)
+            self.__validate("lookupTransform argument target_frame", target)
+            self.__validate("lookupTransform argument source_frame", source)
         path = tree.path(target, source, time)
         if not path.down:
             return path.time, compose(path.up)
@@ -154,13 +154,13 @@ class BufferCore:
             return path.time, back
         return path.time, compose((("", *compose(path.up)), ("", *back)))
 
-    def _validate(self, role: str, name: str) -> None:
+    def __validate(self, role: str, name: str) -> None:
         if not isinstance(name, str):
             raise TypeError(f"{role} must be str, not {type(name).__name__}")
         problem = name_problem(role, name)
         if problem:
             raise InvalidArgumentException(problem)
-        if name not in self._tree.caches:
+        if name not in self.__tree.caches:
             raise LookupException(f'"{name}" passed to {role} does not exist. ')
 
     # -- asking ------------------------------------------------------------------------------------------------------
@@ -171,8 +171,8 @@ class BufferCore:
         if target_frame == source_frame:
             return 1, ""
         frames = {"target_frame": target_frame, "source_frame": source_frame}
-        problem = self._unknown(frames)
-        return (0, problem) if problem is not None else self._try(target_frame, source_frame, at)
+        problem = self.__unknown(frames)
+        return (0, problem) if problem is not None else self.__try(target_frame, source_frame, at)
 
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
@@ -180,25 +180,25 @@ class BufferCore:
         """Return whether `lookup_transform_full_core` would succeed: 1 or 0, and why not."""
         at_target, at_source = to_ns(target_time), to_ns(source_time)
         frames = {"target_frame": target_frame, "source_frame": source_frame, "fixed_frame": fixed_frame}
-        problem = self._unknown(frames)
+        problem = self.__unknown(frames)
         if problem is not None:
             return 0, problem
-        possible, problem = self._try(target_frame, fixed_frame, at_target)
-        return self._try(fixed_frame, source_frame, at_source) if possible else (0, problem)
+        possible, problem = self.__try(target_frame, fixed_frame, at_target)
+        return self.__try(fixed_frame, source_frame, at_source) if possible else (0, problem)
 
-    def _unknown(self, frames: dict[str, str]) -> str | None:
+    def __unknown(self, frames: dict[str, str]) -> str | None:
         """Return the error in the names of frames. An ill-formed name is reported on the console and has no text."""
         for role, name in frames.items():
             problem = name_problem(f"canTransform argument {role}", name)
             if problem:
                 _report("Warning:", problem)
                 return ""
-        unknown = [(role, name) for role, name in frames.items() if name not in self._tree.caches]
+        unknown = [(role, name) for role, name in frames.items() if name not in self.__tree.caches]
         return " ".join(does_not_exist(role, name) for role, name in unknown) or None
 
-    def _try(self, target: str, source: str, time: int) -> tuple[int, str]:
+    def __try(self, target: str, source: str, time: int) -> tuple[int, str]:
         try:
-            self._tree.path(target, source, time)
+            self.__tree.path(target, source, time)
         except TransformException as problem:
             return 0, str(problem)
         return 1, ""
@@ -210,10 +210,10 @@ class BufferCore:
             InvalidArgumentException, LookupException: a frame is unknown.
             TransformException: the frames are not connected.
         """
-        self._validate("get_latest_common_time", target_frame)
-        self._validate("get_latest_common_time", source_frame)
+        self.__validate("get_latest_common_time", target_frame)
+        self.__validate("get_latest_common_time", source_frame)
         try:
-            latest = self._tree.latest_common_time(target_frame, source_frame)
+            latest = self.__tree.latest_common_time(target_frame, source_frame)
         except TransformException as problem:
             raise TransformException(str(problem)) from None
         return time_of(latest)
@@ -222,29 +222,29 @@ class BufferCore:
 
     def all_frames_as_string(self) -> str:
         """Return a line for each frame that has a parent."""
-        return self._tree.as_string()
+        return self.__tree.as_string()
 
     def all_frames_as_yaml(self) -> str:
         """Return the frames with parent, authority, rate and times, as YAML."""
-        return reports.as_yaml(self._tree, self._authorities)
+        return reports.as_yaml(self.__tree, self.__authorities)
 
     def _allFramesAsDot(self, time: Any = None) -> str:
-        return reports.as_dot(self._tree, self._authorities, 0 if time is None else to_ns(time))
+        return reports.as_dot(self.__tree, self.__authorities, 0 if time is None else to_ns(time))
 
     def _chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> list[str]:
         at_target, at_source = to_ns(target_time), to_ns(source_time)
         for name in (source_frame, fixed_frame, target_frame):
-            self._validate("chain", name)
-        first = self._tree.chain(fixed_frame, source_frame, at_source)
-        return first[:-1] + self._tree.chain(target_frame, fixed_frame, at_target)
+            self.__validate("chain", name)
+        first = self.__tree.chain(fixed_frame, source_frame, at_source)
+        return first[:-1] + self.__tree.chain(target_frame, fixed_frame, at_target)
 
     def _frameExists(self, frame_id: str) -> bool:
-        return frame_id in self._tree.caches
+        return frame_id in self.__tree.caches
 
     def _getFrameStrings(self) -> list[str]:
-        return list(self._tree.caches)
+        return list(self.__tree.caches)
 
 
 def _report(level: str, text: str) -> None:

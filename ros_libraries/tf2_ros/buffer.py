@@ -31,15 +31,15 @@ class Buffer(BufferCore, BufferInterface):
         BufferInterface.__init__(self)
         self.CAN_TRANSFORM_POLLING_SCALE = DEFAULT_CAN_TRANSFORM_POLLING_SCALE
         if debug:
-            self._offer_frames()
+            self.__offer_frames()
 
-    def _offer_frames(self) -> None:
+    def __offer_frames(self) -> None:
         try:
-            self.frame_server = rospy.Service("~tf2_frames", FrameGraph, self._frames)
+            self.frame_server = rospy.Service("~tf2_frames", FrameGraph, self.__frames)
         except rospy.ServiceException:
             return  # an earlier buffer of this node offers it
 
-    def _frames(self, request: Any) -> Any:
+    def __frames(self, request: Any) -> Any:
         return FrameGraphResponse(self.all_frames_as_yaml())
 
     def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
@@ -116,7 +116,7 @@ class Buffer(BufferCore, BufferInterface):
         def ask() -> tuple[int, str]:
             return self.can_transform_core(target_frame, source_frame, time)
 
-        found = self._wait(ask, timeout)
+        found = self.__wait(ask, timeout)
         return found if return_debug_tuple else found[0]
 
     def can_transform_full(
@@ -137,10 +137,10 @@ class Buffer(BufferCore, BufferInterface):
         def ask() -> tuple[int, str]:
             return self.can_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
-        found = self._wait(ask, timeout)
+        found = self.__wait(ask, timeout)
         return found if return_debug_tuple else found[0]
 
-    def _wait(self, ask: Callable[[], tuple[int, str]], timeout: Any) -> tuple[int, str]:
+    def __wait(self, ask: Callable[[], tuple[int, str]], timeout: Any) -> tuple[int, str]:
         """Ask again and again until the answer is yes or the time is over."""
         if timeout == NO_WAIT:
             return ask()

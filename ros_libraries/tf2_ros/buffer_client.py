@@ -67,7 +67,7 @@ class BufferClient(BufferInterface):
             TimeoutException: the server did not answer.
             TransformException: the server's error.
         """
-        return self._ask(
+        return self.__ask(
             LookupTransformGoal(
                 target_frame=target_frame,
                 source_frame=source_frame,
@@ -89,7 +89,7 @@ class BufferClient(BufferInterface):
 
         Errors are those of `lookup_transform`.
         """
-        return self._ask(
+        return self.__ask(
             LookupTransformGoal(
                 target_frame=target_frame,
                 source_frame=source_frame,
@@ -125,7 +125,7 @@ class BufferClient(BufferInterface):
             return False
         return True
 
-    def _ask(self, goal: Any) -> Any:
+    def __ask(self, goal: Any) -> Any:
         self.client.send_goal(goal)
         if not self.client.wait_for_result(goal.timeout + self.timeout_padding):
             raise TimeoutException(f"{_GOAL} in the specified time. {_WRONG}")

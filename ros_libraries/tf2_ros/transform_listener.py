@@ -53,13 +53,13 @@ class TransformListener:
 
     def callback(self, data: Any) -> None:
         """Take in transforms from /tf."""
-        self._take(data, self.buffer.set_transform)
+        self.__take(data, self.buffer.set_transform)
 
     def static_callback(self, data: Any) -> None:
         """Take in transforms from /tf_static."""
-        self._take(data, self.buffer.set_transform_static)
+        self.__take(data, self.buffer.set_transform_static)
 
-    def _take(self, data: Any, put: Callable[[Any, str], None]) -> None:
+    def __take(self, data: Any, put: Callable[[Any, str], None]) -> None:
         self.check_for_reset()
         who = data._connection_header.get("callerid", "default_authority")
         for transform in data.transforms:

@@ -79,7 +79,7 @@ class Link(TopicSide):
         self._unsent: Callable[[bytes], object] = bus.unsent
         self._charge = node.kernel.charge
         self._call_ns = node.call_ns
-        self._count_items = getattr(data_class, "_count_items", None) if node.call_ns else None
+        self._count_items = getattr(data_class, "__count_items__", None) if node.call_ns else None
         self._slot_ns = node.publish_slot_ns
         self._slot = -1  # the slot of the last message
         self.leftovers: Leftovers | None = None  # set once a connection was corrupted

@@ -35,13 +35,13 @@ class AnyMsg(Message):
             raise ROSException("AnyMsg does not accept arguments")
         self._buff: bytes | None = None
 
-    def _pack(self) -> bytes:
+    def __pack__(self) -> bytes:
         if self._buff is None:
             raise ROSException("AnyMsg is not initialized")
         return self._buff
 
     @classmethod
-    def _unpack(cls, data: bytes, at: int = 0) -> AnyMsg:
+    def __unpack__(cls, data: bytes, at: int = 0) -> AnyMsg:
         message = cls()
         message._buff = data[at:]
         return message
@@ -52,7 +52,7 @@ class AnyMsg(Message):
         Raises:
             ROSException: there are none.
         """
-        octets = self._pack()
+        octets = self.__pack__()
         buff.write(octets)
 
     def deserialize(self, str_: bytes) -> AnyMsg:
@@ -63,13 +63,13 @@ class AnyMsg(Message):
 
 def packer(data_class: MessageClass) -> Callable[[Any], bytes]:
     """Return the function that serialises a class's messages: its own fast one, or `serialize` of genpy's code."""
-    own: Callable[[Any], bytes] | None = getattr(data_class, "_pack", None)
+    own: Callable[[Any], bytes] | None = getattr(data_class, "__pack__", None)
     return own if own is not None else serialized
 
 
 def unpacker(data_class: MessageClass) -> Callable[[bytes, int], Any]:
     """Return the function that makes a message of a class from bytes at an offset; the counterpart of `packer`."""
-    own: Callable[[bytes, int], Any] | None = getattr(data_class, "_unpack", None)
+    own: Callable[[bytes, int], Any] | None = getattr(data_class, "__unpack__", None)
     if own is not None:
         return own
     _register_text_errors()
@@ -221,8 +221,8 @@ def numpy_msg(msg_type: Any) -> Any:
 
     names = {
         "__slots__": msg_type.__slots__,
-        "_pack": lambda self: self._pack_numpy(numpy),
-        "_unpack": classmethod(unpack),
+        "__pack__": lambda self: self.__pack_numpy__(numpy),
+        "__unpack__": classmethod(unpack),
         "deserialize": deserialize,
         "serialize": serialize,
     }

@@ -172,6 +172,7 @@ class ModuleTables:
         node = self._node
         return {
             "RosStreamHandler": node.logs.RosStreamHandler,
+            "adopt_handler": partial(setattr, node, "handler"),
             "ServiceException": exceptions.ServiceException,
             "offered": lambda: topics.offered(node),
             "topic_manager": topics.TopicManager(node),

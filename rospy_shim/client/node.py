@@ -68,6 +68,7 @@ class Node:
         self.publish_slot_ns = publish_slot_ns
         self.initialized = False
         self.links: dict[str, Link] = {}
+        self.handler: Any = None  # its ROSHandler, once a program of the node has loaded the class
         self.subscriptions: dict[str, Subscription] = {}
         self.services: list[Service] = []
         self.connection_numbers = count(1)

@@ -170,7 +170,8 @@ class Service:
     """Offers a service; each node has a subclass that knows the node."""
 
     __module__ = "rospy.impl.tcpros_service"
-    _node: ClassVar[Node]
+    __node__: ClassVar[Node]
+    __is_quiet__: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -193,7 +194,7 @@ class Service:
             ServiceException: the node offers it already.
             ValueError: an empty name.
         """
-        node = self._node
+        node = self.__node__
         if not name or not isinstance(name, str):
             raise ValueError("service name is not a non-empty string")
         self.resolved_name = node.names.resolve_name(name)
@@ -206,15 +207,15 @@ class Service:
         if error_handler is not None:
             self.error_handler = error_handler  # type: ignore[method-assign]  # as in rospy, an instance's own
         self.uri = f"rosrpc://{node.universe.host_name}:{node.universe.pid}"
-        self._done = False
-        self._pipe = NO_PIPE
-        self._tasks = 0  # tasks that serve
-        self._busy = 0  # tasks in the handler
-        self._pieces = Pieces(REQUEST_LEAD)
-        self._unpack = node.working(self.resolved_name, unpacker(self.request_class))
-        self._pack = packer(self.response_class)
-        self._entry: ServiceEntry
-        self._refused = False  # by the master
+        self.__done = False
+        self.__pipe = NO_PIPE
+        self.__tasks = 0  # tasks that serve
+        self.__busy = 0  # tasks in the handler
+        self.__pieces = Pieces(REQUEST_LEAD)
+        self.__unpack = node.working(self.resolved_name, unpacker(self.request_class))
+        self.__pack = packer(self.response_class)
+        self.__entry: ServiceEntry
+        self.__refused = False  # by the master
         node.warn_of_illegal(name)
         if any(each.resolved_name == self.resolved_name for each in node.services):
             raise ServiceException(f"service [{self.resolved_name}] already registered")
@@ -224,137 +225,138 @@ class Service:
 
     def connect(self) -> None:
         """Offer the service when the node is initialised, unless the master refuses its name."""
-        self._refused = self._node.is_refused("service", self.resolved_name, "service")
-        if not self._refused:
-            self._entry = self._node.graph.register_service(self)
-            self._begin()
+        self.__refused = self.__node__.is_refused("service", self.resolved_name, "service")
+        if not self.__refused:
+            self.__entry = self.__node__.graph.register_service(self)
+            if not self.__is_quiet__:
+                self.__begin()
 
     @property
     def node(self) -> Node:
         """The node that offers it."""
-        return self._node
+        return self.__node__
 
-    def _begin(self) -> None:
-        name = self._node.task_name(self.resolved_name)
-        self._open(name)
-        self._node.start_child(name, self._serve)
+    def __begin(self) -> None:
+        name = self.__node__.task_name(self.resolved_name)
+        self.__open(name)
+        self.__node__.start_child(name, self.__serve)
 
-    def _open(self, name: str) -> None:
-        if self._pipe == NO_PIPE:
-            bus = self._node.cfe.sb
+    def __open(self, name: str) -> None:
+        if self.__pipe == NO_PIPE:
+            bus = self.__node__.cfe.sb
             depth = bus.config.os_queue_max_depth
-            self._pipe = bus.create_pipe(depth, name)
-            bus.subscribe_ex(self._entry.request_id, self._pipe, 0, depth)
+            self.__pipe = bus.create_pipe(depth, name)
+            bus.subscribe_ex(self.__entry.request_id, self.__pipe, 0, depth)
 
     def error_handler(self, error: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
         """Log an exception in the handler; the traceback is a list in brackets, as in rospy."""
-        self._node.logs.logerr("Error processing request: %s\n%s", error, traceback_parts(error))
+        self.__node__.logs.logerr("Error processing request: %s\n%s", error, traceback_parts(error))
 
     def shutdown(self, reason: str = "") -> None:
         """Stop offering the service; callers whose requests wait get an error."""
-        if self._done:
+        if self.__done:
             return
-        self._done = True
-        self._node.graph.forget_service(self)
-        if self in self._node.services:
-            self._node.services.remove(self)
-        if not self._node.initialized or self._refused:
+        self.__done = True
+        self.__node__.graph.forget_service(self)
+        if self in self.__node__.services:
+            self.__node__.services.remove(self)
+        if not self.__node__.initialized or self.__refused:
             return
-        own = self._node.cfe.sb.find_pipe(self._pipe)
+        own = self.__node__.cfe.sb.find_pipe(self.__pipe)
         if own is not None:
             own.call_reader()
-        for pipe in map(self._node.cfe.sb.find_pipe, [call.pipe for call in self._entry.calls.values()]):
+        for pipe in map(self.__node__.cfe.sb.find_pipe, [call.pipe for call in self.__entry.calls.values()]):
             if pipe is not None:
-                self._node.kernel.wake_all(pipe.waits, TIMEOUT)
+                self.__node__.kernel.wake_all(pipe.waits, TIMEOUT)
 
     def spin(self) -> None:
         """Wait until the service or the node is shut down."""
         waits = WaitList(f"the end of service {self.resolved_name}")
         try:
-            while not self._node.life.is_shutdown() and not self._done:
-                self._node.life.wait(waits, SERVE_TIMEOUT_NS)
+            while not self.__node__.life.is_shutdown() and not self.__done:
+                self.__node__.life.wait(waits, SERVE_TIMEOUT_NS)
         except KeyboardInterrupt:
-            self._node.life.signal_shutdown("keyboard interrupt")
+            self.__node__.life.signal_shutdown("keyboard interrupt")
 
     # -- in its tasks ------------------------------------------------------------------------------------------------
 
     def attend(self) -> None:
         """Provide a free task for a waiting request."""
-        if self._busy >= self._tasks and not self._done:
-            self._tasks += 1
-            self._node.start_task(self.resolved_name, self._help)
+        if self.__busy >= self.__tasks and not self.__done:
+            self.__tasks += 1
+            self.__node__.start_task(self.resolved_name, self.__help)
 
     def has_room(self, packet: bytes) -> bool:
         """Return True if a packet of a request may be sent; False before the first task has made the pipe."""
-        pipe = self._node.cfe.sb.find_pipe(self._pipe)
+        pipe = self.__node__.cfe.sb.find_pipe(self.__pipe)
         return pipe is not None and len(pipe.items) < room_of(pipe, packet)
 
-    def _serve(self) -> None:
+    def __serve(self) -> None:
         """Serve as the first task, as long as the service is offered."""
-        self._tasks += 1
-        self._work(FOREVER_MS)
+        self.__tasks += 1
+        self.__work(FOREVER_MS)
         self.give_back()
 
-    def _help(self) -> None:
+    def __help(self) -> None:
         """Serve as a further task until no request waits."""
-        self._open(self._node.kernel.current.name)
-        self._work(POLL)
+        self.__open(self.__node__.kernel.current.name)
+        self.__work(POLL)
 
-    def _work(self, timeout_ms: int) -> None:
-        receive = self._node.cfe.sb.receive_buffer
+    def __work(self, timeout_ms: int) -> None:
+        receive = self.__node__.cfe.sb.receive_buffer
         try:
-            while not self._done:
-                packet = receive(self._pipe, timeout_ms)
-                if packet is not None and not self._done:
-                    self._take(packet)
+            while not self.__done:
+                packet = receive(self.__pipe, timeout_ms)
+                if packet is not None and not self.__done:
+                    self.__take(packet)
                 elif timeout_ms == POLL:
                     return
         except CfeError as error:
-            if not self._done:
-                self._node.logs.logerr("service %s ends: %s", self.resolved_name, error)
+            if not self.__done:
+                self.__node__.logs.logerr("service %s ends: %s", self.resolved_name, error)
         finally:
-            self._tasks -= 1
-            self._attend_waiting()
+            self.__tasks -= 1
+            self.__attend_waiting()
 
-    def _attend_waiting(self) -> None:
-        pipe = self._node.cfe.sb.find_pipe(self._pipe)
+    def __attend_waiting(self) -> None:
+        pipe = self.__node__.cfe.sb.find_pipe(self.__pipe)
         if pipe is not None and pipe.items:
             self.attend()
 
     def give_back(self) -> None:
         """Delete the pipe."""
-        pipe, self._pipe = self._pipe, NO_PIPE
-        if pipe != NO_PIPE and self._node.cfe.sb.find_pipe(pipe) is not None:
-            self._node.cfe.sb.delete_pipe(pipe)
+        pipe, self.__pipe = self.__pipe, NO_PIPE
+        if pipe != NO_PIPE and self.__node__.cfe.sb.find_pipe(pipe) is not None:
+            self.__node__.cfe.sb.delete_pipe(pipe)
 
-    def _take(self, packet: bytes) -> None:
+    def __take(self, packet: bytes) -> None:
         number = call_of_request(packet)
-        request = self._pieces.add(number, packet)
+        request = self.__pieces.add(number, packet)
         if request is None:
             return
-        self._busy += 1
-        self._entry.serving[number] = (self._node.kernel.current,)
+        self.__busy += 1
+        self.__entry.serving[number] = (self.__node__.kernel.current,)
         try:
-            self._attend_waiting()
-            good, body = self._result(number, request)
+            self.__attend_waiting()
+            good, body = self.__result(number, request)
         finally:
-            self._busy -= 1
-            self._entry.serving.pop(number, None)  # the ground may have sent a second request of that number
-        self._answer(number, good, body)
+            self.__busy -= 1
+            self.__entry.serving.pop(number, None)  # the ground may have sent a second request of that number
+        self.__answer(number, good, body)
 
-    def _result(self, number: int, data: bytes) -> tuple[bool, bytes]:
+    def __result(self, number: int, data: bytes) -> tuple[bool, bytes]:
         """Call the handler. Returns True and the serialised response, or False and the error's text."""
         try:
-            request = self._unpack(data, 0)
+            request = self.__unpack(data, 0)
         except Exception as error:  # an external caller may send any bytes, and the type's code may raise any error
             return False, f"service cannot process request: {error}".encode()
-        call = self._entry.calls.get(number)
+        call = self.__entry.calls.get(number)
         request._connection_header = call.header if call is not None else {}
         try:
             response = response_of(self.handler(request), self.response_class)
-            self._entry.half_answered.add(number)
-            body = self._pack(response)
-            self._entry.half_answered.discard(number)
+            self.__entry.half_answered.add(number)
+            body = self.__pack(response)
+            self.__entry.half_answered.discard(number)
             return True, body
         except (ServiceException, ROSInterruptException) as error:
             return False, f"service cannot process request: {error}".encode()
@@ -362,34 +364,36 @@ class Service:
             self.error_handler(error, *sys.exc_info())
             return False, f"error processing request: {error}".encode()
 
-    def _answer(self, number: int, good: bool, body: bytes) -> None:
-        bus, answer_id = self._node.cfe.sb, self._entry.answer_id
+    def __answer(self, number: int, good: bool, body: bytes) -> None:
+        bus, answer_id = self.__node__.cfe.sb, self.__entry.answer_id
         for packet in answer_packets(answer_id, number, good, body, bus.config.sb_max_msg_size):
-            self._wait_for_room(packet)
+            self.__wait_for_room(packet)
             bus.transmit_msg(packet)
 
-    def _wait_for_room(self, packet: bytes) -> None:
+    def __wait_for_room(self, packet: bytes) -> None:
         """Give the callers time to take their packets; each of them receives the answers to all."""
-        find = self._node.cfe.sb.find_pipe
+        find = self.__node__.cfe.sb.find_pipe
         for _ in range(PATIENCE):
-            pipes = [find(call.pipe) for call in list(self._entry.calls.values())]  # callers come and go
+            pipes = [find(call.pipe) for call in list(self.__entry.calls.values())]  # callers come and go
             if all(pipe is None or len(pipe.items) < room_of(pipe, packet) for pipe in pipes):
                 return
-            self._node.kernel.delay(PACE_NS)
+            self.__node__.kernel.delay(PACE_NS)
 
 
 class QuietService(Service):
-    """A service that every node has but few use: it costs no pipe, task or MsgId before the first call."""
+    """A service that every node has but few use: it costs no pipe, task or MsgId before the first call.
 
-    def _begin(self) -> None:
-        """Do nothing; `attend` starts a task at the first call."""
+    `attend` starts a task at the first call.
+    """
+
+    __is_quiet__ = True
 
 
 def make_service(node: Node) -> type[Service]:
     """Make the class `rospy.Service` of a node."""
-    return type("Service", (Service,), {"__module__": Service.__module__, "_node": node})
+    return type("Service", (Service,), {"__module__": Service.__module__, "__node__": node})
 
 
 def make_quiet_service(node: Node) -> type[QuietService]:
     """Make the class of a node's services that wait for their first call."""
-    return type("Service", (QuietService,), {"__module__": Service.__module__, "_node": node})
+    return type("Service", (QuietService,), {"__module__": Service.__module__, "__node__": node})

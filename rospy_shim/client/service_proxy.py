@@ -90,7 +90,7 @@ class ServiceProxy:
     """Calls a service; each node has a subclass that knows the node."""
 
     __module__ = "rospy.impl.tcpros_service"
-    _node: ClassVar[Node]
+    __node__: ClassVar[Node]
 
     def __init__(
         self, name: str, service_class: ServiceClass, persistent: bool = False, headers: dict[str, str] | None = None
@@ -104,21 +104,21 @@ class ServiceProxy:
                 on ROS have the same effect.
             headers: added to the `_connection_header` of the requests.
         """
-        self.resolved_name = self._node.names.resolve_name(name)
+        self.resolved_name = self.__node__.names.resolve_name(name)
         self.service_class = service_class
         self.request_class = service_class._request_class
         self.response_class = service_class._response_class
         self.persistent = persistent
-        self._header: Header = {
+        self.__header: Header = {
             "callerid": "",
             "md5sum": service_class._md5sum,
             "service": self.resolved_name,
             **(headers or {}),
             **({"persistent": "1"} if persistent else {}),
         }
-        self._pack = packer(self.request_class)
-        self._unpack = unpacker(self.response_class)
-        self._connection = PersistentConnection.NONE  # of a persistent proxy
+        self.__pack = packer(self.request_class)
+        self.__unpack = unpacker(self.response_class)
+        self.__connection = PersistentConnection.NONE  # of a persistent proxy
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
         """Call the service; see `call`."""
@@ -133,29 +133,29 @@ class ServiceProxy:
             ServiceException: there is no such service, or it failed.
             ROSInterruptException: the node was shut down meanwhile.
         """
-        node = self._node
+        node = self.__node__
         node.universe.charge()
         request = args_kwds_to_message(self.request_class, args, kwds)
-        if self._connection is PersistentConnection.CLOSED:
+        if self.__connection is PersistentConnection.CLOSED:
             raise AttributeError("'NoneType' object has no attribute 'tell'")
-        if self._connection is PersistentConnection.HALF_A_REQUEST:
-            self._wait_in_vain()
+        if self.__connection is PersistentConnection.HALF_A_REQUEST:
+            self.__wait_in_vain()
         entry = node.graph.services.get(self.resolved_name)
         if entry is None:
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
-        self._check_type(entry)
-        body = self._packed(request)
+        self.__check_type(entry)
+        body = self.__packed(request)
         try:
-            good, answer, half = self._exchange(entry, body)
+            good, answer, half = self.__exchange(entry, body)
         except CfeError as error:
             raise ServiceException(f"service [{self.resolved_name}]: {error}") from error
-        if self._connection is PersistentConnection.HALF_A_RESPONSE:
-            self._read_half()
+        if self.__connection is PersistentConnection.HALF_A_RESPONSE:
+            self.__read_half()
         if half and self.persistent:
-            self._connection = PersistentConnection.HALF_A_RESPONSE
+            self.__connection = PersistentConnection.HALF_A_RESPONSE
         if not good:
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {answer!r}")
-        response = self._read(answer)
+        response = self.__read(answer)
         response._connection_header = {
             "callerid": entry.service.node.names.name,
             "md5sum": self.service_class._md5sum,
@@ -164,30 +164,30 @@ class ServiceProxy:
         }
         return response
 
-    def _packed(self, request: Any) -> bytes:
+    def __packed(self, request: Any) -> bytes:
         """Serialize a request. If it fails, half of it stays in the buffer of the connection."""
         if self.persistent:
-            self._connection = max(self._connection, PersistentConnection.OPEN)
+            self.__connection = max(self.__connection, PersistentConnection.OPEN)
         try:
-            return self._pack(request)
+            return self.__pack(request)
         except Exception:
             if self.persistent:
-                self._connection = PersistentConnection.HALF_A_REQUEST
-                self._node.universe.print_error(_NOTE.format(service=self.resolved_name))
+                self.__connection = PersistentConnection.HALF_A_REQUEST
+                self.__node__.universe.print_error(_NOTE.format(service=self.resolved_name))
             raise
 
-    def _read(self, answer: bytes) -> Any:
+    def __read(self, answer: bytes) -> Any:
         """Make the response from its bytes.
 
         Raises:
             ServiceException: they are not a response; a service outside of the mission may send any bytes.
         """
         try:
-            return self._unpack(answer, 0)
+            return self.__unpack(answer, 0)
         except Exception as error:  # the type's code may raise any error
-            raise self._unreadable(error) from None
+            raise self.__unreadable(error) from None
 
-    def _unreadable(self, error: Exception) -> ServiceException:
+    def __unreadable(self, error: Exception) -> ServiceException:
         kind = (
             "DeserializationError cannot deserialize:"
             if isinstance(error, DeserializationError)
@@ -196,14 +196,17 @@ class ServiceProxy:
         what = f"receive_once[{self.resolved_name}]: {kind} {error}"
         return ServiceException(f"transport error completing service call: {what}")
 
-    def _wait_in_vain(self) -> NoReturn:
+    def __wait_in_vain(self) -> NoReturn:
         """Wait forever: the service could not read a request that follows half of another one, and does not answer."""
-        life, waits = self._node.life, WaitList(f"an answer of service {self.resolved_name}, which got half a request")
+        life, waits = (
+            self.__node__.life,
+            WaitList(f"an answer of service {self.resolved_name}, which got half a request"),
+        )
         while not life.is_shutdown():
             life.wait(waits, FOREVER)
         raise ROSInterruptException("node shutdown interrupted service call")
 
-    def _read_half(self) -> None:
+    def __read_half(self) -> None:
         """Read a response that follows half of another one, as an empty message.
 
         Raises:
@@ -212,33 +215,33 @@ class ServiceProxy:
         try:
             self.response_class().deserialize(b"")
         except DeserializationError as error:
-            raise self._unreadable(error) from None
+            raise self.__unreadable(error) from None
 
-    def _check_type(self, entry: ServiceEntry) -> None:
+    def __check_type(self, entry: ServiceEntry) -> None:
         ours, theirs = self.service_class._md5sum, entry.service.service_class._md5sum
         if ours not in (theirs, "*"):
             raise ServiceException(
-                f"unable to connect to service: remote error reported: request from [{self._node.names.name}]:"
+                f"unable to connect to service: remote error reported: request from [{self.__node__.names.name}]:"
                 f" md5sums do not match: [{ours}] vs. [{theirs}]"
             )
 
-    def _exchange(self, entry: ServiceEntry, body: bytes) -> tuple[bool, bytes, bool]:
+    def __exchange(self, entry: ServiceEntry, body: bytes) -> tuple[bool, bytes, bool]:
         """Send a request and wait for the answer with its number.
 
         Returns:
             True if it succeeded; the answer; True if half a response stays in the buffer of the service's connection.
         """
-        node = self._node
+        node = self.__node__
         pipes, answer_id = node.answer_pipes, entry.answer_id
         pipe = pipes.open(answer_id)
-        number = entry.begin(ServiceCall(pipe, {**self._header, "callerid": node.names.name}))
+        number = entry.begin(ServiceCall(pipe, {**self.__header, "callerid": node.names.name}))
         task = node.kernel.current
         before, task.awaits = task.awaits, (waits := WaitList(f"an answer of service {self.resolved_name}"))
         waits.holders = lambda: entry.serving.get(number, ())
         task.since = node.kernel.now
         try:
-            self._send(entry, number, body)
-            good, answer = self._await(entry, number, pipe)
+            self.__send(entry, number, body)
+            good, answer = self.__await(entry, number, pipe)
             return good, answer, number in entry.half_answered
         finally:
             task.awaits = before
@@ -246,43 +249,43 @@ class ServiceProxy:
             entry.half_answered.discard(number)
             pipes.close(answer_id, pipe)
 
-    def _send(self, entry: ServiceEntry, number: int, body: bytes) -> None:
-        bus = self._node.cfe.sb
+    def __send(self, entry: ServiceEntry, number: int, body: bytes) -> None:
+        bus = self.__node__.cfe.sb
         for packet in request_packets(entry.request_id, number, body, bus.config.sb_max_msg_size):
             while not entry.service.has_room(packet):
-                self._check_both(entry)
+                self.__check_both(entry)
                 entry.service.attend()
-                self._node.kernel.delay(PACE_NS)
+                self.__node__.kernel.delay(PACE_NS)
             bus.transmit_msg(packet)
             entry.service.attend()
 
-    def _await(self, entry: ServiceEntry, number: int, pipe: int) -> tuple[bool, bytes]:
-        receive, pieces = self._node.cfe.sb.receive_buffer, Pieces(ANSWER_LEAD)
+    def __await(self, entry: ServiceEntry, number: int, pipe: int) -> tuple[bool, bytes]:
+        receive, pieces = self.__node__.cfe.sb.receive_buffer, Pieces(ANSWER_LEAD)
         while True:
             packet = receive(pipe, LOOK_MS)
             if packet is None:
-                self._check_both(entry)
+                self.__check_both(entry)
                 continue
             answered, good = call_of_answer(packet)
             answer = pieces.add(answered, packet) if answered == number else None
             if answer is not None:
                 return good, answer
 
-    def _check_both(self, entry: ServiceEntry) -> None:
+    def __check_both(self, entry: ServiceEntry) -> None:
         """Check that both nodes still exist to go on with a call."""
-        if self._node.life.over:
+        if self.__node__.life.over:
             raise ROSInterruptException("node shutdown interrupted service call")
-        if self._node.graph.services.get(self.resolved_name) is not entry:
+        if self.__node__.graph.services.get(self.resolved_name) is not entry:
             raise ServiceException("transport error completing service call: the service has ended")
 
     def close(self) -> None:
         """End a persistent connection; on ROS, calls fail then."""
-        if self._connection is not PersistentConnection.NONE:
-            self._connection = PersistentConnection.CLOSED
+        if self.__connection is not PersistentConnection.NONE:
+            self.__connection = PersistentConnection.CLOSED
 
     def wait_for_service(self, timeout: Any = None) -> None:
         """Wait until the service is offered; see the function of that name."""
-        wait_for_service(self._node, self.resolved_name, timeout)
+        wait_for_service(self.__node__, self.resolved_name, timeout)
 
 
 def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
@@ -316,4 +319,4 @@ def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
 
 def make_service_proxy(node: Node) -> type[ServiceProxy]:
     """Make the class `rospy.ServiceProxy` of a node."""
-    return type("ServiceProxy", (ServiceProxy,), {"__module__": ServiceProxy.__module__, "_node": node})
+    return type("ServiceProxy", (ServiceProxy,), {"__module__": ServiceProxy.__module__, "__node__": node})

@@ -68,7 +68,11 @@ class Subscription(TopicSide):
     def _paid(self, unpack: Callable[[bytes, int], Any]) -> Callable[[bytes, int], Any]:
         """Return `unpack` with the virtual time of a call for each message in arrays, which genpy makes one by one."""
         unpack = self.node.working(self.name, unpack)
-        count, cost, charge = getattr(self.data_class, "_count_items", None), self.node.call_ns, self.node.kernel.charge
+        count, cost, charge = (
+            getattr(self.data_class, "__count_items__", None),
+            self.node.call_ns,
+            self.node.kernel.charge,
+        )
         if count is None or not cost:
             return unpack
 

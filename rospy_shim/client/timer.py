@@ -91,7 +91,7 @@ class Rate:
     """Sleeps so that a loop runs at a given rate; each node has a subclass that knows the node."""
 
     __module__ = "rospy.timer"
-    _node: ClassVar[Node]
+    __node__: ClassVar[Node]
 
     def __init__(self, hz: float, reset: bool = False) -> None:
         """Start the first period now.
@@ -104,36 +104,36 @@ class Rate:
             ROSInitException: before `init_node`.
             ZeroDivisionError: a rate of 0.
         """
-        node = self._node
-        self._last_ns = node.clock.now_ns()
-        self._period_ns = int(1e9 / hz)
+        node = self.__node__
+        self.__last_ns = node.clock.now_ns()
+        self.__period_ns = int(1e9 / hz)
         self._reset = reset
-        self._kernel = node.kernel
-        self._clock = node.clock
-        self._charge = node.universe.charge
+        self.__kernel = node.kernel
+        self.__clock = node.clock
+        self.__charge = node.universe.charge
 
     @property
     def sleep_dur(self) -> Duration:
         """The period."""
-        return Duration(0, self._period_ns)
+        return Duration(0, self.__period_ns)
 
     @sleep_dur.setter
     def sleep_dur(self, value: Any) -> None:
-        self._period_ns = value.to_nsec()
+        self.__period_ns = value.to_nsec()
 
     @property
     def last_time(self) -> Time:
         """The beginning of the present period."""
-        return self._node.clock.at(self._last_ns)
+        return self.__node__.clock.at(self.__last_ns)
 
     @last_time.setter
     def last_time(self, value: Any) -> None:
-        self._last_ns = value.to_nsec()
+        self.__last_ns = value.to_nsec()
 
     def remaining(self) -> Duration:
         """Return the remaining time of the present period."""
-        now = self._node.clock.now_ns()
-        return Duration(0, self._period_ns - (now - min(now, self._last_ns)))
+        now = self.__node__.clock.now_ns()
+        return Duration(0, self.__period_ns - (now - min(now, self.__last_ns)))
 
     def sleep(self) -> None:
         """Sleep until the present period ends.
@@ -142,34 +142,34 @@ class Rate:
             ROSTimeMovedBackwardsException: simulated time was set back, and the Rate was made without `reset`.
             ROSInterruptException: simulated time is used, and the node is shut down.
         """
-        if not self._clock.is_wallclock():
-            self._sleep_on_simulated_time()
+        if not self.__clock.is_wallclock():
+            self.__sleep_on_simulated_time()
             return
-        kernel = self._kernel
-        now = self._clock.wall_ns()
-        period = self._period_ns
-        end = min(now, self._last_ns) + period  # the clock may have been set back
+        kernel = self.__kernel
+        now = self.__clock.wall_ns()
+        period = self.__period_ns
+        end = min(now, self.__last_ns) + period  # the clock may have been set back
         if end > now:
             kernel.delay(end - now)
         else:
-            self._charge()
-        self._last_ns = end if now - end <= 2 * period else now
+            self.__charge()
+        self.__last_ns = end if now - end <= 2 * period else now
 
-    def _sleep_on_simulated_time(self) -> None:
+    def __sleep_on_simulated_time(self) -> None:
         """Sleep as `sleep` does, on a clock that others set, also back."""
-        clock, now = self._clock, self._clock.now_ns()
-        self._last_ns = min(now, self._last_ns)
+        clock, now = self.__clock, self.__clock.now_ns()
+        self.__last_ns = min(now, self.__last_ns)
         try:
-            clock.sleep(Duration(0, self._last_ns + self._period_ns - now))
+            clock.sleep(Duration(0, self.__last_ns + self.__period_ns - now))
         except ROSTimeMovedBackwardsException:
             if not self._reset:
                 raise
-            self._last_ns = clock.now_ns()
+            self.__last_ns = clock.now_ns()
             return
-        end = self._last_ns + self._period_ns
-        self._last_ns = end if now - end <= 2 * self._period_ns else now
+        end = self.__last_ns + self.__period_ns
+        self.__last_ns = end if now - end <= 2 * self.__period_ns else now
 
 
 def make_rate(node: Node) -> type[Rate]:
     """Make the class `rospy.Rate` of a node."""
-    return type("Rate", (Rate,), {"__module__": Rate.__module__, "_node": node})
+    return type("Rate", (Rate,), {"__module__": Rate.__module__, "__node__": node})

@@ -32,7 +32,7 @@ class TopicHandle:
     """A topic as one side of a node sees it; `impl` is shared by all handles of the side, None once unregistered."""
 
     __module__ = "rospy.topics"
-    _node: ClassVar[Node]
+    __node__: ClassVar[Node]
     impl: Any = None
 
     def __init__(self, name: str, data_class: MessageClass, reg_type: str) -> None:
@@ -49,7 +49,7 @@ class TopicHandle:
             raise ValueError(f"data_class [{data_class}] is not a class")
         if not hasattr(data_class, "_md5sum"):
             raise ValueError(f"data_class [{type(data_class).__name__}] is not a message data class")
-        node = self._node
+        node = self.__node__
         if not is_legal_name(name):
             node.warn_of_illegal(name)
         names = node.names
@@ -65,7 +65,7 @@ class TopicHandle:
 
     def get_num_connections(self) -> int:
         """Return the number of connections."""
-        self._node.universe.charge()
+        self.__node__.universe.charge()
         return self.impl.get_num_connections() if self.impl is not None else 0
 
 
@@ -101,7 +101,7 @@ class Publisher(TopicHandle):
             UsageError: the topic's MsgId belongs to another topic.
         """
         super().__init__(name, data_class, "pub")
-        node = self._node
+        node = self.__node__
         if queue_size is None:
             node.warn(NO_QUEUE_SIZE, SyntaxWarning)
         self.impl = link = node.link(self.resolved_name, data_class)
@@ -147,7 +147,7 @@ class Publisher(TopicHandle):
 
 def make_publisher(node: Node) -> type[Publisher]:
     """Make the class `rospy.Publisher` of a node."""
-    return type("Publisher", (Publisher,), {"__module__": Publisher.__module__, "_node": node})
+    return type("Publisher", (Publisher,), {"__module__": Publisher.__module__, "__node__": node})
 
 
 class Subscriber(TopicHandle):
@@ -186,7 +186,7 @@ class Subscriber(TopicHandle):
         super().__init__(name, data_class, "sub")
         self.callback = callback
         self.callback_args = callback_args
-        self.impl = subscription = self._node.subscription(self.resolved_name, data_class)
+        self.impl = subscription = self.__node__.subscription(self.resolved_name, data_class)
         if queue_size is not None:
             subscription.set_queue_size(queue_size)
         if buff_size != DEFAULT_BUFF_SIZE:
@@ -212,7 +212,7 @@ class Subscriber(TopicHandle):
 
 def make_subscriber(node: Node) -> type[Subscriber]:
     """Make the class `rospy.Subscriber` of a node."""
-    return type("Subscriber", (Subscriber,), {"__module__": Subscriber.__module__, "_node": node})
+    return type("Subscriber", (Subscriber,), {"__module__": Subscriber.__module__, "__node__": node})
 
 
 class TopicManager:

@@ -5,10 +5,12 @@ Source: wiki.ros.org/ROS/Master_API and wiki.ros.org/ROS/Parameter%20Server%20AP
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Any, cast
 
 from rospy_shim.master import xmlrpc_calls as calls
-from rospy_shim.master.registrations import Entries, Registrations
+from rospy_shim.master.registrations import Entries, Registrations, uri_of
 from rospy_shim.master.xmlrpc_calls import Answer, answers
 from rospy_shim.parameters.tree import ParameterTree
 from rospy_shim.parameters.values import marshalled
@@ -17,6 +19,7 @@ from rospy_shim.types.names import PRIV_NAME, SEP
 if TYPE_CHECKING:
     from rospy_shim.graph.graph import Graph
 
+MASTER_NAME = "/master"
 MASTER_PID = 100  # of a process that does not exist
 
 
@@ -35,6 +38,8 @@ class MasterApi:
         self._params: ParameterTree = graph.params
         self.registry = Registrations(graph)
         self._uri = uri
+        self._graph = graph
+        self._params.on_change(self._notify)
 
     @answers("")
     def getUri(self, caller: str) -> Answer:
@@ -120,6 +125,22 @@ class MasterApi:
         key = calls.resolve(key, caller)
         self.registry.unregister_param_subscriber(key, caller, uri)
         return 1, f"Unsubscribe to parameter [{key}]", 1
+
+    def _notify(self, changed: str) -> None:
+        """Send a change of a parameter to the nodes that have subscribed to it and that handle the call themselves.
+
+        All other nodes read the parameters without a call.
+        """
+        subscribers = self.registry.param_subscribers
+        if not subscribers:
+            return
+        for node in self._graph.nodes.values():
+            if node.handler is None or node.kernel.current.owner is node.owner:
+                continue  # as on ROS, a node gets no call for its own change
+            keys = [key for key, uris in subscribers.items() if uri_of(node) in uris.values()]
+            for key, value in _updates(keys, changed, self._params):
+                update = partial(node.handler.paramUpdate, MASTER_NAME, key, value)
+                node.start_task("paramUpdate", cast("Callable[[], None]", update))
 
     def subscribes_to_param(self, uri: str, key: str) -> bool:
         """Return True if a node at a URI has subscribed to a parameter."""
@@ -219,3 +240,25 @@ def _unregistered(known: bool, done: bool, caller: str, topic: str) -> Answer:
     if not done:
         return 1, f"[{caller}] is not a known provider of [{topic}]", 0
     return 1, f"Unregistered [{caller}] as provider of [{topic}]", 1
+
+
+def _updates(keys: Iterable[str], changed: str, params: ParameterTree) -> Iterator[tuple[str, Any]]:
+    """Yield the keys, with a slash at the end, and values that ROS's master sends after a change: the changed key if it
+    is a subscribed one or below it, the subscribed key if it is below the changed one.
+
+    Args:
+        keys: the subscribed keys.
+        changed: the changed key.
+        params: all parameters.
+    """
+    whole = changed.rstrip(SEP) + SEP
+    for key in keys:
+        if whole.startswith(key.rstrip(SEP) + SEP):
+            yield whole, _value_or_nothing(params, changed)
+        elif key.startswith(whole):
+            yield key.rstrip(SEP) + SEP, _value_or_nothing(params, key)
+
+
+def _value_or_nothing(params: ParameterTree, key: str) -> Any:
+    value = params.find(key)
+    return {} if value is ParameterTree.MISSING else value

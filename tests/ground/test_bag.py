@@ -249,7 +249,7 @@ def test_messages_of_external_nodes_are_recorded_with_their_names(tmp_path: Path
             act("ros", "publish", "/late", name, "", string._type, string._md5sum, string._full_text, False)
         mission.run_for(1)
         for name in ("/two", "/one"):
-            assert act("ros", "message", "/late", name, string(name)._pack())
+            assert act("ros", "message", "/late", name, string(name).__pack__())
             mission.run_for(0.1)
     with BagReader(str(bag)) as reader:
         found = [(each.header["callerid"], each.data[4:].decode()) for each in reader.messages(["/late"])]

@@ -14,7 +14,7 @@ from rospy_shim.types.msgs import message_class
 def made(kind: str, value: Any) -> Any:
     """Return the message, through its bytes."""
     message = message_from_json(message_class, kind, value)
-    return type(message)().deserialize(message._pack())
+    return type(message)().deserialize(message.__pack__())
 
 
 def test_messages_in_messages() -> None:

@@ -36,11 +36,11 @@ def test_messages_survive_a_round_trip(typed: tuple[str, Any]) -> None:
     name, value = typed
     library, cls = shipped(), message_class(name)
     message = build(library, name, value)
-    encoded = message._pack()
+    encoded = message.__pack__()
     assert encoded == encode(library.spec(name), library.spec, message)
-    assert cls._unpack(encoded)._pack() == encoded
-    assert cls._unpack(b"xyz" + encoded + b"tail", 3)._pack() == encoded
-    assert cls().deserialize(encoded)._pack() == encoded
+    assert cls.__unpack__(encoded).__pack__() == encoded
+    assert cls.__unpack__(b"xyz" + encoded + b"tail", 3).__pack__() == encoded
+    assert cls().deserialize(encoded).__pack__() == encoded
 
 
 @_SMALL
@@ -49,9 +49,9 @@ def test_cached_strings_change_nothing(lists: list[list[str]]) -> None:
     library, cls = shipped(), message_class("sensor_msgs/JointState")
     for names in [*lists, *lists[::-1], lists[0]]:
         message = cls(name=names)
-        encoded = message._pack()
+        encoded = message.__pack__()
         assert encoded == encode(library.spec("sensor_msgs/JointState"), library.spec, message)
-        decoded = cls._unpack(encoded)
+        decoded = cls.__unpack__(encoded)
         assert decoded.name == names
         decoded.name.append("mine")
 
@@ -62,13 +62,13 @@ def test_cached_strings_change_nothing(lists: list[list[str]]) -> None:
 def test_truncated_bytes_are_decoded_or_refused(typed: tuple[str, Any], data: st.DataObject) -> None:
     name, value = typed
     cls = message_class(name)
-    encoded = build(shipped(), name, value)._pack()
+    encoded = build(shipped(), name, value).__pack__()
     cut = encoded[: data.draw(st.integers(0, len(encoded)))]
     try:
-        again = cls._unpack(cut)
+        again = cls.__unpack__(cut)
     except genpy.DeserializationError:
         return
-    assert again._pack() == cls().deserialize(cut)._pack()
+    assert again.__pack__() == cls().deserialize(cut).__pack__()
 
 
 class Peer:
@@ -110,7 +110,7 @@ def test_messages_equal_genpy(peer: Peer, typed: tuple[str, Any]) -> None:
     name, value = typed
     message = build(shipped(), name, value)
     theirs = peer.ask(name, value=value)
-    assert {"hex": message._pack().hex(), "text": str(message), "md5sum": message._md5sum} == theirs
+    assert {"hex": message.__pack__().hex(), "text": str(message), "md5sum": message._md5sum} == theirs
 
 
 @pytest.mark.slow
@@ -118,14 +118,14 @@ def test_messages_equal_genpy(peer: Peer, typed: tuple[str, Any]) -> None:
 @given(typed=typed_values, data=st.data())
 def test_damaged_bytes_are_decoded_as_by_genpy(peer: Peer, typed: tuple[str, Any], data: st.DataObject) -> None:
     name, value = typed
-    octets = bytearray(build(shipped(), name, value)._pack())
+    octets = bytearray(build(shipped(), name, value).__pack__())
     for _ in range(data.draw(st.integers(0, 2))):
         if octets:
             octets[data.draw(st.integers(0, len(octets) - 1))] = data.draw(st.sampled_from([0, 1, 2, 5, 127, 255]))
     damaged = bytes(octets[: data.draw(st.integers(0, len(octets)))])
     theirs = peer.ask(name, hex=damaged.hex())
     try:
-        ours = {"hex": message_class(name)._unpack(damaged)._pack().hex()}
+        ours = {"hex": message_class(name).__unpack__(damaged).__pack__().hex()}
     except Exception as error:
         ours = {"error": type(error).__name__}
     assert ours == theirs

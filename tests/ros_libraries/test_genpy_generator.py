@@ -44,7 +44,7 @@ def test_generated_source(message: dict[str, Any]) -> None:
     made = run(generator.msg_generator(context, spec, {}))[name.rpartition("/")[2]]
     for identity in ("_type", "_md5sum", "_full_text", "_has_header", "__slots__", "_slot_types"):
         assert getattr(made, identity) == getattr(ours, identity)
-    assert made()._pack() == ours()._pack()
+    assert made().__pack__() == ours().__pack__()
     for case in message["cases"]:
         golden = bytes.fromhex(case["hex"])
         values = build(shipped(), name, case["value"])
@@ -53,8 +53,8 @@ def test_generated_source(message: dict[str, Any]) -> None:
         filled.serialize(buff)
         assert buff.getvalue() == golden
         assert str(filled) == case["str"]
-        assert made().deserialize(golden)._pack() == golden
-        assert made._unpack(b"prefix" + golden, 6)._pack() == golden
+        assert made().deserialize(golden).__pack__() == golden
+        assert made.__unpack__(b"prefix" + golden, 6).__pack__() == golden
 
 
 def test_constants_and_reserved_words() -> None:
@@ -63,7 +63,7 @@ def test_constants_and_reserved_words() -> None:
     made = run(generator.msg_generator(context, spec, {}))["M"]
     assert (made.A, made.S, made.F, made.B) == (3, 'it\'s "x"', 0.5, True)
     assert made.__slots__ == ["from_", "self_"]
-    assert made(from_=1, self_=[2, 3])._pack() == b"\1\2\3"
+    assert made(from_=1, self_=[2, 3]).__pack__() == b"\1\2\3"
     assert made._full_text == text
 
 
@@ -72,9 +72,9 @@ def test_errors_of_generated_classes() -> None:
     made = run(generator.msg_generator(context, spec, {}))["M"]
     genpy = WORLD.importer.load("genpy")
     with pytest.raises(genpy.SerializationError, match="exceeds specified width"):
-        made(a=200)._pack()
+        made(a=200).__pack__()
     with pytest.raises(genpy.SerializationError, match="Expecting 2 items but found 1"):
-        made(b=["x"])._pack()
+        made(b=["x"]).__pack__()
     with pytest.raises(genpy.DeserializationError):
         made().deserialize(b"\0")
     assert made(b=["x", ""]).deserialize(bytes.fromhex("0001000000ff00000000")).b == ["\ufffd", ""]
@@ -87,7 +87,7 @@ def test_service() -> None:
     made = run(generator.srv_generator(context, spec, {}))
     assert made["SetBool"]._md5sum == service_class("std_srvs/SetBool")._md5sum
     assert made["SetBool"]._request_class is made["SetBoolRequest"]
-    assert made["SetBoolResponse"](True, "fine")._pack() == b"\1\4\0\0\0fine"
+    assert made["SetBoolResponse"](True, "fine").__pack__() == b"\1\4\0\0\0fine"
 
 
 def test_unknown_types() -> None:

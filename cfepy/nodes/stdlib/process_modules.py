@@ -26,7 +26,7 @@ _S = 1e9
 
 
 def gc_module(universe: Universe) -> ModuleType:
-    """Return `gc`: `collect` collects, everything else has no effect."""
+    """Return `gc`: `collect` collects, `get_objects` lists, and calls that change settings have no effect."""
     state = {"enabled": True, "debug": 0}
     threshold = [700, 10, 10]
 
@@ -39,6 +39,10 @@ def gc_module(universe: Universe) -> ModuleType:
     def set_debug(flags: int) -> None:
         state["debug"] = flags
 
+    def get_objects(generation: int | None = None) -> list[Any]:
+        universe.make_hidden_objects()
+        return gc.get_objects(generation)
+
     return proxy(
         gc,
         callbacks=[],
@@ -46,6 +50,7 @@ def gc_module(universe: Universe) -> ModuleType:
         enable=lambda: set_enabled(True),
         freeze=lambda: None,
         get_debug=lambda: state["debug"],
+        get_objects=get_objects,
         get_threshold=lambda: tuple(threshold),
         isenabled=lambda: state["enabled"],
         set_debug=set_debug,

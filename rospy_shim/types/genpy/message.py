@@ -29,9 +29,9 @@ class Message:
     _connection_header: dict[str, str]
 
     # A class made by the generator names itself here, so that it can be pickled where no "std_msgs" is importable.
-    _restore_as: ClassVar[tuple[type[Message], Callable[[str], Message]] | None] = None
+    __restore_as__: ClassVar[tuple[type[Message], Callable[[str], Message]] | None] = None
     # Counts the messages in the arrays of one; None for a type without such arrays.
-    _count_items: ClassVar[Callable[[Message], int] | None] = None
+    __count_items__: ClassVar[Callable[[Message], int] | None] = None
 
     def __init__(self, *args: Any, **kwds: Any) -> None:
         """Set all fields from positional arguments, or some of them by name; the rest become None.
@@ -78,13 +78,13 @@ class Message:
 
     # Sources that genpy generated have only these two; cfepy's classes have faster ones of their own.
 
-    def _pack(self) -> bytes:
+    def __pack__(self) -> bytes:
         buff = BytesIO()
         self.serialize(buff)
         return buff.getvalue()
 
     @classmethod
-    def _unpack(cls, data: bytes, at: int = 0) -> Any:
+    def __unpack__(cls, data: bytes, at: int = 0) -> Any:
         return cls().deserialize(data[at:])
 
     def __getstate__(self) -> Any:
@@ -95,7 +95,7 @@ class Message:
             setattr(self, name, value)
 
     def __reduce_ex__(self, protocol: Any) -> Any:
-        known = self._restore_as
+        known = self.__restore_as__
         if known is not None and known[0] is type(self):
             return known[1], (self._type,), self.__getstate__()
         return super().__reduce_ex__(protocol)

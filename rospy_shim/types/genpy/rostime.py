@@ -21,7 +21,7 @@ class TVal:
     __module__ = "genpy.rostime"
     __slots__ = ["secs", "nsecs"]  # noqa: RUF023  # the order is visible to nodes
     _slot_types: ClassVar[list[str]] = ["int32", "int32"]
-    _name: ClassVar[str] = "TVal"
+    __kind__: ClassVar[str] = "TVal"
 
     secs: int
     nsecs: int
@@ -77,7 +77,7 @@ class TVal:
     def __reduce_ex__(self, protocol: Any) -> Any:
         if type(self) in (TVal, Time, Duration):
             # "genpy" is a module inside a node only, so the host's pickle must not look the class up there.
-            return _rebuild, (self._name, self.secs, self.nsecs)
+            return _rebuild, (self.__kind__, self.secs, self.nsecs)
         return super().__reduce_ex__(protocol)
 
     def __hash__(self) -> int:
@@ -87,7 +87,7 @@ class TVal:
         return str(self.to_nsec())
 
     def __repr__(self) -> str:
-        return f"genpy.{self._name}[{self.to_nsec()}]"
+        return f"genpy.{self.__kind__}[{self.to_nsec()}]"
 
     def __bool__(self) -> bool:
         return not self.is_zero()
@@ -134,7 +134,7 @@ class Time(TVal):
 
     __module__ = "genpy.rostime"
     __slots__ = ["secs", "nsecs"]  # noqa: RUF023  # the order is visible to nodes
-    _name = "Time"
+    __kind__ = "Time"
 
     def __init__(self, secs: Any = 0, nsecs: Any = 0) -> None:
         """Make an instant.
@@ -177,7 +177,7 @@ class Duration(TVal):
 
     __module__ = "genpy.rostime"
     __slots__ = ["secs", "nsecs"]  # noqa: RUF023  # the order is visible to nodes
-    _name = "Duration"
+    __kind__ = "Duration"
 
     __hash__ = TVal.__hash__
 

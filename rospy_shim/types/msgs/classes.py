@@ -2,8 +2,8 @@
 `Spec`.
 
 A message class has genpy's public interface (`_type`, `_md5sum`, `__slots__`, `serialize`, ...) and two functions of
-cfepy's own that the publisher and the subscriber use: `_pack(msg) -> bytes` and `_unpack(data, at=0) -> msg`. Functions
-that are seldom called are compiled at their first call. A service class holds a request and a response class.
+cfepy's own that the publisher and the subscriber use: `__pack__(msg) -> bytes` and `__unpack__(data, at=0) -> msg`.
+Functions that are seldom called are compiled at their first call. A service class holds a request and a response class.
 """
 
 from __future__ import annotations
@@ -98,12 +98,12 @@ def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Message] 
         "_get_types": lambda self: types,
         "__init__": _constructor(spec, table, names),
         **_writers(write),
-        "_pack": _function(spec, names, pack_source(spec, table.spec, names), "_pack"),
-        "_count_items": _counter(spec, table, names),
+        "__pack__": _function(spec, names, pack_source(spec, table.spec, names), "__pack__"),
+        "__count_items__": _counter(spec, table, names),
     }
     cls: MessageClass = type(name, (Message,), body)
     _add_readers(cls, spec, table, names)
-    cls._restore_as = None if restore is None else (cls, restore)
+    cls.__restore_as__ = None if restore is None else (cls, restore)
     return cls
 
 
@@ -126,7 +126,7 @@ def _writers(write: Callable[..., None]) -> dict[str, Callable[..., None]]:
                 in genpy.
         """
         try:
-            octets = self._pack()
+            octets = self.__pack__()
         except Exception:
             octets = None
         write(self, buff) if octets is None else buff.write(octets)
@@ -139,7 +139,7 @@ def _writers(write: Callable[..., None]) -> dict[str, Callable[..., None]]:
                 in genpy.
         """
         try:
-            octets = self._pack_numpy(numpy)
+            octets = self.__pack_numpy__(numpy)
         except Exception:
             octets = None
         write(self, buff, numpy) if octets is None else buff.write(octets)
@@ -157,12 +157,12 @@ def _add_readers(cls: MessageClass, spec: Spec, table: TypeTable, names: Namespa
     def reader(form: Form) -> list[str]:
         return unpack_source(spec, table.spec, table.message_class, names, form)
 
-    unpack = classmethod(_function(spec, names, reader(Form.UNPACK), "_unpack"))
-    cls._unpack = unpack  # type: ignore[method-assign, assignment]  # in place of the slow one of the base
+    unpack = classmethod(_function(spec, names, reader(Form.UNPACK), "__unpack__"))
+    cls.__unpack__ = unpack  # type: ignore[method-assign, assignment]  # in place of the slow one of the base
     _compile_later(cls, spec, names, "deserialize", partial(reader, Form.DESERIALIZE))
     _compile_later(cls, spec, names, "deserialize_numpy", partial(reader, Form.DESERIALIZE_NUMPY))
     with_numpy = partial(pack_source, spec, table.spec, names, with_numpy=True)
-    _compile_later(cls, spec, names, "_pack_numpy", with_numpy)
+    _compile_later(cls, spec, names, "__pack_numpy__", with_numpy)
 
 
 def _counter(spec: Spec, table: TypeTable, names: Namespace) -> Callable[[Message], int] | None:
@@ -170,7 +170,7 @@ def _counter(spec: Spec, table: TypeTable, names: Namespace) -> Callable[[Messag
     lengths = " + ".join(f"len(self.{path})" for path in _arrays(spec, table))
     if not lengths:
         return None
-    return _function(spec, names, ["def _count_items(self):", f"    return {lengths}"], "_count_items")
+    return _function(spec, names, ["def __count_items__(self):", f"    return {lengths}"], "__count_items__")
 
 
 def _arrays(spec: Spec, table: TypeTable, owner: str = "") -> Iterator[str]:

@@ -1,6 +1,6 @@
-"""Writes the source of `_unpack` and `deserialize`: bytes to a message in one straight line of code.
+"""Writes the source of `__unpack__` and `deserialize`: bytes to a message in one straight line of code.
 
-The mirror of `encoder`. `_unpack` makes new objects without running any `__init__`; `deserialize` fills an existing
+The mirror of `encoder`. `__unpack__` makes new objects without running any `__init__`; `deserialize` fills an existing
 message and keeps its nested ones, as genpy does. Offsets that are known when the code is written are constants in it.
 """
 
@@ -17,7 +17,7 @@ from rospy_shim.types.msgs.spec import PRIMITIVES, Field, Spec
 _TIMES = {"time": ("_Time", "I"), "duration": ("_Duration", "i")}
 _OCTETS = ("uint8", "char")
 _HEADS = (
-    "def _unpack(cls, data, at=0):",
+    "def __unpack__(cls, data, at=0):",
     "def deserialize(self, str):",
     "def deserialize_numpy(self, str, numpy):",
 )

@@ -1,4 +1,4 @@
-"""Writes the source of `_pack`: a message to bytes in one straight line of code.
+"""Writes the source of `__pack__`: a message to bytes in one straight line of code.
 
 Neighbouring fixed-size fields, across nested messages, go through one precompiled struct, together with one string or
 array of variable length, for which there is a struct per length. At most one array of numbers enters a struct, so that
@@ -25,12 +25,12 @@ def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, 
         lookup: specs of nested types.
         names: receives the names in the source. The caller must add `_write_again`, which handles a message that the
             fast code cannot write as genpy does.
-        with_numpy: write `_pack_numpy(self, numpy)`, where number arrays are numpy's.
+        with_numpy: write `__pack_numpy__(self, numpy)`, where number arrays are numpy's.
     """
     out = CodeLines(depth=2)
     encoder = _Encoder(out, lookup, names, with_numpy)
     encoder.fields(spec, "self")
-    head = "def _pack_numpy(self, numpy):" if with_numpy else "def _pack(self):"
+    head = "def __pack_numpy__(self, numpy):" if with_numpy else "def __pack__(self):"
     out.add(f"return {encoder.result()}")
     again = "_write_again(self, numpy)" if with_numpy else "_write_again(self)"
     return [head, "    try:", *out.lines, "    except Exception:", "        pass", f"    return {again}"]

@@ -79,15 +79,15 @@ def test_numbers_cost_nothing(tmp_path: Path) -> None:
 def test_items_are_counted_over_all_arrays(name: str, items: dict[str, int]) -> None:
     cls = message_class(name)
     message = cls(**{field: [None] * count for field, count in items.items()})
-    assert cls._count_items(message) == sum(items.values())
+    assert cls.__count_items__(message) == sum(items.values())
 
 
 def test_items_of_nested_messages_count() -> None:
     trajectory = message_class("trajectory_msgs/JointTrajectory")()
     trajectory.points = [message_class("trajectory_msgs/JointTrajectoryPoint")()] * 4
     outer = message_class("control_msgs/FollowJointTrajectoryGoal")(trajectory=trajectory)
-    assert type(outer)._count_items(outer) == 4
+    assert type(outer).__count_items__(outer) == 4
 
 
 def test_type_without_message_arrays_has_no_counter() -> None:
-    assert message_class("sensor_msgs/JointState")._count_items is None
+    assert message_class("sensor_msgs/JointState").__count_items__ is None

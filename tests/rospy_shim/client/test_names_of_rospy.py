@@ -15,7 +15,6 @@ SERVER = "the XML-RPC server of a node; the master asks the node itself"
 THREADS = "the thread that registers a node with a master"
 ABSENT = {
     "impl.init.start_node": SERVER,
-    "impl.masterslave.ROSHandler": SERVER,
     "impl.registration.RegManager": THREADS,
     "impl.tcpros.get_tcpros_handler": TCP,
     "impl.tcpros.init_tcpros": TCP,

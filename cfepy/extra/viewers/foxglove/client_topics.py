@@ -257,8 +257,8 @@ def _encoder(class_of: Callable[[str], Any], kind: str, is_json: bool) -> Callab
     def encode(data: bytes) -> bytes:
         try:
             if is_json:
-                return bytes(message_from_json(class_of, kind, loads(data))._pack())
-            is_whole = made._unpack(data)._pack() == data
+                return bytes(message_from_json(class_of, kind, loads(data)).__pack__())
+            is_whole = made.__unpack__(data).__pack__() == data
         except Exception as error:  # the generated code may raise any error for invalid data
             raise ValueError(f"invalid {kind}: {error}") from None
         if not is_whole:

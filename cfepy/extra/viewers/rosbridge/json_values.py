@@ -134,7 +134,7 @@ class Reading:
         if seq is not None and kind._has_header:
             message.header.seq = seq
         try:
-            packed: bytes = message._pack()
+            packed: bytes = message.__pack__()
         except Exception as error:  # generated code raises various errors for values that do not fit, OverflowError too
             raise WrongMessage(str(error)) from None
         return packed

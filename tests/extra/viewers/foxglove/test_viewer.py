@@ -24,7 +24,7 @@ EPOCH_NS = 316_533_800_000_000_000  # of the mission's clock at power-on
 
 def text(value: str) -> bytes:
     """Return a std_msgs/String as ROS serialises it."""
-    return bytes(STRING(value)._pack())
+    return bytes(STRING(value).__pack__())
 
 
 @pytest.fixture
@@ -131,7 +131,7 @@ def test_parameter_that_cannot_be_set_is_reported(run: ShownRun) -> None:
 
 def test_services_are_called(run: ShownRun) -> None:
     with run.client() as client:
-        client.call("/switch", 5, SET_BOOL._request_class(True)._pack())
+        client.call("/switch", 5, SET_BOOL._request_class(True).__pack__())
         client.wait_for(lambda: client.answers)
         number, encoding, body = client.answers[0]
         assert (number, encoding) == (5, "ros1")
@@ -139,7 +139,7 @@ def test_services_are_called(run: ShownRun) -> None:
         assert (answer.success, answer.message) == (True, "on")
         service = client.services["/switch"]
         assert (service["type"], service["request"]["schema"]) == ("std_srvs/SetBool", "bool data")
-        client.call("/switch", 6, SET_BOOL._request_class(False)._pack())
+        client.call("/switch", 6, SET_BOOL._request_class(False).__pack__())
         client.wait_for(lambda: client.told("serviceCallFailure"))
         assert "off is not possible" in client.told("serviceCallFailure")[0]["message"]
 
@@ -152,7 +152,7 @@ def test_too_short_request_fails_and_the_run_continues(run: ShownRun) -> None:
         client.wait_for(lambda: len(client.told("serviceCallFailure")) == 3)
         for failed in client.told("serviceCallFailure"):
             assert failed["message"].startswith("service cannot process request: ")
-        client.call("/switch", 8, SET_BOOL._request_class(True)._pack())
+        client.call("/switch", 8, SET_BOOL._request_class(True).__pack__())
         client.wait_for(lambda: client.answers)
         assert client.answers[0][0] == 8
 
@@ -244,7 +244,7 @@ def test_recorded_arrivals_reproduce_the_run(tmp_path: Path) -> None:
             client.advertise(1, "/orders", "std_msgs/String")
             client.publish(1, text("first"))
             client.send(op="setParameters", parameters=[{"name": "/speed", "value": 3}])
-            client.call("/switch", 1, SET_BOOL._request_class(True)._pack())
+            client.call("/switch", 1, SET_BOOL._request_class(True).__pack__())
             client.wait_for(lambda: client.answers and run.rows()["/orders", "in"]["messages"])
         run.until(2)
         end_ns, digest = run.mission.kernel.now, run.mission.trace.digest()

@@ -145,13 +145,13 @@ def test_octets_keep_the_type_of_their_source() -> None:
 def test_times_of_the_message_itself_are_normalised() -> None:
     pair = "01000000ffffffff"
     data = bytes.fromhex("00" * 43 + pair + "00" * 4 + "01000000" + pair + "01000000" + "00" * 4 + pair + "00" * 4)
-    for message in (Mixed._unpack(data + bytes.fromhex(pair)), Mixed().deserialize(data + bytes.fromhex(pair))):
+    for message in (Mixed.__unpack__(data + bytes.fromhex(pair)), Mixed().deserialize(data + bytes.fromhex(pair))):
         times = (message.header.stamp, message.ts[0], message.hs[0].stamp, message.d)
         assert [(each.secs, each.nsecs) for each in times] == [(1, 4294967295)] * 3 + [(0, 999999999)]
         assert written(message)[2] == data.hex() + "00000000ffc99a3b"
     header = Header().deserialize(bytes.fromhex("00" * 4 + pair + "00" * 4))
     assert (header.stamp.secs, header.stamp.nsecs) == (5, 294967295)
-    span = message_class("std_msgs/Duration")._unpack(bytes.fromhex("ffffffff01000080"))
+    span = message_class("std_msgs/Duration").__unpack__(bytes.fromhex("ffffffff01000080"))
     assert (span.data.secs, span.data.nsecs) == (-4, 852516353)
 
 

@@ -133,7 +133,7 @@ def test_deep_copy_shares_nothing() -> None:
 
 def test_subclass_of_a_message() -> None:
     Named: Any = type("Named", (String,), {"__slots__": []})
-    decoded = Named._unpack(String("x")._pack())
+    decoded = Named.__unpack__(String("x").__pack__())
     assert type(decoded) is Named
     assert decoded.data == "x"
 
@@ -143,7 +143,7 @@ def test_deserialize_fills_in_place() -> None:
     header, position = message.header, message.pose.pose.position
     message.pose.covariance = None
     message.twist = None
-    message.deserialize(Odometry(child_frame_id="base")._pack())
+    message.deserialize(Odometry(child_frame_id="base").__pack__())
     assert message.header is header
     assert message.pose.pose.position is position
     assert message.twist.twist.linear.x == 0.0
@@ -153,7 +153,7 @@ def test_deserialize_fills_in_place() -> None:
 def test_times_are_normalised() -> None:
     times = from_full_text("pkg/T", "time a\nduration b\ntime[] c\n").message_class("pkg/T")
     pair = bytes.fromhex("01000000ffffffff")
-    message = times._unpack(pair + pair + bytes.fromhex("01000000") + pair)
+    message = times.__unpack__(pair + pair + bytes.fromhex("01000000") + pair)
     assert (message.a.secs, message.a.nsecs) == (5, 294967295)
     assert (message.b.secs, message.b.nsecs) == (0, 999999999)
     assert (message.c[0].secs, message.c[0].nsecs) == (1, 4294967295)
@@ -210,44 +210,44 @@ def test_errors_ignored_by_genpy_are_ignored(fields: dict[str, Any], error: type
 def test_lengths_of_two_fixed_arrays_are_checked_separately() -> None:
     two = from_full_text("pkg/Two", "float64[2] a\nfloat64[2] b\n").message_class("pkg/Two")
     with pytest.raises(genpy.SerializationError):
-        two(a=[1.0], b=[1.0, 2.0, 3.0])._pack()
+        two(a=[1.0], b=[1.0, 2.0, 3.0]).__pack__()
 
 
 def test_short_bytes() -> None:
     with pytest.raises(genpy.DeserializationError, match=r"^unpack requires a buffer of 4 bytes$"):
         UInt32().deserialize(b"\x01")
     with pytest.raises(genpy.DeserializationError):
-        JointState._unpack(JointState(position=[1.0])._pack()[:-1])
+        JointState.__unpack__(JointState(position=[1.0]).__pack__()[:-1])
     with pytest.raises(genpy.DeserializationError):
-        JointState._unpack(JointState()._pack()[:16] + b"\xff\xff\xff\xff")
+        JointState.__unpack__(JointState().__pack__()[:16] + b"\xff\xff\xff\xff")
     # genpy accepts the available part of a truncated string.
     assert String().deserialize(b"\x05\0\0\0ab").data == "ab"
 
 
 def test_invalid_utf8_is_replaced() -> None:
-    assert String._unpack(b"\x01\0\0\0\xff").data == "\ufffd"
+    assert String.__unpack__(b"\x01\0\0\0\xff").data == "\ufffd"
 
 
 def test_cached_string_lists_are_not_shared() -> None:
     names = ["a", "b"]
     message = JointState(name=names)
-    encoded = message._pack()
-    decoded = JointState._unpack(encoded)
+    encoded = message.__pack__()
+    decoded = JointState.__unpack__(encoded)
     decoded.name.append("c")
-    assert JointState._unpack(encoded).name == ["a", "b"]
+    assert JointState.__unpack__(encoded).name == ["a", "b"]
     names[0] = "changed"
-    assert JointState._unpack(message._pack()).name == ["changed", "b"]
-    assert JointState(name=("a", "b"))._pack() == encoded
+    assert JointState.__unpack__(message.__pack__()).name == ["changed", "b"]
+    assert JointState(name=("a", "b")).__pack__() == encoded
 
 
 def test_bytes_like_input() -> None:
-    encoded = String("abc")._pack()
+    encoded = String("abc").__pack__()
     assert String().deserialize(bytearray(encoded)).data == "abc"
 
 
 def test_lists_and_tuples_are_equal() -> None:
     names = JointState(name=["a"], position=[1.0, 2.0])
-    decoded = JointState._unpack(names._pack())
+    decoded = JointState.__unpack__(names.__pack__())
     assert isinstance(decoded.position, tuple)
     assert decoded == names
     assert JointState(position=[1.0]) != JointState(position=(2.0,))

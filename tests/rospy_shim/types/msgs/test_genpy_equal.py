@@ -102,8 +102,8 @@ def compare(names: Sequence[str], services: Sequence[str], count: int) -> None:
         assert cls._md5sum == theirs["md5sums"][name], name
         for value, answer in zip(values[name], theirs["answers"][name], strict=True):
             message = build(library, name, value)
-            octets = message._pack()
-            ours = {"hex": octets.hex(), "again": cls._unpack(octets)._pack().hex(), "text": str(message)}
+            octets = message.__pack__()
+            ours = {"hex": octets.hex(), "again": cls.__unpack__(octets).__pack__().hex(), "text": str(message)}
             assert ours == answer, f"{name}: {value}"
     assert {name: service_class(name)._md5sum for name in services} == theirs["services"]
 

@@ -39,7 +39,7 @@ def count(number: int) -> bytes:
 def decode(cls: MessageClass, data: Any, way: int) -> Any:
     """Return the result of one of the four ways to decode bytes."""
     if way == 0:
-        return cls._unpack(b"123" + data, 3)
+        return cls.__unpack__(b"123" + data, 3)
     if way == 1:
         return cls().deserialize(data)
     return cls().deserialize_numpy(data, numpy) if way == 2 else cls().deserialize(bytearray(data))
@@ -49,7 +49,7 @@ def decode(cls: MessageClass, data: Any, way: int) -> Any:
 def test_items_of_octets_are_limited_by_the_remaining_bytes(way: int) -> None:
     whole = count(3) + bytes(range(33))
     assert len(decode(PAIRS, whole, way).items) == 3
-    assert decode(PAIRS, whole, way)._pack() == whole
+    assert decode(PAIRS, whole, way).__pack__() == whole
     for data in (whole[:-1], count(200_000), count(4) + bytes(33)):
         with pytest.raises(genpy.DeserializationError, match=r"^unpack requires a buffer of \d+ bytes$"):
             decode(PAIRS, data, way)
@@ -68,17 +68,17 @@ def test_largest_count_in_a_map_feature_is_refused() -> None:
     """geographic_msgs/MapFeature has an array of octets[16]."""
     feature = message_class("geographic_msgs/MapFeature")
     with pytest.raises(genpy.DeserializationError, match="68719476720 bytes"):
-        feature._unpack(bytes(16) + count(0xFFFFFFFF) + bytes(40))
+        feature.__unpack__(bytes(16) + count(0xFFFFFFFF) + bytes(40))
 
 
 def test_truncated_message_is_not_read_from_its_middle() -> None:
     """The rest of this path from its second pose on would be a valid, empty path."""
     path = message_class("nav_msgs/Path")
     pose = message_class("geometry_msgs/PoseStamped")
-    whole = path(poses=[pose(), pose()])._pack()
+    whole = path(poses=[pose(), pose()]).__pack__()
     for cut in range(len(whole)):
         with pytest.raises(genpy.DeserializationError):
-            path._unpack(whole[:cut])
+            path.__unpack__(whole[:cut])
 
 
 @pytest.mark.slow
@@ -89,7 +89,7 @@ def test_damaged_packets_allocate_only_for_their_bytes() -> None:
         for name in [*all_types()[::9], *ANGLED]:
             cls = message_class(name)
             for way in (0, 1):
-                decode(cls, cls()._pack(), way)  # objects made once for a type do not count
+                decode(cls, cls().__pack__(), way)  # objects made once for a type do not count
             for packet in packets(name, 15):
                 tracemalloc.reset_peak()
                 before = tracemalloc.get_traced_memory()[0]

@@ -54,7 +54,7 @@ def test_private_modules_and_packages() -> None:
     srv = _module("std_srvs.srv")
     assert srv.SetBool is service_class("std_srvs/SetBool")
     assert srv.SetBoolResponse is service_class("std_srvs/SetBool")._response_class
-    assert srv.SetBoolRequest(data=True)._unpack(b"\0").data is False
+    assert srv.SetBoolRequest(data=True).__unpack__(b"\0").data is False
     assert _module("std_srvs.srv._Trigger").TriggerResponse.__module__ == "std_srvs.srv._Trigger"
 
 

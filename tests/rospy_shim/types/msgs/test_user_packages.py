@@ -35,7 +35,7 @@ def test_messages_and_services(tmp_path: Path) -> None:
     library = library_of(tmp_path)
     wheel = library.message_class("rover/Wheel")
     made = library.message_class("rover/Drive")(wheels=[wheel(1.5), wheel(2.5)])
-    assert [each.speed for each in made._unpack(made._pack()).wheels] == [1.5, 2.5]
+    assert [each.speed for each in made.__unpack__(made.__pack__()).wheels] == [1.5, 2.5]
     assert library.service_class("rover/Stop")._response_class().last.speed == 0.0
     assert library.names("rover") == ["Drive", "Wheel"]
     assert {"rover", "std_msgs"} <= set(library.packages())
@@ -60,7 +60,7 @@ def test_classes_of_a_node_belong_to_the_node(tmp_path: Path) -> None:
     assert (own._md5sum, own._full_text) == (shared._md5sum, shared._full_text)
     assert library.service_class("std_srvs/SetBool") is not service_class("std_srvs/SetBool")
     assert type(library.message_class("rover/Drive")().goal) is library.message_class("geometry_msgs/Point")
-    assert type(own._unpack(shared()._pack()).pose.pose.position) is library.message_class("geometry_msgs/Point")
+    assert type(own.__unpack__(shared().__pack__()).pose.pose.position) is library.message_class("geometry_msgs/Point")
 
 
 def test_package_of_the_same_name_has_precedence_everywhere(tmp_path: Path) -> None:
