@@ -131,9 +131,9 @@ def check_version(root: Path, version: str) -> None:
     told = ["git", "grep", "-E", '^(__version__|version) *= *"', "--", *PACKAGES, "pyproject.toml", f":!{LIBRARIES}"]
     found = {line.partition(":")[0]: line.rsplit('"', 2)[1] for line in output(told, root).splitlines()}
     if list(found) != [VERSION_FILE]:
-        raise UsageError(f"the version is to be in {VERSION_FILE} alone, and is in {', '.join(found) or 'no file'}")
+        raise UsageError(f"the version must be only in {VERSION_FILE}, not in {', '.join(found) or 'no file'}")
     if found[VERSION_FILE] != version:
-        raise UsageError(f"{VERSION_FILE} says {found[VERSION_FILE]}: write {version} there, and commit it")
+        raise UsageError(f"{VERSION_FILE} has version {found[VERSION_FILE]}; write {version} there, and commit it")
 
 
 def dated(changes: str, version: str, day: str) -> str:
@@ -153,7 +153,9 @@ def dated(changes: str, version: str, day: str) -> str:
         raise UsageError(f"{CHANGES} has [{version}] below other versions: the latest is the first")
     when = heading.rpartition(" - ")[2].strip()
     if when != _UNRELEASED and not re.fullmatch(r"\d{4}-\d\d-\d\d", when):
-        raise UsageError(f"{CHANGES} says of [{version}] {when!r}, which is neither {_UNRELEASED} nor a day")
+        raise UsageError(
+            f"{CHANGES}: invalid day {when!r} of [{version}]; expected {_UNRELEASED} or a day such as 2026-01-31"
+        )
     return changes.replace(f"## [{version}] - {_UNRELEASED}\n", f"## [{version}] - {day}\n", 1)
 
 
@@ -251,10 +253,10 @@ def check_contents(file: Path, version: str, tracked: Sequence[str]) -> None:
         missing += [name for name in MUST_HAVE if name not in names]
     if missing or strange:
         lacks, has = (", ".join(names[:10]) or "nothing" for names in (missing, strange))
-        raise UsageError(f"{file.name} lacks {lacks}; what git does not have, and it has: {has}")
+        raise UsageError(f"{file.name}: missing files: {lacks}; unexpected files, which git does not track: {has}")
     told = Parser().parsestr(metadata)
     if (told["Name"], told["Version"]) != ("cfepy", version):
-        raise UsageError(f"{file.name} says that it is {told['Name']} {told['Version']}")
+        raise UsageError(f"{file.name} has the metadata of {told['Name']} {told['Version']}, not of cfepy {version}")
     for name in ("Summary", "Requires-Python", "License-Expression"):
         if not told[name]:
             raise UsageError(f"{file.name} has no {name} in its metadata")

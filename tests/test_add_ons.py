@@ -11,7 +11,7 @@ from tests.add_ons import EVERY, NEEDS, ROOT, lacks_add_on, needed
 
 
 @pytest.mark.parametrize("test", NEEDS)
-def test_line_names_tests_and_add_ons_that_there_are(test: str) -> None:
+def test_line_names_existing_tests_and_add_ons(test: str) -> None:
     file, _, function = test.partition("::")
     path = ROOT / "tests" / file
     assert path.exists()
@@ -26,7 +26,7 @@ def test_needs_of_folders_files_and_functions_add_up() -> None:
     assert set(needed("cli/test_board.py::test_a_report")) == {"reports"}
 
 
-def test_only_tests_of_a_missing_add_on_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_tests_of_a_missing_add_on_are_excluded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(add_ons, "MISSING", frozenset({"reports"}))
     tests = ("cli/test_board.py", "cli/test_board.py::test_a_report", "extra/reports", "extra/viewers")
     assert [lacks_add_on(test) for test in tests] == [False, True, True, False]

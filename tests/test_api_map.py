@@ -23,13 +23,13 @@ def mission() -> Iterator[Mission]:
 
 
 @pytest.mark.parametrize("module", api_map.MODULES)
-def test_every_name_is_here_or_explained(mission: Mission, module: str) -> None:
+def test_every_name_exists_or_is_explained(mission: Mission, module: str) -> None:
     rows = api_map.entries(module, mission.cfe)
     assert [row.name for row in rows if row.is_missing] == []
     assert [row.name for row in rows if row.c == api_map.MISSING] == []
 
 
-def test_what_c_does_not_find_is_missing() -> None:
+def test_name_missing_in_c_is_reported() -> None:
     functions = {"CFE_ES_RunLoop"}
     found = [
         api_map._in_c(name, is_inside, functions)
@@ -43,11 +43,11 @@ def test_what_c_does_not_find_is_missing() -> None:
     assert found == [api_map.CALL, api_map.HEADER, api_map.CORE, api_map.MISSING]
 
 
-def test_the_page_is_fresh(mission: Mission) -> None:
+def test_page_is_up_to_date(mission: Mission) -> None:
     assert api_map.PAGE.read_text(encoding="utf-8") == api_map.page(mission.cfe), "run `python -m dev.pages.api_map`"
 
 
-def test_the_lists_are_whole() -> None:
+def test_lists_are_complete() -> None:
     counts = {module: len(list(api_map.listed(module))) for module in api_map.MODULES}
     assert (counts["ES"], counts["SB"], counts["TBL"], counts["psp"]) == (59, 37, 21, 77)
     assert sorted(path.name for path in api_map.LISTS.glob("*.txt")) == sorted(f"api_{name}.txt" for name in counts)
@@ -67,7 +67,7 @@ def test_snake_case(name: str, expected: str) -> None:
     assert snake(name) == expected
 
 
-def test_a_name_that_nobody_explains_is_missing() -> None:
+def test_unexplained_name_is_missing() -> None:
     row = api_map.Difference("OSAL", ("OS_Foo*",), "model")
     assert row.mentions("OS_FooBar")
     assert not row.mentions("OS_Bar")

@@ -31,24 +31,24 @@ def above(parts: tuple[str, ...], base: int = GROUND_FLOOR) -> set[str]:
     return shown | {"cfepy.extra"}
 
 
-def test_they_are_kept() -> None:
+def test_contracts_are_kept() -> None:
     done = subprocess.run([sys.executable, "-c", CHECK], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_a_new_package_is_among_what_the_computer_must_not_import() -> None:
+def test_new_package_is_in_the_contract_of_the_computer() -> None:
     named = {*contract("The computer")["forbidden_modules"]}
     assert above(COMPUTER) <= named
     assert {"rospy_shim", "ros_libraries", "apps"} <= named
 
 
 @pytest.mark.parametrize("beginning", ["The computer", "Types of ROS"])
-def test_what_a_contract_forbids_is_there(beginning: str) -> None:
+def test_modules_of_a_contract_exist(beginning: str) -> None:
     for name in contract(beginning)["forbidden_modules"]:
         place = ROOT / name.replace(".", "/")
         assert place.is_dir() or place.with_suffix(".py").is_file(), name
 
 
-def test_add_ons_are_all_named() -> None:
+def test_all_add_ons_are_named() -> None:
     folders = {f"cfepy.extra.{each.parent.name}" for each in (ROOT / "cfepy" / "extra").glob("*/__init__.py")}
     assert folders == {*contract("Add-ons are independent")["modules"]}

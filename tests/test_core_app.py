@@ -34,7 +34,7 @@ def ports_of(peers: Peers) -> Ports:
     return ports  # type: ignore[no-any-return]
 
 
-def test_the_loop_waits_for_all_and_marks_its_work() -> None:
+def test_loop_waits_for_core_ready_and_marks_its_work() -> None:
     peers = Peers(b"packet", None)
     with pytest.raises(EOFError):
         serve(ports_of(peers), PlatformConfig(), 9, 4, lambda packet: peers.noted.append(packet))

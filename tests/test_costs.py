@@ -41,7 +41,7 @@ def test_a_line_is_a_file_a_test_or_a_case() -> None:
     }
 
 
-def test_what_no_line_stands_for_is_quick() -> None:
+def test_without_a_line_is_quick() -> None:
     table = Table(dict(lines(MEASURED)))
     assert [test for test in MEASURED if test not in table] == [
         "tests/a.py::test_three[x]",
@@ -50,18 +50,18 @@ def test_what_no_line_stands_for_is_quick() -> None:
     ]
 
 
-def test_only_lines_of_measured_files_change() -> None:
+def test_lines_of_unmeasured_files_are_kept() -> None:
     table = Table({"tests/a.py": 0.3, "tests/d.py::test_one": 0.3})
     assert table.merged({"tests/a.py::test_one": CHEAP}).costs == {"tests/d.py::test_one": 0.3}
 
 
-def test_a_table_comes_back_from_its_file(tmp_path: Path) -> None:
+def test_table_is_the_same_after_writing_and_reading(tmp_path: Path) -> None:
     Table({"tests/b.py": 0.3, "tests/a.py::test_one[x y]": 0.0501}).write(tmp_path / "costs.tsv")
     assert (tmp_path / "costs.tsv").read_text(encoding="utf-8") == "51\ttests/a.py::test_one[x y]\n300\ttests/b.py\n"
     assert Table.read(tmp_path / "costs.tsv").costs == {"tests/b.py": 0.3, "tests/a.py::test_one[x y]": 0.051}
 
 
-def test_the_least_of_several_measurements_counts(tmp_path: Path) -> None:
+def test_lowest_of_several_measurements_counts(tmp_path: Path) -> None:
     rows = [
         [["a", "b"], "fixture", 0.25],
         [["a"], "", 0.5],
@@ -73,7 +73,7 @@ def test_the_least_of_several_measurements_counts(tmp_path: Path) -> None:
     assert meter.measured(tmp_path) == {"a": 0.375, "b": 1.25}
 
 
-def test_a_meter_shares_what_fixtures_cost(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_meter_divides_the_cost_of_fixtures(pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch) -> None:
     folder = pytester.mkdir("measured")
     monkeypatch.setenv(meter.FOLDER, str(folder))
     pytester.makepyfile(
@@ -99,7 +99,7 @@ def test_a_meter_shares_what_fixtures_cost(pytester: pytest.Pytester, monkeypatc
     assert meter.measured(folder) == {test: cost + share * (test in users) for test, cost in alone.items()}
 
 
-def test_every_line_is_about_a_test() -> None:
+def test_each_line_names_a_test() -> None:
     known: dict[str, set[str]] = {}
     for line in costs.TABLE.costs:
         file, *names = function_of(line).split("::")
@@ -114,12 +114,12 @@ def test_every_line_is_about_a_test() -> None:
         assert known[file].issuperset(names[:1]), f"{line}: python -m dev.costs {file}"
 
 
-def test_lines_are_about_cases_that_there_are(pytestconfig: pytest.Config) -> None:
+def test_each_line_names_an_existing_case(pytestconfig: pytest.Config) -> None:
     stale = pytestconfig.stash.get(costs.STALE, [])
     assert stale == [], f"python -m dev.costs {' '.join(sorted(set(map(file_of, stale))))}"
 
 
-def test_slow_is_a_test_whose_line_has_the_cost_of_one() -> None:
+def test_is_slow_when_its_line_has_the_cost_of_a_slow_one() -> None:
     table = Table({"tests/a.py::test_one[x]": SLOW_S, "tests/b.py": SLOW_S, "tests/c.py::test_one": SLOW_S - 0.01})
     tests = ("tests/a.py::test_one[x]", "tests/a.py::test_one[y]", "tests/b.py::test_it", "tests/c.py::test_one")
     assert [table.is_slow(test) for test in tests] == [True, False, True, False]
@@ -137,7 +137,7 @@ def test_slow_is_a_test_whose_line_has_the_cost_of_one() -> None:
         ("pytestmark = pytest.mark.skipif(slow)", ("quick", "not slow", "slow", "", "corpus")),
     ],
 )
-def test_file_is_read_unless_marks_leave_out_all_of_its_tests(
+def test_file_is_collected_unless_marks_exclude_all_of_its_tests(
     text: str, read_by: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(costs, "is_dear", lambda path: False)

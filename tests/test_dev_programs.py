@@ -54,16 +54,16 @@ def programs() -> Iterator[str]:
 PROGRAMS = sorted(set(programs()) - OF_PROGRAMS.keys())
 
 
-def test_the_page_lists_every_program() -> None:
+def test_page_lists_every_program() -> None:
     assert sorted(set(_COMMAND.findall(PAGE.read_text(encoding="utf-8")))) == PROGRAMS
 
 
-def test_what_programs_start_is_there() -> None:
+def test_started_programs_exist() -> None:
     assert set(programs()) >= OF_PROGRAMS.keys()
 
 
 @pytest.mark.parametrize("program", PROGRAMS)
-def test_a_program_says_what_it_is_for(
+def test_help_of_a_program_states_its_purpose(
     program: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys, "argv", [program, "--help"])

@@ -55,7 +55,7 @@ def is_understood(words: list[str]) -> bool:
 
 
 @each_document
-def test_links_lead_somewhere(path: Path) -> None:
+def test_links_have_targets(path: Path) -> None:
     assert [link for link in LINK.findall(FENCE.sub("", path.read_text(encoding="utf-8"))) if broken(path, link)] == []
 
 
@@ -67,16 +67,16 @@ def test_files_that_are_named_exist(path: Path) -> None:
 
 
 @each_document
-def test_commands_can_be_given(path: Path) -> None:
+def test_commands_can_be_parsed(path: Path) -> None:
     assert [shlex.join(words) for words in commands(path) if not is_understood(words)] == []
 
 
 @each_document
-def test_no_digest_is_written_down(path: Path) -> None:
+def test_digests_are_not_in_the_documentation(path: Path) -> None:
     assert re.findall(r"\b[0-9a-f]{32}\b|trace: [0-9a-f]{4,}", path.read_text(encoding="utf-8")) == []
 
 
-def test_the_readme_has_commands_to_look_at() -> None:
+def test_readme_has_the_command_of_the_demonstration() -> None:
     assert ["run", "capture", "--for", "20"] in list(commands(ROOT / "README.md"))
 
 

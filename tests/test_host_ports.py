@@ -10,7 +10,7 @@ from dev.host_ports import LOWEST, first_picked, free_port
 
 
 @pytest.mark.parametrize("kind", [socket.SOCK_STREAM, socket.SOCK_DGRAM])
-def test_a_port_is_free_and_none_that_the_system_picks(kind: socket.SocketKind) -> None:
+def test_free_port_is_below_the_ports_picked_by_the_system(kind: socket.SocketKind) -> None:
     ports = {free_port(kind) for _ in range(50)}
     assert len(ports) > 40
     assert all(LOWEST <= port < first_picked() for port in ports)
@@ -19,7 +19,7 @@ def test_a_port_is_free_and_none_that_the_system_picks(kind: socket.SocketKind) 
             opened.bind(("127.0.0.1", port))
 
 
-def test_one_that_somebody_has_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_port_in_use_is_skipped(monkeypatch: pytest.MonkeyPatch) -> None:
     numbers = iter([0, 1])
     with socket.socket() as taken:
         free = free_port()
@@ -29,6 +29,6 @@ def test_one_that_somebody_has_is_left_out(monkeypatch: pytest.MonkeyPatch) -> N
         assert free_port() == free
 
 
-def test_what_the_system_picks_is_higher() -> None:
+def test_ports_picked_by_the_system_are_higher() -> None:
     with socket.create_server(("127.0.0.1", 0)) as server, socket.create_connection(server.getsockname()) as client:
         assert all(each.getsockname()[1] >= first_picked() for each in (server, client))

@@ -65,7 +65,7 @@ def test_imports_of_every_kind_are_found(small: Tree) -> None:
     assert {each.when for each in small.modules["cfepy.sb.bus"].imports} == {"late"}
 
 
-def test_what_is_wrong_is_told(small: Tree) -> None:
+def test_violations_are_reported(small: Tree) -> None:
     assert [arrow.source for arrow in wrong_arrows(small)] == ["cfepy.evs.log", "cfepy.sb.bus"]
     assert figures.circles(small) == [["cfepy.evs.log", "cfepy.sb.bus"]]
     assert figures.circles(small, for_types=True) == [["cfepy.rtos.kernel", "cfepy.rtos.task"]]
@@ -77,13 +77,13 @@ def test_what_is_wrong_is_told(small: Tree) -> None:
     assert "| `cfepy/rtos` | 3 |" in figures.report(small)
 
 
-def test_a_package_without_a_floor_is_told(small: Tree, tmp_path: Path) -> None:
+def test_package_without_a_floor_is_reported(small: Tree, tmp_path: Path) -> None:
     assert homeless(small) == []
     (tmp_path / "cfepy" / "attic.py").touch()
     assert homeless(Tree(tmp_path)) == ["attic"]
 
 
-def test_the_purpose_of_a_module_is_its_first_sentence(small: Tree) -> None:
+def test_purpose_of_a_module_is_its_first_sentence(small: Tree) -> None:
     assert small.modules["cfepy.status"].purpose == "Errors."
 
 
@@ -101,13 +101,13 @@ def test_the_purpose_of_a_module_is_its_first_sentence(small: Tree) -> None:
         ("__main__", "cli", True),
     ],
 )
-def test_who_may_import_whom(source: str, target: str, may: bool) -> None:
+def test_allowed_imports_follow_the_floors(source: str, target: str, may: bool) -> None:
     assert allowed(source, target) is may
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("path", [HOUSE, MESSAGE], ids=str)
-def test_the_pictures_are_those_of_this_tree(path: Path) -> None:
+def test_pictures_match_this_tree(path: Path) -> None:
     """Numbers of imports may lag behind by a quarter, or each new import would be a new picture."""
     committed, drawn = (ROOT / path).read_text(encoding="utf-8"), draw(the_tree())[path]
     number = re.compile(r'class="count">([\d,]+)<')

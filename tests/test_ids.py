@@ -30,7 +30,7 @@ def test_serial_wraps_into_the_table() -> None:
     assert ids.find_next(ids.make(0x11, 0xFFFE), 32, lambda _: False) == ids.make(0x11, 0xFFFF % 32)
 
 
-def test_find_next_ex_steps_as_told() -> None:
+def test_find_next_ex_uses_its_callbacks() -> None:
     assert ids.find_next_ex(0x110000, lambda i: i + 2, lambda i: i < 0x110006) == 0x110006
     assert ids.find_next_ex(0x110000, lambda i: 0, lambda i: True) == ids.UNDEFINED
 
@@ -49,7 +49,7 @@ def test_create_find_delete() -> None:
     assert len(table) == 2
 
 
-def test_a_full_table_raises_its_status() -> None:
+def test_full_table_raises_its_status() -> None:
     table: IdTable[int] = IdTable(ids.SB_PIPEID_BASE, 1, full=status.CFE_SB_MAX_PIPES_MET)
     table.create(1)
     with pytest.raises(CfeError, match="CFE_SB_MAX_PIPES_MET"):

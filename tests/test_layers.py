@@ -80,7 +80,7 @@ def test_names_given_to_import_module_can_be_read(tree: Tree) -> None:
     assert unread == known, "an arrow must not hide in a name that is made at run time"
 
 
-def test_there_are_no_circles(tree: Tree) -> None:
+def test_imports_have_no_circles(tree: Tree) -> None:
     assert not figures.circles(tree), "imports go in a circle, lazy ones included"
 
 
@@ -95,12 +95,12 @@ def test_few_circles_of_types(tree: Tree) -> None:
     assert len(figures.circles(tree, for_types=True)) <= CIRCLES_OF_TYPES, "name what is needed in a Protocol"
 
 
-def test_a_name_of_a_module_stands_for_one(tree: Tree) -> None:
+def test_name_of_a_module_is_unique(tree: Tree) -> None:
     twice = figures.modules_named_twice(tree)
     assert len(twice) <= NAMED_TWICE, twice
 
 
-def test_few_things_right_below_cfepy(tree: Tree) -> None:
+def test_few_modules_are_directly_in_cfepy(tree: Tree) -> None:
     assert len(figures.entries(tree)) <= ENTRIES, "put it into the package that it belongs to"
 
 
@@ -108,27 +108,27 @@ def test_faces(tree: Tree) -> None:
     assert figures.faces(tree).past <= PAST_FACES, "import from the package, or offer it in its __init__"
 
 
-def test_a_module_that_one_other_imports_belongs_to_it(tree: Tree) -> None:
+def test_module_imported_by_one_other_belongs_to_its_package(tree: Tree) -> None:
     alone = figures.with_one_user(tree)
     assert len(alone) <= ONE_USER, "\n".join(module.where for module in alone)
 
 
-def test_a_module_is_one_idea(tree: Tree) -> None:
+def test_modules_are_at_most_600_lines_long(tree: Tree) -> None:
     long = [f"{module.where}: {module.lines}" for module in tree.modules.values() if module.lines > LONGEST]
     assert not long
 
 
-def test_docstrings_do_not_say_what_is_imported(tree: Tree) -> None:
+def test_docstrings_do_not_list_imports(tree: Tree) -> None:
     told = figures.sentences_about_imports(tree)
     assert len(told) <= ABOUT_IMPORTS, f"dev/house/floors.py says it: {told}"
 
 
-def test_a_name_stands_for_one_thing(tree: Tree) -> None:
+def test_public_name_is_unique(tree: Tree) -> None:
     twice = figures.names_twice(tree)
     assert set(twice) <= set(figures.NAMES_OF_NODES), twice
 
 
-def test_nothing_holds_a_lock_of_the_host_unseen(tree: Tree) -> None:
+def test_locks_of_the_host_are_known(tree: Tree) -> None:
     """On Python 3.11 `cached_property` does: a fork in the middle of it hung every mission in the child."""
     locking = {"functools.cached_property", "queue.Queue", "queue.SimpleQueue", "threading.local"}
     for module in tree.modules.values():
@@ -138,13 +138,13 @@ def test_nothing_holds_a_lock_of_the_host_unseen(tree: Tree) -> None:
         )
 
 
-def test_nothing_needs_programs_benchmarks_or_tests(tree: Tree) -> None:
+def test_package_needs_no_programs_benchmarks_or_tests(tree: Tree) -> None:
     for module in tree.modules.values():
         found = {each.name.split(".")[0] for each in module.imports} & {"benchmarks", "dev", "tests"}
         assert not found, f"{module.where}: {found} are of the checkout alone"
 
 
-def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
+def test_host_modules_are_imported_only_by_permitted_packages(tree: Tree) -> None:
     for module in tree.modules.values():
         touched = {each.name.split(".")[0] for each in module.imports} & HOST_MODULES
         assert not touched or module.part in MAY_TOUCH_THE_HOST, (
@@ -152,7 +152,7 @@ def test_only_the_kernel_knows_the_host(tree: Tree) -> None:
         )
 
 
-def test_libraries_are_code_of_nodes(tree: Tree) -> None:
+def test_libraries_are_imported_only_as_code_of_nodes(tree: Tree) -> None:
     """They run in a node's universe, with its rospy and its clock.
 
     They import the modules of nodes, none of the house.
@@ -237,7 +237,7 @@ def _is_standard(node: ast.expr) -> bool:
     return (isinstance(node, ast.Constant) and node.value in (1, 2)) or _is(node, "STDERR") or _is(node, "STDOUT")
 
 
-def test_nothing_prints_past_the_safe_streams(tree: Tree) -> None:
+def test_output_is_printed_only_through_the_safe_streams(tree: Tree) -> None:
     found = {
         name: sorted(set(ways))
         for name, module in tree.modules.items()

@@ -51,7 +51,7 @@ def give(site: Path) -> Give:
 
 
 @pytest.mark.slow
-def test_an_add_on_of_another_package_has_its_command_and_its_table(site: Path, give: Give) -> None:
+def test_add_on_of_another_package_adds_its_command_and_its_table(site: Path, give: Give) -> None:
     shutil.copytree(EXAMPLE / "cfepy_busiest", site / "cfepy_busiest")
     offer(site, "busiest", "cfepy_busiest:PLUGIN")
     helped = give("--help")
@@ -68,7 +68,7 @@ def test_an_add_on_of_another_package_has_its_command_and_its_table(site: Path, 
 
 
 @pytest.mark.slow
-def test_the_example_can_be_installed(tmp_path: Path, site: Path, give: Give) -> None:
+def test_example_can_be_installed(tmp_path: Path, site: Path, give: Give) -> None:
     source = tmp_path / "plugin"
     shutil.copytree(EXAMPLE, source)
     pip = [sys.executable, "-m", "pip", "install", "-q", "--no-deps", "--disable-pip-version-check"]
@@ -83,7 +83,7 @@ def test_the_example_can_be_installed(tmp_path: Path, site: Path, give: Give) ->
         ("PLUGIN = 7", "cfepy: the add-on odd cannot be used: odd:PLUGIN is not a Plugin\n"),
     ],
 )
-def test_an_add_on_that_cannot_be_used_is_left_out(site: Path, give: Give, text: str, said: str) -> None:
+def test_invalid_add_on_is_left_out(site: Path, give: Give, text: str, said: str) -> None:
     (site / "odd.py").write_text(text, encoding="utf-8")
     offer(site, "odd", "odd:PLUGIN")
     done = give("run", "lab", "--for", "1", "--quiet")
@@ -92,7 +92,7 @@ def test_an_add_on_that_cannot_be_used_is_left_out(site: Path, give: Give, text:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("words", "status"), [(["--help"], 0), (["run", "lab", "--for", "1", "--quiet"], 2)])
-def test_an_add_on_that_breaks_later_is_named(site: Path, give: Give, words: list[str], status: int) -> None:
+def test_add_on_that_fails_later_is_named(site: Path, give: Give, words: list[str], status: int) -> None:
     offers = "commands=('odd',), title='Odd', hooks={'report_tables': '.no:tables'}"
     (site / "odd").mkdir()
     text = f"from cfepy.plugins import Plugin\nPLUGIN = Plugin('odd', 'odd', {offers})"
@@ -106,7 +106,7 @@ def test_an_add_on_that_breaks_later_is_named(site: Path, give: Give, words: lis
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["run", "explore"])
-def test_a_command_that_is_there_already_cannot_be_added(site: Path, give: Give, name: str) -> None:
+def test_existing_command_cannot_be_added(site: Path, give: Give, name: str) -> None:
     text = f"from cfepy.plugins import Plugin\nPLUGIN = Plugin('odd', 'odd', commands=('odd', '{name}'))"
     (site / "odd.py").write_text(text, encoding="utf-8")
     offer(site, "odd", "odd:PLUGIN")
@@ -120,7 +120,7 @@ def without(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     monkeypatch.setattr(plugins, "installed", lambda: left)
 
 
-def test_a_hook_that_nothing_fills_says_which_add_on_does(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_unfilled_hook_names_the_missing_add_on(monkeypatch: pytest.MonkeyPatch) -> None:
     hook: Hook[Callable[..., object]] = Hook("perf_log")
     assert callable(hook.need("--perfetto"))
     without(monkeypatch, "reports")
@@ -131,7 +131,7 @@ def test_a_hook_that_nothing_fills_says_which_add_on_does(monkeypatch: pytest.Mo
         hook.need("--perfetto")
 
 
-def test_what_hooks_name_is_there() -> None:
+def test_functions_named_by_hooks_exist() -> None:
     for plugin in OWN:
         for hook in plugin.hooks:
             assert plugin.load(hook) is not None, (plugin.name, hook)
@@ -144,13 +144,13 @@ def test_each_hook_of_the_code_is_filled_or_documented() -> None:
         assert f"`{name}`" in page, "docs/how_to/plugins.md lists the hooks"
 
 
-def test_a_plugin_names_its_modules_from_its_package() -> None:
+def test_plugin_names_modules_relative_to_its_package() -> None:
     plugin = Plugin("x", "cfepy.extra.viewers", hooks={"a": ".viewer_options:Viewers", "b": "cfepy.units:NS_PER_S"})
     assert plugin.load("a").__name__ == "Viewers"
     assert plugin.load("b") == 1_000_000_000
 
 
-def test_an_add_on_whose_need_is_missing_counts_as_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_add_on_with_a_missing_requirement_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(plugins, "find_spec", lambda name: None if name == "cfepy.extra.c" else find_spec(name))
     installed.cache_clear()
     try:

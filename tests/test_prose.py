@@ -57,6 +57,6 @@ def test_numbers_of_the_table_only_fall() -> None:
     assert lowered({"a.py": 3, "b.py": 2, "c.py": 1}, {"a.py": 5, "b.py": 1, "d.py": 7}) == {"a.py": 3, "b.py": 1}
 
 
-def test_table_comes_back_from_its_file(tmp_path: Path) -> None:
+def test_table_is_the_same_after_writing_and_reading(tmp_path: Path) -> None:
     write_table({"b.py": 2, "a b.md": 11}, tmp_path / "prose.tsv")
     assert read_table(tmp_path / "prose.tsv") == {"a b.md": 11, "b.py": 2}

@@ -24,7 +24,7 @@ needs_docstrings = pytest.mark.skipif(sys.flags.optimize > 1, reason="python -OO
 EXAMPLES = re.findall(r"^```python\n(.*?)^```", GUIDE.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
 
 
-def test_it_is_what_type_checkers_see() -> None:
+def test_public_names_are_visible_to_type_checkers() -> None:
     tree = ast.parse(Path(cfepy.__file__).read_text(encoding="utf-8"))
     seen = {"__version__"}
     for node in ast.walk(tree):
@@ -36,7 +36,7 @@ def test_it_is_what_type_checkers_see() -> None:
     assert set(cfepy.__all__) <= set(dir(cfepy))
 
 
-def test_no_name_is_that_of_a_package() -> None:
+def test_public_names_differ_from_package_names() -> None:
     """A package that is imported would take the place of the name."""
     packages = {path.stem for path in Path(cfepy.__file__).parent.iterdir()}
     assert not packages & set(cfepy.__all__)
@@ -44,7 +44,7 @@ def test_no_name_is_that_of_a_package() -> None:
 
 @needs_docstrings
 @pytest.mark.parametrize("name", sorted(set(cfepy.__all__) - {"__version__"}))
-def test_everything_is_documented(name: str) -> None:
+def test_public_names_are_documented(name: str) -> None:
     thing: Any = getattr(cfepy, name)
     assert inspect.getdoc(thing), name
     for member, value in python_api.members(thing) if inspect.isclass(thing) else ():
@@ -52,7 +52,7 @@ def test_everything_is_documented(name: str) -> None:
 
 
 @needs_docstrings
-def test_the_options_are_those_of_a_plan() -> None:
+def test_options_equal_the_attributes_of_a_plan() -> None:
     """Each attribute of a plan is an option, except for those that the mission defines."""
     from cfepy.pilot import RunPlan
 
@@ -64,11 +64,11 @@ def test_the_options_are_those_of_a_plan() -> None:
 
 
 @needs_docstrings
-def test_the_reference_is_not_stale() -> None:
+def test_reference_is_up_to_date() -> None:
     assert python_api.PAGE.read_text(encoding="utf-8") == python_api.page(), "python -m dev.pages.python_api"
 
 
-def test_an_import_loads_next_to_nothing() -> None:
+def test_import_loads_few_modules() -> None:
     code = "import sys; before = set(sys.modules); import cfepy; print(*sorted(set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = [name for name in done.stdout.split() if name.startswith("cfepy")]
@@ -76,7 +76,7 @@ def test_an_import_loads_next_to_nothing() -> None:
 
 
 @pytest.mark.slow
-def test_the_guide_s_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_examples_of_the_guide_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(MISSIONS / "lost_update", tmp_path / "lost_update")
     monkeypatch.chdir(tmp_path)
     space: dict[str, Any] = {}
@@ -88,7 +88,7 @@ def test_the_guide_s_examples_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 
 @pytest.mark.slow
-def test_a_script_of_the_examples_passes_mypy_strict(tmp_path: Path) -> None:
+def test_script_of_the_examples_passes_mypy_strict(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     names = "".join(f"print(cfepy.{name})\n" for name in cfepy.__all__)
     wrong = "reveal_type(run)\nreveal_type(positions)\nrun.nothing\ncfepy.nothing\ncfepy.run('capture', second=1)\n"

@@ -25,7 +25,7 @@ from dev.site import ROOT, linked, pages, slug
         ("missions/capture/README.md", "```\n[a](startup.scr)\n```\n[a](startup.scr)", "```\n[a](startup.scr)\n```\na"),
     ],
 )
-def test_links_fit_where_a_page_is(source: str, text: str, on_the_site: str) -> None:
+def test_links_fit_the_place_of_a_page(source: str, text: str, on_the_site: str) -> None:
     assert linked(text, source) == on_the_site
 
 
@@ -35,7 +35,7 @@ def test_pages_are_files_and_anchors_githubs() -> None:
 
 
 @pytest.mark.slow
-def test_the_site_is_built_without_a_warning(tmp_path: Path) -> None:
+def test_site_is_built_without_a_warning(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--site-dir", str(tmp_path)]
     environ = {**os.environ, "NO_MKDOCS_2_WARNING": "1"}
     built = subprocess.run(command, cwd=ROOT, env=environ, capture_output=True, text=True, check=False)

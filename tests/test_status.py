@@ -11,7 +11,7 @@ from cfepy import status
 from cfepy.status import CfeError, OsalError, UsageError
 
 
-def test_numbers_are_signed_as_nasa_prints_them() -> None:
+def test_numbers_are_signed_as_printed_by_nasas_cfe() -> None:
     assert status.CFE_SB_BAD_ARGUMENT == -905969661
     assert status.CFE_SUCCESS == status.OS_SUCCESS == 0
     assert status.CFE_ES_LIB_ALREADY_LOADED == 0x44000028
@@ -55,7 +55,7 @@ def test_status_to_string() -> None:
     assert status.status_to_string(0) == "0x00000000"
 
 
-def test_cfe_error_tells_name_number_and_text() -> None:
+def test_cfe_error_has_name_number_and_text() -> None:
     error = CfeError(0xCA000003, "no such pipe")
     assert error.status == -905969661
     assert str(error) == "CFE_SB_BAD_ARGUMENT (0xCA000003): no such pipe"
@@ -69,7 +69,7 @@ def test_errors_survive_copying() -> None:
     assert str(copy.copy(error)) == str(pickle.loads(pickle.dumps(error))) == str(error)
 
 
-def test_usage_error_says_where() -> None:
+def test_usage_error_has_file_line_and_field() -> None:
     assert str(UsageError("is wrong", file="a.yaml", line=3, field="limits.x")) == "a.yaml:3: limits.x: is wrong"
     assert str(UsageError("is wrong", file="a.yaml")) == "a.yaml: is wrong"
     assert str(UsageError("is wrong")) == "is wrong"

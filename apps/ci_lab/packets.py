@@ -27,9 +27,9 @@ NOOP = Command("CI_LAB_NOOP", CMD_MID, 0, text="Sends an event, to show that the
 RESET_COUNTERS = Command("CI_LAB_RESET_COUNTERS", CMD_MID, 1, text="Sets the command and ingest counters to zero.")
 SEND_HK = Command("CI_LAB_SEND_HK", SEND_HK_MID, text="Asks for the housekeeping packet.")
 READ_UPLINK = Command(
-    "CI_LAB_READ_UPLINK", READ_UPLINK_MID, text="Reads the socket now, and from then on only when asked like this."
+    "CI_LAB_READ_UPLINK", READ_UPLINK_MID, text="Reads the socket now. From then on, only this command reads it."
 )
-HK_TLM = Telemetry("CI_LAB_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Command counters, and packets that came in.")
+HK_TLM = Telemetry("CI_LAB_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Command counters, and counters of received packets.")
 
 COMMANDS = (NOOP, RESET_COUNTERS, SEND_HK, READ_UPLINK)
 TELEMETRY = (HK_TLM,)

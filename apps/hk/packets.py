@@ -49,7 +49,7 @@ RUNTIME_TABLE_ENTRY = Layout(
 
 NOOP = Command("HK_NOOP", CMD_MID, 0, text="Answer with an event.")
 RESET_COUNTERS = Command("HK_RESET_COUNTERS", CMD_MID, 1, text="Set the counters to 0.")
-SEND_HK = Command("HK_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet, and look after the tables.")
+SEND_HK = Command("HK_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet, and manage the tables.")
 SEND_COMBINED_PKT = Command(
     "HK_SEND_COMBINED_PKT",
     SEND_COMBINED_PKT_MID,

@@ -212,9 +212,9 @@ def _command(name: str, code: int, text: str, payload: Layout = NO_PAYLOAD) -> C
     return Command(f"CFE_ES_{name}", CMD_MID, code, payload, text)
 
 
-NOOP = _command("NOOP", 0, "Do nothing but say which versions run.")
+NOOP = _command("NOOP", 0, "Report the versions in an event, without any other action.")
 RESET_COUNTERS = _command("RESET_COUNTERS", 1, "Set both command counters to zero.")
-RESTART = _command("RESTART", 2, "Reset the processor: 1 keeps what is retained, 2 is a power-on reset.", _RESTART)
+RESTART = _command("RESTART", 2, "Reset the processor: 1 keeps retained memory, 2 is a power-on reset.", _RESTART)
 START_APP = _command("START_APP", 4, "Load an application and start it.", _START_APP)
 STOP_APP = _command("STOP_APP", 5, "End an application and clean up after it.", _APP_NAME)
 RESTART_APP = _command("RESTART_APP", 6, "End an application and start it again.", _APP_NAME)
@@ -233,7 +233,9 @@ SET_PERF_FILTER_MASK = _command(
 SET_PERF_TRIGGER_MASK = _command(
     "SET_PERF_TRIGGER_MASK", 17, "Choose which of 32 performance ids are triggers.", _TRIGGER_MASK
 )
-OVER_WRITE_SYS_LOG = _command("OVER_WRITE_SYS_LOG", 18, "Set what a full system log does with a line.", _LOG_MODE)
+OVER_WRITE_SYS_LOG = _command(
+    "OVER_WRITE_SYS_LOG", 18, "Set whether a full system log overwrites or discards lines.", _LOG_MODE
+)
 RESET_PR_COUNT = _command("RESET_PR_COUNT", 19, "Set the count of processor resets to zero.")
 SET_MAX_PR_COUNT = _command(
     "SET_MAX_PR_COUNT", 20, "Set how many processor resets there may be before a power-on reset.", _MAX_PR_COUNT

@@ -222,7 +222,7 @@ WRITE_APP_DATA_FILE = Command(
     CMD_MID,
     WRITE_APP_DATA_FILE_CC,
     APP_DATA_COMMAND,
-    "Write what is known of all applications to a file.",
+    "Write the data of all applications to a file.",
 )
 WRITE_LOG_DATA_FILE = Command(
     "CFE_EVS_WRITE_LOG_DATA_FILE",
@@ -266,7 +266,7 @@ COMMANDS: tuple[Command, ...] = (
     SEND_HK,
 )
 
-HK_TLM = Telemetry("CFE_EVS_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters and settings, and those of 16 applications.")
+HK_TLM = Telemetry("CFE_EVS_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters and settings of EVS and of 16 applications.")
 LONG_EVENT_MSG = Telemetry("CFE_EVS_LONG_EVENT_MSG", LONG_EVENT_MSG_MID, LONG_EVENT, "An event with its text.")
 SHORT_EVENT_MSG = Telemetry("CFE_EVS_SHORT_EVENT_MSG", SHORT_EVENT_MSG_MID, SHORT_EVENT, "An event without its text.")
 

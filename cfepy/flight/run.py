@@ -266,7 +266,7 @@ class Run:
 
     def _failure(self, expected: str | None, instead: str) -> ExpectationError:
         first = instead if expected is None else f"expected {expected}\ninstead: {instead}"
-        return ExpectationError("\n".join([first, *self.state_lines(), f"the same again: {self.command()}"]))
+        return ExpectationError("\n".join([first, *self.state_lines(), f"to reproduce: {self.command()}"]))
 
     def state_lines(self) -> list[str]:
         """Return the problems and the end of the console, as failures show them."""

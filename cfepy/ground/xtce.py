@@ -265,7 +265,7 @@ class _Telemetry:
     def _add_variants(self, packet: Telemetry) -> None:
         """Add packets that share a MsgId: a container with their common part, and one for each."""
         common = self._unique(f"{xtce_name(packet.name)}_any")
-        entries = self._container(common, "what packets of one MsgId have in common", is_abstract=True)
+        entries = self._container(common, "the common part of all packets of a MsgId", is_abstract=True)
         first = self._unique(f"{common}_first")
         self._entry(entries, first, self._types.number("u8"))
         self._base(TELEMETRY, PKT_APID=str(packet.msg_id & APID_MASK))

@@ -22,7 +22,7 @@ def differences(one: Journal, other: Journal) -> Iterator[str]:
     yield from _changes("environment: ", one.header.environ, other.header.environ)
     yield from _files(_by_name(one), _by_name(other))
     if one.pauses != other.pauses or one.answers != other.answers:
-        yield f"what came from outside: {_inputs(one)}, {_inputs(other)}"
+        yield f"external input: {_inputs(one)}, {_inputs(other)}"
 
 
 def _machine(journal: Journal) -> dict[str, Any]:

@@ -100,11 +100,11 @@ def _on_tasks_here(plan: RunPlan) -> tuple[RunPlan, tuple[str, ...]]:
 def _note(changed: Sequence[MissionFile], from_disk: bool, left_out: Sequence[MissionFile]) -> str:
     """Return notes on a replay with the files of this computer."""
     if not changed:
-        return "with the files on this computer, which are those of the run"
+        return "with the files on this computer, which equal the files of the run"
     if from_disk:
-        return f"with the files on this computer; not those of the run are: {_named(changed)}"
+        return f"with the files on this computer; these differ from the run: {_named(changed)}"
     text = f"the journal does not carry {_named(left_out)}"
-    return f"with the files on this computer, since {text}; not those of the run are: {_named(changed)}"
+    return f"with the files on this computer, since {text}; these differ from the run: {_named(changed)}"
 
 
 @contextlib.contextmanager

@@ -29,16 +29,16 @@ _SET_METHODS = frozenset({"union", "intersection", "difference", "symmetric_diff
 _IN_ORDER = frozenset({"list", "tuple", "enumerate", "iter", "map", "filter", "zip", "fromkeys", "join", "next"})
 _OF_THE_PROCESS = {"id": "an address", "hash": "the hash of a text, which follows PYTHONHASHSEED"}
 _PAST_THE_SIMULATION = {
-    "sqlite3.connect": "asks a library in C, whose clock and random numbers are this computer's",
-    "sys.getrefcount": "counts what else Python keeps",
-    "gc.get_count": "counts what else Python keeps",
-    "gc.get_objects": "has what else Python keeps",
-    "gc.get_stats": "counts what else Python keeps",
+    "sqlite3.connect": "calls a C library, which uses the clock and random numbers of this computer",
+    "sys.getrefcount": "counts objects of the whole process",
+    "gc.get_count": "counts objects of the whole process",
+    "gc.get_objects": "returns objects of the whole process",
+    "gc.get_stats": "counts objects of the whole process",
     "ctypes.addressof": "uses an address",
-    "crypt.mksalt": "draws random numbers of this computer's",
-    "numpy.empty": "has what lay in memory before",
-    "numpy.empty_like": "has what lay in memory before",
-    "weakref.WeakSet": "is a set in the order of addresses",
+    "crypt.mksalt": "draws random numbers of this computer",
+    "numpy.empty": "returns uninitialized memory",
+    "numpy.empty_like": "returns uninitialized memory",
+    "weakref.WeakSet": "is a set that is ordered by addresses",
 }
 """Functions with a different result in each run, by their full names."""
 _CLOCKS = {"numpy.datetime64": ("now", "today")}

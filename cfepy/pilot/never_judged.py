@@ -101,7 +101,7 @@ def _results(mission: Mission, results: Sequence[SelectedResult], sent: SentName
         else:
             why = sent.why_not([each.name])
         if why:
-            yield f"the result {each.name} ({each.compare}) never came{why}"
+            yield f"the result {each.name} ({each.compare}) never occurred{why}"
 
 
 def _is_file(mission: Mission, path: str) -> bool:

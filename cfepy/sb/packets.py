@@ -138,7 +138,7 @@ WRITE_ROUTING_INFO = Command(
     CMD_MID,
     WRITE_ROUTING_INFO_CC,
     FILE_COMMAND,
-    "Write to a file which pipes each MsgId goes to.",
+    "Write the pipes of each MsgId to a file.",
 )
 ENABLE_ROUTE = Command(
     "CFE_SB_ENABLE_ROUTE", CMD_MID, ENABLE_ROUTE_CC, ROUTE_COMMAND, "Let a MsgId into a pipe that subscribed to it."
@@ -169,16 +169,16 @@ ENABLE_SUB_REPORTING = Command(
     "CFE_SB_ENABLE_SUB_REPORTING",
     SUB_RPT_CTRL_MID,
     ENABLE_SUB_REPORTING_CC,
-    text="From now on tell each new subscription in a packet.",
+    text="Report each new subscription in a packet from now on.",
 )
 DISABLE_SUB_REPORTING = Command(
     "CFE_SB_DISABLE_SUB_REPORTING",
     SUB_RPT_CTRL_MID,
     DISABLE_SUB_REPORTING_CC,
-    text="Do not tell new subscriptions any more.",
+    text="Stop reporting new subscriptions.",
 )
 SEND_PREV_SUBS = Command(
-    "CFE_SB_SEND_PREV_SUBS", SUB_RPT_CTRL_MID, SEND_PREV_SUBS_CC, text="Tell all subscriptions there are, in packets."
+    "CFE_SB_SEND_PREV_SUBS", SUB_RPT_CTRL_MID, SEND_PREV_SUBS_CC, text="Report all subscriptions in packets."
 )
 
 HK_TLM = Telemetry("CFE_SB_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters, and use of the message pool.")

@@ -133,16 +133,16 @@ def _command(name: str, code: int, payload: Layout, text: str) -> Command:
     return Command(f"CFE_TBL_{name}", CMD_MID, code, payload, text)
 
 
-NOOP = _command("NOOP", 0, NO_PAYLOAD, "Say in an event that Table Services run, and their version.")
+NOOP = _command("NOOP", 0, NO_PAYLOAD, "Report the version of Table Services in an event.")
 RESET_COUNTERS = _command("RESET_COUNTERS", 1, NO_PAYLOAD, "Set the command and validation counters to zero.")
 LOAD = _command("LOAD", 2, _LOAD, "Read a table file into the inactive image of its table.")
 DUMP = _command("DUMP", 3, _DUMP, "Write the active (1) or inactive (0) image of a table to a file.")
-VALIDATE = _command("VALIDATE", 4, _VALIDATE, "Have the active (1) or inactive (0) image of a table validated.")
+VALIDATE = _command("VALIDATE", 4, _VALIDATE, "Validate the active (1) or inactive (0) image of a table.")
 ACTIVATE = _command("ACTIVATE", 5, _TABLE_NAME, "Let a table's owner switch to the validated inactive image.")
 DUMP_REGISTRY = _command("DUMP_REGISTRY", 6, _DUMP_REGISTRY, "Write the registry of all tables to a file.")
 SEND_REGISTRY = _command("SEND_REGISTRY", 7, _TABLE_NAME, "Send a table's registry entry with the next housekeeping.")
-DELETE_CDS = _command("DELETE_CDS", 8, _TABLE_NAME, "Delete what the CDS holds of a critical table without owner.")
-ABORT_LOAD = _command("ABORT_LOAD", 9, _TABLE_NAME, "Give up a load that was begun.")
+DELETE_CDS = _command("DELETE_CDS", 8, _TABLE_NAME, "Delete the CDS block of a critical table without an owner.")
+ABORT_LOAD = _command("ABORT_LOAD", 9, _TABLE_NAME, "Abort a load.")
 SEND_HK = Command("CFE_TBL_SEND_HK", SEND_HK_MID, text="Send housekeeping; also writes the dumps that are ready.")
 
 COMMANDS: tuple[Command, ...] = (
@@ -159,6 +159,6 @@ COMMANDS: tuple[Command, ...] = (
     SEND_HK,
 )
 
-HK_TLM = Telemetry("CFE_TBL_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters, and what was last validated and loaded.")
+HK_TLM = Telemetry("CFE_TBL_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters, and the tables last validated and loaded.")
 REG_TLM = Telemetry("CFE_TBL_REG_TLM", REG_TLM_MID, REGISTRY_PACKET, "The registry entry of one table.")
 TELEMETRY: tuple[Telemetry, ...] = (HK_TLM, REG_TLM)

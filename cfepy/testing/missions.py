@@ -322,7 +322,7 @@ class Missions:
                 lines += flight.state_lines()
         if not isinstance(error, ExpectationError) or self._examples.concerns(item):
             example = self._examples.code_of(error)
-            lines.append(f"the same again: {self.command(item, example=example)}")
+            lines.append(f"to reproduce: {self.command(item, example=example)}")
         return lines
 
     def _end_example(self, failed: bool) -> None:

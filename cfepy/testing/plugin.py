@@ -23,23 +23,25 @@ CURRENT = pytest.StashKey[pytest.Item]()
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add the options of cfepy."""
     group = parser.getgroup("cfepy", "cfepy: missions under test")
-    group.addoption("--cfepy-seed", type=int, default=0, metavar="N", help="seed of missions that a test gives none")
+    group.addoption(
+        "--cfepy-seed", type=int, default=0, metavar="N", help="seed of missions for which the test sets none"
+    )
     group.addoption(
         "--cfepy-schedule",
         default=None,
         metavar="TEXT",
-        help="schedule of missions that a test gives none: fifo, random:SEED, pct:SEED:DEPTH, at:DECISION=CHOICE,...;"
-        " of several missions in one test with ';' between them. Tests with @explore are run under this one alone",
+        help="schedule of missions for which the test sets none: fifo, random:SEED, pct:SEED:DEPTH, "
+        "at:DECISION=CHOICE,...; separate several missions of one test by ';'. Tests with @explore run under it only",
     )
-    group.addoption("--cfepy-tasks", choices=["auto", "thread", "greenlet"], help="kind of tasks of missions")
+    group.addoption("--cfepy-tasks", choices=["auto", "thread", "greenlet"], help="kind of the tasks of missions")
     stall = (
         "seconds of wall time after which a task that does not give up the CPU fails its test; 0: never (default: 10)"
     )
     group.addoption("--cfepy-stall", type=float, default=None, metavar="SECONDS", help=stall)
     parser.addini("cfepy_stall", f"as --cfepy-stall: {stall}", default="10")
-    group.addoption("--cfepy-schedules", type=int, metavar="N", help="how many schedules each @explore goes through")
-    group.addoption("--cfepy-record", metavar="DIR", help="keep journals of the missions of failed tests there")
-    group.addoption("--cfepy-example", metavar="CODE", help="the Hypothesis example to run, copied from a failure")
+    group.addoption("--cfepy-schedules", type=int, metavar="N", help="number of schedules of each @explore")
+    group.addoption("--cfepy-record", metavar="DIR", help="folder for the journals of missions of failed tests")
+    group.addoption("--cfepy-example", metavar="CODE", help="the Hypothesis example to run, as printed with a failure")
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -135,17 +135,19 @@ SET_STATE = Command(
     CMD_MID,
     SET_STATE_CC,
     STATE_COMMAND,
-    "Say that the time is wrong, -1, or right, 0, or let the clock go on without a tone, 1.",
+    "Set the clock state: -1 invalid, 0 valid, 1 flywheel (the clock runs without a tone).",
 )
 ADD_DELAY = Command(
-    "CFE_TIME_ADD_DELAY", CMD_MID, ADD_DELAY_CC, TIME_COMMAND, "Tell a client how much too late its tone comes."
+    "CFE_TIME_ADD_DELAY", CMD_MID, ADD_DELAY_CC, TIME_COMMAND, "Set by how much the tone of a client is late."
 )
 SUB_DELAY = Command(
-    "CFE_TIME_SUB_DELAY", CMD_MID, SUB_DELAY_CC, TIME_COMMAND, "Tell a client how much too early its tone comes."
+    "CFE_TIME_SUB_DELAY", CMD_MID, SUB_DELAY_CC, TIME_COMMAND, "Set by how much the tone of a client is early."
 )
 SET_TIME = Command("CFE_TIME_SET_TIME", CMD_MID, SET_TIME_CC, TIME_COMMAND, "Set the spacecraft time through STCF.")
 SET_MET = Command("CFE_TIME_SET_MET", CMD_MID, SET_MET_CC, TIME_COMMAND, "Set the mission elapsed time.")
-SET_STCF = Command("CFE_TIME_SET_STCF", CMD_MID, SET_STCF_CC, TIME_COMMAND, "Set what is added to MET.")
+SET_STCF = Command(
+    "CFE_TIME_SET_STCF", CMD_MID, SET_STCF_CC, TIME_COMMAND, "Set STCF, the offset from MET to the spacecraft time."
+)
 SET_LEAP_SECONDS = Command(
     "CFE_TIME_SET_LEAP_SECONDS", CMD_MID, SET_LEAP_SECONDS_CC, LEAPS_COMMAND, "Set the seconds that TAI is before UTC."
 )
@@ -169,10 +171,10 @@ SET_SIGNAL = Command(
     "CFE_TIME_SET_SIGNAL", CMD_MID, SET_SIGNAL_CC, SIGNAL_COMMAND, "Take the primary tone, 1, or the redundant one, 2."
 )
 SEND_HK = Command("CFE_TIME_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet.")
-TONE_CMD = Command("CFE_TIME_TONE_CMD", TONE_CMD_MID, text="Tell that there was a tone.")
-ONEHZ_CMD = Command("CFE_TIME_ONEHZ_CMD", ONEHZ_CMD_MID, text="Tell that a second is over.")
-DATA_CMD = Command("CFE_TIME_DATA_CMD", DATA_CMD_MID, payload=TONE_DATA, text="Tell the time at the tone.")
-SEND_CMD = Command("CFE_TIME_SEND_CMD", SEND_CMD_MID, text="Ask a server for the time at the tone.")
+TONE_CMD = Command("CFE_TIME_TONE_CMD", TONE_CMD_MID, text="Report a tone.")
+ONEHZ_CMD = Command("CFE_TIME_ONEHZ_CMD", ONEHZ_CMD_MID, text="Report the end of a second.")
+DATA_CMD = Command("CFE_TIME_DATA_CMD", DATA_CMD_MID, payload=TONE_DATA, text="Report the time at the tone.")
+SEND_CMD = Command("CFE_TIME_SEND_CMD", SEND_CMD_MID, text="Request the time at the tone from a server.")
 
 COMMANDS: tuple[Command, ...] = (
     NOOP,
@@ -199,6 +201,6 @@ COMMANDS: tuple[Command, ...] = (
 )
 
 HK_TLM = Telemetry("CFE_TIME_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Counters, clock state, MET and STCF.")
-DIAG_TLM = Telemetry("CFE_TIME_DIAG_TLM", DIAG_TLM_MID, DIAGNOSTIC, "All that the clock knows of itself.")
+DIAG_TLM = Telemetry("CFE_TIME_DIAG_TLM", DIAG_TLM_MID, DIAGNOSTIC, "The complete state of the clock.")
 
 TELEMETRY: tuple[Telemetry, ...] = (HK_TLM, DIAG_TLM)

@@ -146,7 +146,7 @@ def table(verdicts: list[Verdict]) -> str:
         converts = sum(not each.refused[profile.value] for each in verdicts)
         lines.append(f"| {profile.value} | {converts} ({converts * 100 // total} %) | {total - converts} |")
     rules = Counter(rule for each in verdicts for rule in each.refused[Profile.HOST.value])
-    lines += ["", "What refuses nodes in the host profile (a node may be refused by several rules):", ""]
+    lines += ["", "Rules that refuse nodes in the host profile (several rules may refuse one node):", ""]
     lines += ["| rule | nodes |", "|---|---|"]
     lines += [f"| {rule} | {count} |" for rule, count in sorted(rules.items(), key=lambda item: (-item[1], item[0]))]
     return "\n".join(lines)

@@ -13,19 +13,20 @@ DRIVE = "drive()"  # the stimulus of an unknown node
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "compatibility.md"
 _HEAD = """# Compatibility
 
-{total} scenarios with public ROS 1 nodes in Python, run unmodified from their repositories: the node gets a stimulus
-from a second node, and what it publishes, answers and prints is checked. All checks hold for the same nodes on rospy
-1.15 with a ROS master. In virtual time on cfepy, {passed} of {total} meet all of theirs. The wall time is that of the
-whole process, start of the interpreter included, on an x86-64 machine with two cores.
+This page lists {total} scenarios with public ROS 1 nodes in Python. The nodes run unmodified from their repositories.
+Each node gets a stimulus from a second node. The scenario checks the published messages, the answers of services and
+the printed lines of the node. All checks hold for the same nodes on rospy 1.15 with a ROS master. In virtual time on
+cfepy, {passed} of {total} scenarios pass all checks. The wall time includes the start of the interpreter, on an x86-64
+machine with two cores.
 
-{driven} of them are nodes that were driven without being read (`dev/corpus/driving.py`): each topic that the node
-subscribes to gets five messages, each service a call, and all that it publishes, answers, prints, sets and ends with is
-held against a run on ROS with the same stimulus. Where two runs on ROS differ, by times, chance or the end of the
-recording, counts are compared. {silent} of these nodes end on ROS before they are on the graph, mostly for want of a
-parameter, an argument or Python 2, and do the same here. `python -m dev.corpus beside ID`, on a computer with rospy
-and rosmaster, flies a scenario on both and shows what is not alike.
+{driven} of the nodes get a generated stimulus (`dev/corpus/driving.py`): five messages on each subscribed topic, and a
+call of each service. The messages, answers, printed lines, parameters and exit status of the node are compared with a
+run on ROS that has the same stimulus. If two runs on ROS differ because of times, chance or the end of the recording,
+counts are compared. {silent} of these nodes end on ROS before they register at the master, mostly because a parameter,
+an argument or Python 2 is missing. They do the same on cfepy. To fly a scenario on both and show the differences, run
+`python -m dev.corpus beside ID` on a computer with rospy and rosmaster.
 
-This page is made by `python -m dev.corpus report`. Nodes in C++ are in
+`python -m dev.corpus report` writes this page. Nodes in C++ are in
 [convertor.md](../../how_to/convertor.md#public-nodes).
 To try it yourself:
 
@@ -34,8 +35,9 @@ python -m dev.corpus fetch ~/corpus
 python -m dev.corpus run --sources ~/corpus --jobs 2
 ```
 
-`fetch` gets each repository at the commit below; nothing of it is part of cfepy. With the folder in
-{environment}, `pytest tests/corpus` runs them all as tests. The scenarios are in `dev/corpus/scenarios.json`.
+`fetch` downloads each repository at the commit below. No code of these repositories is part of cfepy. To run all
+scenarios as tests, set {environment} to the folder and run `pytest tests/corpus`. The scenarios are in
+`dev/corpus/scenarios.json`.
 
 | scenario | node | commit | verdict | wall time | reason |
 |---|---|---|---|---|---|

@@ -18,8 +18,9 @@ import cfepy
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "python_api_reference.md"
 HEAD = """# Reference of the library
 
-What `import cfepy` offers, made of the docstrings by `python -m dev.pages.python_api`. The guide is
-[python_api.md](../../how_to/python_api.md). Times are virtual and in seconds, unless a name ends with `_ns`.
+This page describes the public names of `import cfepy`. `python -m dev.pages.python_api` writes it from the docstrings.
+The guide is [python_api.md](../../how_to/python_api.md). Times are virtual and in seconds, unless a name ends with
+`_ns`.
 """
 SECTIONS = ("Args", "Attributes", "Returns", "Raises")
 FOREIGN = (tuple, dict, list, Exception, object)  # whose methods Python defines

@@ -33,10 +33,10 @@ TITLES = {
 HEAD = """\
 # Requirements
 
-The functional requirements of cFE and HK 7.0.0 by their public ids, and the tests that are evidence for each; NASA
-keeps the words of the requirements beside its sources. The tests are in `tests/requirements`; most of them fly a
-mission and use commands and telemetry as a ground system would. `python -m dev.pages.requirements` writes this page
-anew; a test fails when it is stale.
+This page lists the functional requirements of cFE and HK 7.0.0 by their public ids, with the tests of each. The texts
+of the requirements are in NASA's repositories. The tests are in `tests/requirements`. Most of them fly a mission and
+use commands and telemetry like a ground system. `python -m dev.pages.requirements` writes this page. A test fails if
+the page is out of date.
 """
 
 

@@ -11,31 +11,31 @@ from dev.peers.peers import Peers
 PAGE = Path(__file__).parents[2] / "docs" / "reference" / "generated" / "peer_tests.md"
 _HEAD = """# Tests of ROS packages
 
-{total} public test files of ROS 1's own packages, Python files and launch files for rostest, run unmodified from their
-repositories. How many of their tests pass on ROS was counted with rospy 1.15 and a ROS master; {known} files have been
-run there. Of these {good} pass on cfepy as they do on ROS, but for at most one test in twenty and for those that look
-into what cfepy does otherwise, which the last column names. Tests that fail on ROS fail there for reasons of their own,
-such as a library that was not installed; so more tests can pass here than there.
+This page lists {total} public test files of the packages of ROS 1: Python files, and launch files for rostest. They run
+unmodified from their repositories. {known} files were also run on ROS, with rospy 1.15 and a ROS master, to count the
+tests that pass there. {good} of these files are "ok": on cfepy, at most one test in twenty of those that pass on ROS
+fails. Tests of details in which cfepy differs from ROS do not count; the last column names them. Some tests fail on ROS
+for other reasons, such as a library that was not installed, so more tests can pass on cfepy than on ROS.
 
-This page is made by `python -m dev.peers report`. To try it yourself:
+`python -m dev.peers report` writes this page. To try it yourself:
 
 ```
 python -m dev.peers fetch ~/peers
 python -m dev.peers run --sources ~/peers --jobs 2
 ```
 
-`fetch` gets each repository at its commit; nothing of it is part of cfepy. With the folder in CFEPY_PEERS_SOURCES,
-`pytest tests/peers` runs them all as tests. The list is `dev/peers/peers.json`. A file that brings the library it
-tests along is run with that library, in the place of cfepy's; the others test cfepy's own.
+`fetch` downloads each repository at its commit. No code of these repositories is part of cfepy. To run all files as
+tests, set CFEPY_PEERS_SOURCES to the folder and run `pytest tests/peers`. The list is `dev/peers/peers.json`. A file
+whose repository has the tested library runs with that library. The other files test cfepy's own libraries.
 
-| file | repository | tests | pass on ROS | pass on cfepy | verdict | what does not, and why |
+| file | repository | tests | pass on ROS | pass on cfepy | verdict | failed tests, and reasons |
 |---|---|---|---|---|---|---|
 """
 
 _LEFT_OUT = """
-## What is left out
+## Excluded files
 
-| files | why |
+| files | reason |
 |---|---|
 """
 

@@ -140,6 +140,6 @@ def sentence(names: list[str]) -> str:
     flown = [flown_of(measured.get(name, {})) for name in names]
     failed = sum(len(failed_of(measured.get(name, {}))) for name in names)
     return (
-        f"Each mended form was flown under {min(flown):,} schedules of the default at least, {sum(flown):,} in all: "
-        f"{failed or 'none'} of them failed"
+        f"Each mended form was flown under at least {min(flown):,} schedules of the default policy, {sum(flown):,} in "
+        f"all: {failed or 'none'} of them failed"
     )

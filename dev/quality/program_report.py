@@ -144,43 +144,49 @@ def _number(found: int | None) -> str:
     return f"> {MOST}" if found is None else str(found)
 
 
-_PAGE = """# Programs that others try
+_PAGE = """# Benchmark programs of other tools
 
 <!-- made by `python -m dev.quality programs`; change the code in dev/quality instead -->
 
-Tools that search schedules are compared by programs with one known mistake each: SCTBench has the most, CHESS, Coyote
-and shuttle have some in their papers and documents, and there are the protocols that every course on TLA+ begins with.
-`tests/quality/missions` has {others} of that kind, written anew as ROS nodes and cFE applications, with threads, locks
-and messages as they are there, and further races of such software: {count} in all, besides the
+Tools that search schedules are compared by programs with one known mistake each. SCTBench has the most of them. The
+papers and documents of CHESS, Coyote and shuttle have some, and courses on TLA+ use well-known protocols.
+`tests/quality/missions` has {others} of these programs, rewritten as ROS nodes and cFE applications with the same
+threads, locks and messages. With further races of such software there are {count} programs, in addition to the
 [planted bugs](planted_bugs.md). Each has a mended form.
 
-"first" is the first schedule that shows the mistake when `cfepy explore` is given no `--policy`: one search, which
-anyone can repeat. "median" is that of {trials} searches with seeds of their own. `> {schedules}` says that so many
-showed nothing, in the median to half of the searches or more. "needs" is what the command is given besides: points
-between calls, less urgent tasks first, or a fault whose instant is explored. "`--races`" says whether a single run
-under `fifo` tells of a data race in it. "published" has what its authors' records say of the original: in how many runs
-Maple found it (Yu, Narayanasamy, Pereira, Pokam: OOPSLA 2012), or had not when it had nothing left to try, from
-mapleRes.txt among the benchmarks of the repository mc-imperial/sctbench. It is empty where nothing comparable is known.
+The columns are:
 
-The first search finds {found} of {count} within {schedules} schedules and {later} within {most:,}; in the median
-{often} are found within {schedules}. The first one does not find {missed} within {schedules}.
+- "first": the first schedule that shows the mistake with `cfepy explore` and no `--policy`. You can repeat this search.
+- "median": the median of {trials} searches with different seeds. `> {schedules}` means that at least half of the
+  searches found nothing within {schedules} schedules.
+- "needs": further options of the command, such as points between calls, tasks of lower priority first, or a fault whose
+  time is explored.
+- "`--races`": whether a single run under `fifo` reports a data race.
+- "published": the number of runs in which Maple found the original (Yu, Narayanasamy, Pereira, Pokam: OOPSLA 2012), or
+  that Maple ended without finding it. The source is mapleRes.txt in the repository mc-imperial/sctbench. The cell is
+  empty if there is no comparable number.
+
+The first search finds {found} of {count} within {schedules} schedules and {later} within {most:,}. In the median of
+the searches, {often} are found within {schedules}. The first search does not find these programs within {schedules}
+schedules: {missed}.
 
 {mended}.
 
 {table}
 
-What keeps some away: of twenty threads, as `two_stages_many` has them, two have to overlap in one way while no other
-has come as far; `lock_free_stack` needs five switches, each at one of a few places among 150. `safe_stack` needs as
-many, and came down from over 200 schedules when `random` got long stretches of one task for `--points`. What helped
-the others: Python's own `threading` had a dozen points where a thread is started or joined, so there were 40
-decisions in `bank_account` under `fifo` where there are 14 now, and `abreast` lets threads go on side by side once all
-are there, also two or three of them that do different things.
+Some mistakes are hard to find. `two_stages_many` has twenty threads, and two of them must overlap in one way before any
+other gets as far. `lock_free_stack` needs five switches, each at one of a few places among 150. `safe_stack` needs as
+many. It needed over 200 schedules before `random` used long stretches of one task with `--points`.
 
-SCTBench is that of Thomson, Donaldson and Betts: Concurrency Testing Using Schedule Bounding: an Empirical Study (PPoPP
-2014); with 49 of its programs they found that PCT of depth 3 misses only one bug (Concurrency Testing Using Controlled
-Schedulers: An Empirical Study, ACM TOPC 2016).
+Two changes made the other mistakes easier to find. The start and the join of a thread in Python's `threading` had a
+dozen points; `bank_account` had 40 decisions under `fifo` and now has 14. `abreast` lets threads proceed side by side
+once all are started, including two or three threads that do different things.
 
-To look for one of them as a user would:
+SCTBench is the work of Thomson, Donaldson and Betts: Concurrency Testing Using Schedule Bounding: an Empirical Study
+(PPoPP 2014). With 49 of its programs they found that PCT of depth 3 misses only one bug (Concurrency Testing Using
+Controlled Schedulers: An Empirical Study, ACM TOPC 2016).
+
+To search for one of the mistakes, run:
 
 ```
 cfepy explore tests/quality/missions/reorder_three --for 1.3 --points attributes

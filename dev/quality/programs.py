@@ -80,36 +80,38 @@ class Program(Bug):
 
 
 PROGRAMS = (
-    Program("bank_account", ROS, "each access has the lock, not both together", origin="SCTBench: account_bad"),
+    Program("bank_account", ROS, "each access holds the lock, but not both together", origin="SCTBench: account_bad"),
     Program(
         "reorder_three", ROS, "a pair is read half written", RAISED, origin="SCTBench: reorder_3_bad", options=POINTS
     ),
     Program(
-        "reorder_ten", ROS, "the same, with nine who write", RAISED, origin="SCTBench: reorder_10_bad", options=POINTS
+        "reorder_ten", ROS, "the same, with nine writers", RAISED, origin="SCTBench: reorder_10_bad", options=POINTS
     ),
     Program("two_stages", ROS, "a reader comes between two stages", RAISED, origin="SCTBench: twostage_bad"),
     Program(
         "two_stages_many",
         ROS,
-        "the same, with 19 who work",
+        "the same, with 19 workers",
         RAISED,
         origin="SCTBench: twostage_100_bad, of 20 threads",
     ),
     Program("wrong_lock", ROS, "one counter, two locks", origin="SCTBench: wronglock_bad"),
-    Program("carter", ROS, "two locks in two orders, by one who counts", DEADLOCK, origin="SCTBench: carter01_bad"),
+    Program("carter", ROS, "two locks in two orders, chosen by a counter", DEADLOCK, origin="SCTBench: carter01_bad"),
     Program("deadlock_two", ROS, "each transfer locks its source first", DEADLOCK, origin="SCTBench: deadlock01_bad"),
     Program("philosophers_three", ROS, "all take the left fork", DEADLOCK, origin="SCTBench: din_phil3_sat"),
     Program("philosophers_six", ROS, "all six take the left fork", DEADLOCK, origin="SCTBench: din_phil6_sat"),
     Program(
         "circular_buffer",
         ROS,
-        "counted before it is written",
+        "an item is counted before it is written",
         (verdict.ENDED,),
         origin="SCTBench: circular_buffer_bad",
         options=POINTS,
     ),
-    Program("shared_stack", ROS, "looked at without the lock", RAISED, origin="SCTBench: stack_bad", options=POINTS),
-    Program("lazy_sum", ROS, "nobody waits for the inspector", RAISED, origin="SCTBench: lazy01_bad"),
+    Program(
+        "shared_stack", ROS, "a stack is read without its lock", RAISED, origin="SCTBench: stack_bad", options=POINTS
+    ),
+    Program("lazy_sum", ROS, "no task waits for the inspector", RAISED, origin="SCTBench: lazy01_bad"),
     Program("token_ring", ROS, "stations do not wait for the token", origin="SCTBench: token_ring_bad"),
     Program(
         "driver_stop",
@@ -121,7 +123,7 @@ PROGRAMS = (
     Program("signal_once", ROS, "a signal before the wait for it", STUCK, origin="SCTBench: sync01_bad"),
     Program("file_blocks", ROS, "a block is found free without its lock", RAISED, origin="SCTBench: fsbench_bad"),
     Program("text_buffer", ROS, "a text is shorter than it was", RAISED, origin="SCTBench: stringbuffer-jdk1.4"),
-    Program("closed_queue", ROS, "a queue goes before its user", RAISED, origin="SCTBench: pbzip2-0.9.4"),
+    Program("closed_queue", ROS, "a queue is deleted before its user ends", RAISED, origin="SCTBench: pbzip2-0.9.4"),
     Program("missing_barrier", ROS, "one barrier too few", origin="SCTBench: streamcluster"),
     Program(
         "safe_stack",
@@ -133,19 +135,28 @@ PROGRAMS = (
         bound="5 preemptions",
     ),
     Program("work_stealing", ROS, "the tail is moved too late", origin="CHESS: work-stealing queue", options=POINTS),
-    Program("promise", ROS, "kept between look and wait", STUCK),
-    Program("state_machine", ROS, "one transition does not look again", RAISED),
-    Program("account_manager", ROS, "looked for, then made", origin="Coyote: AccountManager"),
+    Program("promise", ROS, "a promise is kept between check and wait", STUCK),
+    Program("state_machine", ROS, "one transition does not check the state again", RAISED),
+    Program("account_manager", ROS, "an account is searched, then created", origin="Coyote: AccountManager"),
     Program(
         "blocking_queue", ROS, "one condition for two reasons to wait", STUCK, origin="Coyote: BoundedBuffer; TLA+"
     ),
     Program("leader_election", ROS, "a lost claim makes two leaders", INVARIANT, origin="Coyote: Raft, two leaders"),
-    Program("published_early", ROS, "a value is looked at before the join", origin="shuttle: the first example"),
+    Program("published_early", ROS, "a value is read before the join", origin="shuttle: the first example"),
     Program("lock_free_stack", ROS, "ABA in a stack", RAISED, options=POINTS),
-    Program("double_checked", ROS, "seen before it is complete", RAISED),
-    Program("peterson", ROS, "turn before flag", RAISED, origin="TLA+: Peterson", options=POINTS),
-    Program("dekker", ROS, "looked, then said", RAISED, origin="TLA+: Dekker", options=POINTS),
-    Program("bakery", ROS, "nobody says that he chooses", RAISED, origin="TLA+: bakery", options=POINTS),
+    Program("double_checked", ROS, "an object is seen before it is complete", RAISED),
+    Program("peterson", ROS, "the turn is set before the flag", RAISED, origin="TLA+: Peterson", options=POINTS),
+    Program(
+        "dekker", ROS, "the other flag is read before the own one is set", RAISED, origin="TLA+: Dekker", options=POINTS
+    ),
+    Program(
+        "bakery",
+        ROS,
+        "a task does not announce that it chooses a number",
+        RAISED,
+        origin="TLA+: bakery",
+        options=POINTS,
+    ),
     Program(
         "readers_writer",
         ROS,
@@ -154,21 +165,21 @@ PROGRAMS = (
         origin="TLA+: readers and writers",
         options=POINTS,
     ),
-    Program("vote", ROS, "a vote is given before it is kept, then a crash", INVARIANT, origin="TLA+: Raft"),
+    Program("vote", ROS, "a vote is sent before it is stored, then a crash", INVARIANT, origin="TLA+: Raft"),
     Program(
         "two_phase_commit",
         ROS,
-        "decided before it is kept, then a crash",
+        "a decision is sent before it is stored, then a crash",
         INVARIANT,
         origin="TLA+: two-phase commit",
     ),
     Program("shutdown_hook", ROS, "a hook closes what a callback writes to", RAISED),
-    Program("service_circle", ROS, "each asks the other with its lock held", RAISED + DEADLOCK, hangs=True),
+    Program("service_circle", ROS, "two nodes call each other and hold their locks", RAISED + DEADLOCK, hangs=True),
     Program("torn_command", ROS, "a timer sends half of a command", RAISED, options=POINTS),
     Program("priority_inversion", CFE, "a semaphore that does not inherit", (verdict.DEADLINE,)),
     Program("startup_order", CFE, "settings are sent before the startup sync", EVENT),
     Program("command_counters", CFE, "two tasks count in one line", EVENT, options=POINTS),
-    Program("urgent_child", CFE, "an urgent task is trusted to be first", EVENT, options="at:any"),
+    Program("urgent_child", CFE, "a task relies on its priority to run first", EVENT, options="at:any"),
 )
 
 

@@ -178,29 +178,34 @@ _INTRODUCTION = """# Planted bugs
 
 <!-- made by `python -m dev.quality report`; change the code in dev/quality instead -->
 
-How soon does `cfepy explore` find a race? `tests/quality/missions` has {count} small missions of ROS nodes and cFE
-applications, each with one mistake of timing that people really make, and each as one would write it: no sleep widens
-the window. The default schedule, first come, first served, shows none of them, and every mission also has a mended
-form. {mended} (`python -m dev.quality mended` goes on with
-that).
+This page shows how many schedules `cfepy explore` needs to find a race. `tests/quality/missions` has {count} small
+missions of ROS nodes and cFE applications. Each has one common timing mistake, written in the usual way: no sleep makes
+the failure more likely. The default schedule (`fifo`) shows none of the mistakes. Each mission also has a mended form.
 
-The numbers are schedules until the bug shows: the median of {trials} trials with seeds of their own. `> N` says that
-half of the trials or more had found nothing after N schedules each, when the measurement of that policy ended (it goes
-on to {longest} if one lets it, see below). PCT and DFS stand with the depth they look for; DFS tries one and two
-preemptions systematically and has no seeds, so there is one trial. "hold" is random with tasks that are held up until
-the next timer, if that is due within 1 ms. "default" is `cfepy explore` without `--policy`: random, hold, PCT of
-the depths 1 to 3 and abreast, under which tasks go on side by side, take turns. Over all bugs its median is {median}
-schedules. The best of each row is bold.
+{mended}.
+`python -m dev.quality mended` continues this check.
 
-"preemptions" is what shrinking leaves: how often a task that could have gone on loses the processor, and behind the
-plus sign how often another than the first of the waiting tasks goes on.
+The numbers are the schedules until the bug is found: the median of {trials} trials with different seeds. `> N` means
+that at least half of the trials found nothing within N schedules. The measurement of a policy can be continued up to
+{longest} schedules, see below. The columns of the policies are:
+
+- PCT and DFS have their depth. DFS tries one and two preemptions systematically. It has no seeds, so there is one
+  trial.
+- "hold" is the policy random that also delays tasks until the next timer, if the timer is due within 1 ms.
+- "abreast" lets tasks proceed side by side.
+- "default" is `cfepy explore` without `--policy`. Random, hold, PCT of the depths 1 to 3 and abreast take turns. Its
+  median over all bugs is {median} schedules.
+
+The best number of each row is bold. "preemptions" are the deviations that are left after shrinking: the number of
+preemptions, and after the plus sign the number of times that a task other than the first ready one runs.
 
 {table}
 
-`python -m dev.quality report` measures what `dev/quality/measured.json` does not have yet, and what ended too soon
-for its `--most` schedules, and then writes this page; after a change of the policies, delete the file first.
+`python -m dev.quality report` measures the bugs that `dev/quality/measured.json` does not have yet, continues the
+measurements that are shorter than `--most` schedules, and writes this page. Delete the file first if you changed the
+policies.
 
-To look for one of the bugs as a user would:
+To search for one of the bugs, run:
 
 ```
 cfepy explore tests/quality/missions/lost_update --for 1.3

@@ -56,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
     compress.add_argument("--lz4", dest="kind", action="store_const", const=Compression.LZ4)
     compress.set_defaults(kind=Compression.BZ2)
     _add_rewrite(commands, "decompress", "decompress bags", lambda chosen: _recompress(chosen, Compression.NONE))
-    _add_rewrite(commands, "reindex", "make the index of bags anew", _reindex)
+    _add_rewrite(commands, "reindex", "rebuild the index of bags", _reindex)
     return parser
 
 
@@ -64,7 +64,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _add_info(commands: Any) -> None:
-    info = commands.add_parser("info", help="tell what is in bags")
+    info = commands.add_parser("info", help="summarize the contents of bags")
     info.add_argument("bags", nargs="+")
     info.add_argument("-y", "--yaml", action="store_true", help="as YAML")
     info.add_argument("-k", "--key", help="only one value of the YAML")

@@ -40,7 +40,7 @@ class McapSalvage(Salvage):
         self._read_summary()
         at = len(mcap.MAGIC)
         if data[:at] != mcap.MAGIC:
-            at = self._resync(0, "the first bytes are not those of an MCAP file")
+            at = self._resync(0, "the file does not begin like an MCAP file")
         while at < end:
             if end - at == len(mcap.MAGIC) and data[at:end] == mcap.MAGIC:
                 return

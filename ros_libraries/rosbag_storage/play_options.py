@@ -16,7 +16,7 @@ class PlayParser(argparse.ArgumentParser):
         for flag, text in (
             ("-q --quiet", "say nothing"),
             ("-i --immediate", "do not wait between messages"),
-            ("--pause", "begin when the service ~pause_playback says so"),
+            ("--pause", "start paused; the service ~pause_playback starts the playback"),
             ("--clock", "tell the bags' time on /clock"),
             ("-l --loop", "begin again at the end"),
             ("-k --keep-alive", "stay when all is played"),
@@ -26,7 +26,7 @@ class PlayParser(argparse.ArgumentParser):
             self.add_argument(*flag.split(), action="store_true", help=text)
         self.add_argument("-p", "--prefix", default="", help="put this before the names of topics")
         self.add_argument("--queue", type=int, default=100, help="length of the publishers' queues (default: 100)")
-        self.add_argument("--hz", type=float, default=100.0, help="how often the clock is told (default: 100)")
+        self.add_argument("--hz", type=float, default=100.0, help="rate of the clock messages (default: 100)")
         self.add_argument("-d", "--delay", type=float, default=0.2, help="s between advertising and playing")
         self.add_argument("-r", "--rate", type=float, default=1.0, help="so many times as fast")
         self.add_argument("-s", "--start", type=float, default=0.0, help="begin so many s into the bags")

@@ -205,7 +205,7 @@ class BagSalvage(Salvage):
         self._read_index()
         at = len(records.VERSION)
         if data[:at] != records.VERSION:
-            at = self._resync(0, "the first line is not that of a bag")
+            at = self._resync(0, "the file does not begin like a bag")
         while at < end:
             try:
                 record = _record_at(data, at)

@@ -70,7 +70,7 @@ def load_from_string(text: str, package_context: str = "", full_name: str = "", 
     lines = text.splitlines(keepends=True)
     fence = next((number for number, line in enumerate(lines) if line.startswith(IODELIM)), None)
     if fence is None:
-        raise SrvSpecException(f"there is no line {IODELIM} between request and response")
+        raise SrvSpecException(f"missing line {IODELIM} between request and response")
     halves = zip(("Request", "Response"), ("".join(lines[:fence]), "".join(lines[fence + 1 :])), strict=True)
     request, response = (
         _load_message(half, package_context, full_name + part, short_name + part) for part, half in halves

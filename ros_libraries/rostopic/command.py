@@ -340,7 +340,7 @@ def _pub(args: list[str]) -> None:
         (["-v"], "verbose", "print verbose output"),
         (["-1", "--once"], "once", "publish one message and exit"),
         (["-l", "--latch"], "latch", "enable latching for -f, -r and piped input"),
-        (["-s", "--substitute-keywords"], "substitute", "put 'now' and 'auto' in anew for each message"),
+        (["-s", "--substitute-keywords"], "substitute", "replace 'now' and 'auto' for each message"),
         (["--use-rostime"], "use_rostime", "use rostime for time stamps, else walltime is used"),
     ):
         parser.add_option(*names, dest=name, default=False, action="store_true", help=text)

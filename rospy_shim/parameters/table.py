@@ -42,7 +42,7 @@ _HK = Layout(
 NOOP = Command("ROS_NOOP", CMD_MID, 0, text="Answer with an event.")
 RESET_COUNTERS = Command("ROS_RESET_COUNTERS", CMD_MID, 1, text="Set the counters to 0.")
 SEND_HK = Command("ROS_SEND_HK", SEND_HK_MID, text="Send the housekeeping packet.")
-WAKEUP = Command("ROS_WAKEUP", WAKEUP_MID, text="Write what nodes have set, and look after the tables.")
+WAKEUP = Command("ROS_WAKEUP", WAKEUP_MID, text="Write the values that nodes have set, and manage the tables.")
 HK_TLM = Telemetry("ROS_HK_TLM", HK_TLM_MID, _HK)
 
 COMMANDS = (NOOP, RESET_COUNTERS, SEND_HK, WAKEUP)

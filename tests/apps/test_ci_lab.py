@@ -89,7 +89,7 @@ def test_a_datagram_that_is_shorter_than_its_packet(session: Lab, datagram: byte
     assert counters(session) == (0, 0, 2, 1)
 
 
-def test_what_follows_a_packet_in_its_datagram_is_left_out(session: Lab) -> None:
+def test_bytes_after_a_packet_are_ignored(session: Lab) -> None:
     assert session.events(NOOP + b"tail", app="CI_LAB") == [NOOP_EVENT]
 
 
@@ -100,7 +100,7 @@ def test_a_packet_that_the_bus_refuses(session: Lab) -> None:
     assert counters(session) == (0, 0, 3, 0)
 
 
-def test_headers_are_sent_on_as_they_are(session: Lab) -> None:
+def test_unusual_headers_are_forwarded_unchanged(session: Lab) -> None:
     seen = []
     sb = session.mission.cfe.sb
     pipe = sb.create_pipe(4, "SPY")
@@ -143,7 +143,7 @@ def test_after_read_uplink_the_socket_is_read_on_request_only(session: Lab) -> N
     assert session.events(app="CI_LAB") == [NOOP_EVENT]
 
 
-def test_an_unknown_function_code_goes_unnoticed(session: Lab) -> None:
+def test_unknown_function_code_causes_no_event(session: Lab) -> None:
     session.events(ENABLE)
     assert session.events(NOOP[:6] + b"\x05" + NOOP[7:], app="CI_LAB") == []
     assert counters(session) == (0, 0, 3, 0)
@@ -197,7 +197,7 @@ def test_both_kinds_of_tasks_give_one_trace(tmp_path: Path) -> None:
     assert len(digests) == 1
 
 
-def test_what_is_sent_is_part_of_the_trace(tmp_path: Path) -> None:
+def test_sent_command_is_part_of_the_trace(tmp_path: Path) -> None:
     digests = []
     for number in range(2):
         with lab(tmp_path) as session:
@@ -206,7 +206,7 @@ def test_what_is_sent_is_part_of_the_trace(tmp_path: Path) -> None:
     assert digests[0] != digests[1]
 
 
-def test_a_closed_link_hears_no_more(session: Lab) -> None:
+def test_closed_link_receives_nothing(session: Lab) -> None:
     second = GroundLink(session.mission)
     session.events(ENABLE)
     assert second.received()

@@ -69,7 +69,7 @@ def table(*rows: tuple[int, int, int, int, int]) -> bytes:
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
-def test_layouts_are_those_of_c(layout: Layout, struct: str) -> None:
+def test_layouts_match_nasas_structures(layout: Layout, struct: str) -> None:
     assert_same(layout, struct)
 
 
@@ -78,7 +78,7 @@ def test_declarations_are_complete_and_as_recorded() -> None:
     assert_as_recorded(packets, 4)
 
 
-def test_all_is_declared() -> None:
+def test_all_packets_are_declared() -> None:
     assert [(command.name, command.msg_id, command.code, command.length) for command in COMMANDS] == [
         ("HK_NOOP", 0x189A, 0, 8),
         ("HK_RESET_COUNTERS", 0x189A, 1, 8),
@@ -89,7 +89,7 @@ def test_all_is_declared() -> None:
     assert [(table.name, table.size) for table in TABLES] == [("HK.CopyTable", 2048), ("HK.RuntimeTable", 2048)]
 
 
-def test_shipped_table_is_what_its_definition_says() -> None:
+def test_shipped_table_matches_its_definition() -> None:
     assert (APPS / "hk/tables/hk_cpy_tbl.tbl").read_bytes() == build(hk_cpy_tbl.image())
 
 
@@ -125,7 +125,7 @@ def test_with_nasas_table_the_combined_packet_is_nasas(hk: AppBench) -> None:
     assert (packet[:2], packet[4:6], packet[12:]) == (real[:2], real[4:6], real[12:])
 
 
-def test_missing_data_is_told_and_the_packet_sent_all_the_same(hk: AppBench) -> None:
+def test_missing_input_packet_is_reported_and_the_combined_packet_sent(hk: AppBench) -> None:
     hk.run(HK_AppMain, *(TELEMETRY[mid] for mid in CORE), SEND_1, TELEMETRY[CORE[0]], SEND_1, SEND_HK)
     assert own(hk)[1:] == [(12, 1, "Combined Packet 0x0000089C missing data from Input Pkt 0x00000805")]
     assert hk.sent[0][16:] == hk.sent[1][16:]
@@ -134,7 +134,7 @@ def test_missing_data_is_told_and_the_packet_sent_all_the_same(hk: AppBench) -> 
     assert values["MemPoolHandle"] == POOL_ID
 
 
-def test_incomplete_packets_may_be_discarded(hk: AppBench) -> None:
+def test_incomplete_packet_is_discarded_when_configured(hk: AppBench) -> None:
     whole = [TELEMETRY[mid] for mid in CORE]
     hk.run(lambda cfe: run(cfe, discard_incomplete=True), *whole[1:], SEND_1, *whole, SEND_1, SEND_HK)
     assert own(hk)[1:] == [(12, 1, "Combined Packet 0x0000089C missing data from Input Pkt 0x00000801")]
@@ -198,7 +198,7 @@ def test_new_table_from_the_ground(hk: AppBench) -> None:
     assert sum(row["NumCreated"] - row["NumFree"] for row in hk.pool.blocks.block_stats()) == 1
 
 
-def test_runtime_table_is_filled_for_a_dump_which_cfe_refuses_to_write(hk: AppBench) -> None:
+def test_runtime_table_is_filled_when_a_dump_is_requested(hk: AppBench) -> None:
     wish = {"ActiveTableFlag": 1, "TableName": "HK.RuntimeTable", "DumpFilename": "/ram/rt.tbl"}
     hk.run(HK_AppMain, TELEMETRY[0x0801], lambda: hk.ground(tbl_packets.DUMP, **wish), None)
     table = hk.tbl.registry.by_name("HK.RuntimeTable")
@@ -307,7 +307,7 @@ def test_table_calls_that_fail(
     assert hk.exit_status == (APP_EXIT if function == "validate" else APP_ERROR)
 
 
-def test_what_is_in_combined_packets_follows_from_the_table() -> None:
+def test_combined_packets_have_the_fields_of_their_input_packets() -> None:
     """Whole fields have their names, the rest is bytes. Overlapping parts and parts in the header are left out."""
     source = Telemetry("SRC_HK_TLM", 0x0880, Layout("Src", [("A", "u8"), ("B", "u32"), ("C", "char[4]")]))
     copies = [  # from packet, byte, to packet, byte, bytes

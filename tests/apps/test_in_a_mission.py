@@ -51,7 +51,7 @@ def session(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Session]
     session.mission.close()
 
 
-def test_a_day_in_orbit(session: Session) -> None:
+def test_apps_of_a_mission_exchange_commands_and_telemetry(session: Session) -> None:
     assert session.events(3)[1:] == [
         SAMPLE_STARTED,
         "HK 1: HK Initialized.  Version 7.0.0.0",
@@ -67,14 +67,14 @@ def test_a_day_in_orbit(session: Session) -> None:
     assert read(session.mission.files.read_file("/ram/ex.tbl")).data == bytes([1, 0, 2, 0])
 
 
-def test_restarted_app_has_its_table_again(session: Session) -> None:
+def test_restarted_app_registers_its_table_again(session: Session) -> None:
     session.mission.run_for(2)
     restart = bytes(command(0x1806, 6, b"SAMPLE_APP".ljust(20, b"\0")))
     assert session.events(9, restart)[-1] == SAMPLE_STARTED
     assert session.mission.cfe.tbl.get_info(TABLE).num_users == 1
 
 
-def test_both_kinds_of_task_contexts_give_one_trace(tmp_path: Path) -> None:
+def test_threads_and_greenlets_give_one_trace(tmp_path: Path) -> None:
     digests = set()
     for tasks in ("thread", "greenlet"):
         session = Session(tmp_path, tasks)

@@ -22,11 +22,11 @@ def sample() -> AppBench:
     return AppBench("SAMPLE_APP")
 
 
-def test_shipped_table_is_what_its_definition_says() -> None:
+def test_shipped_table_matches_its_definition() -> None:
     assert (APPS / "sample_app/tables/sample_app_tbl.tbl").read_bytes() == build(sample_app_tbl.image())
 
 
-def test_its_way_through_a_session(sample: AppBench) -> None:
+def test_commands_of_a_session_are_answered(sample: AppBench) -> None:
     sample.symbols["SAMPLE_LIB_Function"] = lambda cfe: sample.printed.append("called")
     sample.run(
         SAMPLE_APP_Main,
@@ -68,7 +68,7 @@ def test_a_request_for_housekeeping_may_have_any_length(sample: AppBench) -> Non
     assert len(sample.events) == 1 + 1  # of its table, and of its start
 
 
-def test_without_its_library_it_says_so(sample: AppBench) -> None:
+def test_missing_library_is_logged(sample: AppBench) -> None:
     sample.run(SAMPLE_APP_Main, packets.PROCESS.packet(), packets.NOOP.packet())
     assert sample.log[-1] == "Sample App: no library has SAMPLE_LIB_Function"
     assert sample.events[-1][0] == 3
@@ -90,7 +90,7 @@ def test_table_out_of_range_is_refused_at_start(sample: AppBench) -> None:
         ("sb.receive_buffer", (7, 3, "SAMPLE APP: SB Pipe Read Error, App Will Exit")),
     ],
 )
-def test_what_the_bus_refuses_ends_it(sample: AppBench, function: str, event: tuple[int, int, str]) -> None:
+def test_app_exits_when_the_bus_refuses_a_call(sample: AppBench, function: str, event: tuple[int, int, str]) -> None:
     sample.refuse[function] = CFE_SB_BAD_ARGUMENT
     sample.run(SAMPLE_APP_Main, None)
     assert (sample.exit_status, sample.sent, sample.events[-1]) == (APP_ERROR, [], event)

@@ -82,7 +82,7 @@ def subs(*msg_ids: int, ident: str = pr.IDENT) -> bytes:
     return pr.pack_subscriptions([pr.Sub(msg_id) for msg_id in msg_ids], ident)
 
 
-def test_each_learns_what_the_other_wants_and_gets_it(pair: Flight) -> None:
+def test_peers_exchange_subscriptions_and_messages(pair: Flight) -> None:
     assert answer(pair, "SBN_HK") == {"CC": 10, "CmdCnt": 0, "CmdErrCnt": 0, "SubCnt": 25, "NetCnt": 1}
     wanted = answer(pair, "SBN_HK_PEERSUBS", NetIdx=0, PeerIdx=0)
     assert {0x1882, 0x1883, 0x1810, 0x1860} <= set(wanted["Subs"][: wanted["SubCnt"]])
@@ -96,7 +96,7 @@ def test_each_learns_what_the_other_wants_and_gets_it(pair: Flight) -> None:
     assert (peer["ProcessorID"], peer["SendErrCnt"], peer["RecvErrCnt"]) == (2, 0, 0)
 
 
-def test_an_announced_peer_is_told_version_and_subscriptions(impostor: Impostor) -> None:
+def test_announced_peer_receives_version_and_subscriptions(impostor: Impostor) -> None:
     impostor.heard.clear()
     impostor.send(ANNOUNCE_MSG)
     assert impostor.kinds() == [pr.PROTO_MSG, pr.SUB_MSG]
@@ -107,7 +107,7 @@ def test_an_announced_peer_is_told_version_and_subscriptions(impostor: Impostor)
     assert said(impostor.flight, 8)[-1] == "cannot process unsubscription from ProcessorID 2, msg 0x08F1 not found"
 
 
-def test_a_peer_that_was_reset_unnoticed_is_told_the_subscriptions_again(impostor: Impostor) -> None:
+def test_peer_receives_subscriptions_again_after_an_unnoticed_reset(impostor: Impostor) -> None:
     impostor.send(pr.PROTO_MSG, b"\x0b")
     assert impostor.kinds() == [pr.PROTO_MSG, pr.SUB_MSG]
     impostor.send(pr.PROTO_MSG, b"\x0b")
@@ -115,7 +115,7 @@ def test_a_peer_that_was_reset_unnoticed_is_told_the_subscriptions_again(imposto
 
 
 @pytest.mark.slow
-def test_each_may_be_reset_and_both_go_on() -> None:
+def test_both_processors_recover_when_either_is_reset() -> None:
     with cfepy.boot("pair", beside=[CLIENT]) as flight:
         flight.run_until(3)
         flight.send("CFE_ES_RESTART", RestartType=1)
@@ -127,7 +127,7 @@ def test_each_may_be_reset_and_both_go_on() -> None:
         assert flight.flown().results.beside[0]["resets"] == 1
 
 
-def test_a_silent_peer_is_given_up_and_announced_to_until_it_returns(impostor: Impostor) -> None:
+def test_silent_peer_is_dropped_and_announced_to_until_it_returns(impostor: Impostor) -> None:
     impostor.send(ANNOUNCE_MSG)
     impostor.kinds()
     impostor.flight.run_for(10.9)
@@ -142,7 +142,7 @@ def test_a_silent_peer_is_given_up_and_announced_to_until_it_returns(impostor: I
     assert said(impostor.flight, 5).count("Disconnected from peer 66:2.") == 2
 
 
-def test_another_version_is_told_of_and_another_source_is_not_listened_to(impostor: Impostor) -> None:
+def test_other_protocol_version_is_reported_and_other_source_is_ignored(impostor: Impostor) -> None:
     impostor.send(pr.PROTO_MSG, b"\x06")
     mismatch = "SBN protocol version mismatch with peer 66:2, my version=11, peer version 6"
     assert said(impostor.flight, 1) == [f"ERROR: could not process peer message: {mismatch}"]
@@ -165,7 +165,7 @@ def test_a_full_pipe_loses_messages_and_the_bus_counts_them(impostor: Impostor) 
     assert (delivered, lost) == (8, 12)
 
 
-def test_a_message_that_the_header_cannot_tell_the_length_of_is_not_sent(impostor: Impostor) -> None:
+def test_message_longer_than_the_header_allows_is_not_sent(impostor: Impostor) -> None:
     impostor.send(pr.SUB_MSG, subs(0x08F0))
     impostor.flight.run_for(0.5)
     impostor.flight.mission.outside.act("packet", bytes(init(0x08F0, 32_768)))
@@ -173,7 +173,7 @@ def test_a_message_that_the_header_cannot_tell_the_length_of_is_not_sent(imposto
     assert said(impostor.flight, 5)[-1] == "a message of 32768 bytes cannot be sent to peer 66:2, at most 32767"
 
 
-def test_a_remapping_table_of_the_ground_is_taken(impostor: Impostor) -> None:
+def test_remapping_table_from_the_ground_is_loaded(impostor: Impostor) -> None:
     impostor.send(pr.SUB_MSG, subs(0x08F0, 0x08F1, 0x08F2))
     impostor.flight.run_for(0.5)
     entries = [{"ProcessorID": 2, "SpacecraftID": 0x42, "FromMID": 0x08F0, "ToMID": 0x08F3}]
@@ -186,7 +186,7 @@ def test_a_remapping_table_of_the_ground_is_taken(impostor: Impostor) -> None:
     assert [get_msg_id(each.payload) for each in impostor.heard] == [0x08F3]
 
 
-def test_a_configuration_of_the_ground_is_taken(impostor: Impostor) -> None:
+def test_configuration_from_the_ground_is_loaded(impostor: Impostor) -> None:
     impostor.send(ANNOUNCE_MSG)
     impostor.flight.run_for(0.5)
     impostor.heard.clear()
@@ -202,7 +202,7 @@ def test_a_configuration_of_the_ground_is_taken(impostor: Impostor) -> None:
     assert impostor.kinds() == [pr.PROTO_MSG, pr.SUB_MSG]
 
 
-def test_commands_that_cannot_be_are_counted(impostor: Impostor) -> None:
+def test_invalid_commands_are_counted(impostor: Impostor) -> None:
     for wrong in (command(pk.CMD_MID, 9), command(pk.CMD_MID, 0, b"12"), command(pk.CMD_MID, 12, b"\0")):
         impostor.flight.send(bytes(wrong))
         impostor.flight.run_for(0.01)
@@ -243,7 +243,9 @@ def damaged(rng: random.Random) -> bytes:
     return bytes(data[: rng.randrange(len(data) + 1)] if rng.random() < 0.3 else data)
 
 
-def test_a_command_flies_both_and_tells_of_the_other(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_with_option_flies_both_missions_and_reports_the_other(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     numbers = tmp_path / "numbers.json"
     assert main(["run", "pair", "--with", f"{CLIENT}@0.1", "--for", "2", "--json", str(numbers)]) == 0
     out = capsys.readouterr().out
@@ -253,14 +255,14 @@ def test_a_command_flies_both_and_tells_of_the_other(tmp_path: Path, capsys: pyt
     assert min(row["sent"], row["taken"]) > 5
 
 
-def test_what_dies_beside_a_mission_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_death_in_the_other_mission_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "startup.scr").write_text("CFE_APP, app, main, APP, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     (tmp_path / "app.py").write_text("def main(cfe):\n    raise ValueError('no')\n", encoding="utf-8")
     assert main(["run", "pair", "--with", str(tmp_path), "--for", "1"]) == 1
     assert f"cfepy: {tmp_path}: APP died: ValueError: no" in capsys.readouterr().err
 
 
-def test_a_mission_does_not_fly_beside_itself() -> None:
+def test_mission_beside_itself_is_refused() -> None:
     with pytest.raises(UsageError, match="is already the processor of this mission"):
         cfepy.run("pair", seconds=1, beside=["pair"])
 

@@ -27,7 +27,7 @@ def test_a_message_is_a_header_and_its_payload() -> None:
     assert protocol.unpack(data + b"more", LONGEST) == message
 
 
-def test_subscriptions_begin_with_what_the_sender_was_built_from() -> None:
+def test_subscriptions_begin_with_the_commit_of_the_sender() -> None:
     payload = protocol.pack_subscriptions([protocol.Sub(0x1882), protocol.Sub(0x0808, 1, 2)], protocol.IDENT)
     assert payload[:47] == b"$Id: dccf6239093d99c4c9351e140c15b61a95d8fc37 $"
     assert payload[47:].hex() == "000002000018820000000008080102"
@@ -43,12 +43,12 @@ def test_subscriptions_begin_with_what_the_sender_was_built_from() -> None:
         ("000503000000020000004211", "1 of the 5 bytes of its payload"),
     ],
 )
-def test_what_is_no_message_is_refused(data: str, why: str) -> None:
+def test_malformed_message_is_refused(data: str, why: str) -> None:
     with pytest.raises(protocol.Malformed, match=why):
         protocol.unpack(bytes.fromhex(data), LONGEST)
 
 
-def test_random_bytes_are_a_message_or_malformed_and_nothing_else() -> None:
+def test_random_bytes_are_unpacked_or_refused_as_malformed() -> None:
     rng = random.Random(1)
     messages = 0
     for _ in range(10_000):
@@ -67,7 +67,7 @@ def test_the_default_tables_have_the_files_that_their_scripts_write() -> None:
         assert data == (APPS / "sbn" / "tables" / Path(table.file).name).read_bytes()
 
 
-def test_tables_of_people() -> None:
+def test_configuration_and_remapping_tables_unpack_to_their_entries() -> None:
     table = packets.CONF_TABLE.unpack(configuration([peer(1, "127.0.0.1:2234"), peer(2, "127.0.0.1:2235")]).data)[0]
     assert table["PeerCnt"] == 2
     assert table["Peers"][1]["Address"] == "127.0.0.1:2235"

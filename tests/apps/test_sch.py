@@ -26,7 +26,7 @@ def flight(tmp_path: Path) -> Iterator[Flight]:
         yield flight
 
 
-def test_messages_go_out_in_their_slots_for_ever(flight: Flight) -> None:
+def test_messages_are_sent_in_their_slots_over_many_seconds(flight: Flight) -> None:
     flight.run_to(40.6)
     seconds = len(flight.times(FIRST))
     assert seconds >= 39
@@ -66,7 +66,7 @@ def test_entries_are_enabled_and_disabled(flight: Flight) -> None:
     assert flight.housekeeping()["CmdCounter"] == 2
 
 
-def test_a_message_is_sent_as_it_stands_in_the_table(flight: Flight) -> None:
+def test_message_is_sent_unchanged_from_the_table(flight: Flight) -> None:
     flight.send(pk.ENABLE.packet(SlotNumber=25, EntryNumber=1))
     flight.run_to(4.6)
     sent = [seen.packet for seen in flight.seen if seen.msg_id == THIRD]
@@ -86,7 +86,7 @@ def test_groups(flight: Flight, groups: int, found: int) -> None:
     assert f"44: ENABLE GROUP command: match count = {found}" in flight.events()
 
 
-def test_a_disabled_group_is_silent(flight: Flight) -> None:
+def test_disabled_group_sends_nothing(flight: Flight) -> None:
     flight.send(pk.DISABLE_GROUP.packet(GroupData=0x02000000))
     flight.run_to(6)
     assert flight.times(SECOND) == flight.times(THIRD) == []
@@ -113,7 +113,7 @@ def test_diagnostics(flight: Flight) -> None:
     }
 
 
-def test_bad_commands(flight: Flight) -> None:
+def test_invalid_commands_are_counted(flight: Flight) -> None:
     flight.run_to(2.6)
     flight.send(
         pk.NOOP.packet(),
@@ -164,7 +164,7 @@ def test_counters_are_reset_but_not_the_passes(flight: Flight) -> None:
     )
 
 
-def test_a_bad_schedule_from_the_ground_is_refused(flight: Flight) -> None:
+def test_invalid_schedule_from_the_ground_is_refused(flight: Flight) -> None:
     bad = schedule_image({7: [activity(1, 1, 1)]})
     flight.mission.files.write_file("/ram/bad.tbl", build(bad))
     flight.mission.files.write_file("/ram/good.tbl", build(schedule_image({50: [activity(1)], 99: [activity(4)]})))
@@ -209,7 +209,7 @@ def test_a_message_that_the_bus_refuses(tmp_path: Path) -> None:
     assert flight.housekeeping()["ScheduleActivityFailureCount"] == 2
 
 
-def test_both_kinds_of_task_contexts_give_one_trace(tmp_path: Path) -> None:
+def test_threads_and_greenlets_give_one_trace(tmp_path: Path) -> None:
     write_mission(tmp_path)
     digests = set()
     for tasks in ("thread", "greenlet"):

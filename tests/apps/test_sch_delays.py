@@ -51,7 +51,7 @@ def hogged(folder: Path, busy_ms: int) -> Flight:
     return Flight(write_mission(folder, startup, hog=hog))
 
 
-def test_slots_that_another_app_delayed_are_made_up_for(tmp_path: Path) -> None:
+def test_slots_delayed_by_another_app_are_processed_later(tmp_path: Path) -> None:
     flight = hogged(tmp_path, 75)
     with flight.mission:
         flight.run_to(8)
@@ -65,7 +65,7 @@ def test_slots_that_another_app_delayed_are_made_up_for(tmp_path: Path) -> None:
     assert late == []
 
 
-def test_too_long_a_delay_skips_slots(tmp_path: Path) -> None:
+def test_too_long_delay_skips_slots(tmp_path: Path) -> None:
     flight = hogged(tmp_path, 600)
     with flight.mission:
         flight.run_to(8)
@@ -78,7 +78,7 @@ def test_too_long_a_delay_skips_slots(tmp_path: Path) -> None:
     assert values["SlotsProcessedCount"] == len(flight.times(pk.HK_TLM_MID)) * 100 - 1 - count
 
 
-def test_the_library_holds_the_schedule(tmp_path: Path) -> None:
+def test_schedule_waits_for_the_lock_of_its_library(tmp_path: Path) -> None:
     startup = "CFE_LIB, sch_lib, SCH_LibInit, SCH_LIB, 0, 0, 0, 0;\n" + SCH
     startup += "CFE_APP, holder, Main, HOLDER, 60, 8192, 0x0, 0;\n"
     flight = Flight(write_mission(tmp_path, startup, holder=HOLDER))
@@ -119,7 +119,7 @@ def test_a_coarse_timer_keeps_all_slots(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_without_good_tables_it_ends(tmp_path: Path, file: str, image: TableImage, event: str) -> None:
+def test_app_ends_when_its_tables_are_invalid(tmp_path: Path, file: str, image: TableImage, event: str) -> None:
     folder = write_mission(tmp_path)
     (folder / file).write_bytes(build(image))
     flight = Flight(folder)

@@ -94,7 +94,7 @@ def test_a_second_has_a_hundred_slots_and_the_next_tone_ends_the_last() -> None:
     assert frames.current_slot() == 5
 
 
-def test_a_tone_that_is_a_little_late_is_waited_for() -> None:
+def test_late_tone_within_its_window_is_accepted() -> None:
     board = Board()
     board.tone(1_000_000)
     board.tone(2_004_000)
@@ -113,7 +113,7 @@ def test_a_slot_after_a_missing_tone_is_short() -> None:
     assert board.wakes[-1] == 2_990_000
 
 
-def test_without_a_tone_the_mission_elapsed_time_counts() -> None:
+def test_mission_elapsed_time_is_used_without_a_tone() -> None:
     board = Board()
     board.run_to(4_999_999)
     assert board.wakes == []
@@ -124,7 +124,7 @@ def test_without_a_tone_the_mission_elapsed_time_counts() -> None:
     assert (board.frames.current_slot(), len(board.wakes)) == (3, 4)
 
 
-def test_the_begin_of_a_second_is_looked_for() -> None:
+def test_start_within_a_second_is_synchronized() -> None:
     board = Board()
     board._due_us = 5_740_000  # started in the middle of a second
     board.run_to(5_990_000)
@@ -134,14 +134,14 @@ def test_the_begin_of_a_second_is_looked_for() -> None:
     assert (board.wakes, board.frames.sync_to_met) == ([6_000_000], MAJOR_SYNCHRONIZED)
 
 
-def test_the_first_tone_takes_over_again() -> None:
+def test_first_tone_synchronizes_again() -> None:
     board = Board()
     board.run_to(5_985_000)
     board.tone(6_000_000)
     assert (board.frames.source, board.frames.sync_to_met) == (SOURCE_CFE_TIME, NOT_SYNCHRONIZED)
 
 
-def test_two_noisy_frames_in_a_row_are_too_many() -> None:
+def test_two_noisy_frames_in_a_row_make_the_source_ignored() -> None:
     board = Board()
     board.tone(1_000_000)
     board.tone(1_500_000)
@@ -156,7 +156,7 @@ def test_two_noisy_frames_in_a_row_are_too_many() -> None:
     assert board.frames.valid_count == 3
 
 
-def test_one_good_frame_makes_up_for_a_noisy_one() -> None:
+def test_valid_frame_cancels_a_noisy_one() -> None:
     board = Board()
     for at_us in (1_000_000, 1_500_000, 2_500_000, 2_700_000, 3_700_000):
         board.tone(at_us)
@@ -164,7 +164,7 @@ def test_one_good_frame_makes_up_for_a_noisy_one() -> None:
     assert board.frames.unexpected_count == 2
 
 
-def test_a_clock_in_flywheel_gives_no_frames() -> None:
+def test_clock_in_flywheel_gives_no_frames() -> None:
     board = Board()
     board.flying = True
     board.tone(1_000_000)
@@ -172,7 +172,7 @@ def test_a_clock_in_flywheel_gives_no_frames() -> None:
 
 
 @pytest.mark.parametrize(("accuracy_us", "worst"), [(1000, 1), (5000, 2), (10_000, 3)])
-def test_a_coarse_timer_goes_by_the_mission_elapsed_time(accuracy_us: int, worst: int) -> None:
+def test_coarse_timer_follows_the_mission_elapsed_time(accuracy_us: int, worst: int) -> None:
     board = Board(accuracy_us)
     assert (board.frames.sync_to_met, board.frames.worst_slots) == (MINOR_SYNCHRONIZED, worst)
     board.tone(1_000_000)

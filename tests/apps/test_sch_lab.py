@@ -59,7 +59,7 @@ def test_shipped_table_is_nasas_byte_for_byte() -> None:
     [(schedule.ENTRY, "SCH_LAB_ScheduleTableEntry_t"), (schedule.TABLE, "SCH_LAB_ScheduleTable_t")],
     ids=["entry", "table"],
 )
-def test_layouts_are_those_of_c(layout: Layout, struct: str) -> None:
+def test_layouts_match_nasas_structures(layout: Layout, struct: str) -> None:
     assert_same(layout, struct)
 
 
@@ -87,7 +87,7 @@ def test_each_entry_has_its_own_period(sch: SchBench) -> None:
     assert (get_fcn_code(packet), packet[8:], len(packet)) == (3, b"abc", 11)
 
 
-def test_what_cannot_be_is_sent_as_nasas_sends_it(sch: SchBench) -> None:
+def test_invalid_entries_are_sent_as_by_nasas_app(sch: SchBench) -> None:
     """The headers are those that NASA's SCH_LAB sent on Linux, without sequence count, time and checksum."""
     text = b"".join(bytes([number]) for number in range(64))
     rows = [
@@ -145,7 +145,7 @@ def test_no_timebase_no_schedule(sch: SchBench) -> None:
     assert sch.exit_status == APP_ERROR
 
 
-def test_too_much_for_the_table() -> None:
+def test_image_refuses_too_many_entries_and_too_long_payloads() -> None:
     with pytest.raises(UsageError):
         schedule.image(100, [(0x1882, 1, 0, b"")] * 33)
     with pytest.raises(UsageError):
@@ -159,7 +159,7 @@ def test_too_much_for_the_table() -> None:
         ("sb.subscribe", ["SCH Error subscribing to 1hz!\n"]),
     ],
 )
-def test_without_the_second_it_ticks_and_sends_nothing(sch: SchBench, function: str, texts: list[str]) -> None:
+def test_app_without_the_1hz_pipe_ticks_and_sends_nothing(sch: SchBench, function: str, texts: list[str]) -> None:
     sch.use(100, (0x1882, 1, 0, b""))
     sch.refuse[function] = CFE_SB_BAD_ARGUMENT
     sch.run(SCH_LAB_AppMain, None, None)
@@ -168,7 +168,7 @@ def test_without_the_second_it_ticks_and_sends_nothing(sch: SchBench, function: 
     assert (sch.timer_set, sch.sent, sch.log, sch.exit_status) == ((1_000_000, 10_000), [], [], APP_EXIT)
 
 
-def test_what_the_bus_refuses_is_left_out(sch: SchBench) -> None:
+def test_message_refused_by_the_bus_is_skipped(sch: SchBench) -> None:
     sch.use(100, (0x1882, 1, 0, b""))
     sch.run(SCH_LAB_AppMain, ONE_HZ, lambda: sch.refuse.update({"sb.transmit_msg": CFE_SB_BAD_ARGUMENT}), None)
     assert (len(sch.sent), sch.exit_status) == (1, APP_EXIT)

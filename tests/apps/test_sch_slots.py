@@ -29,14 +29,14 @@ class Clockwork:
         return found
 
 
-def test_on_time_every_wake_up_does_one_slot() -> None:
+def test_wake_up_on_time_processes_one_slot() -> None:
     clockwork = Clockwork()
     assert all(clockwork.wake(now)[:1] == (1,) for now in range(3 * SLOTS))
     assert clockwork.done == list(range(3 * SLOTS))
 
 
 @pytest.mark.parametrize("wakes", [(0, 1, 2, 4, 4, 5), (0, 1, 2, 2, 4, 5)], ids=["late once", "early once"])
-def test_one_wake_up_that_is_a_little_off_is_made_up_for(wakes: tuple[int, ...]) -> None:
+def test_wake_up_that_is_slightly_off_is_compensated(wakes: tuple[int, ...]) -> None:
     clockwork = Clockwork()
     found = [clockwork.wake(now) for now in wakes]
     assert [each.todo for each in found] == [1] * 6
@@ -44,7 +44,7 @@ def test_one_wake_up_that_is_a_little_off_is_made_up_for(wakes: tuple[int, ...])
     assert clockwork.done == list(range(6))
 
 
-def test_a_slot_that_does_not_advance_twice_in_a_row_is_noticed() -> None:
+def test_slot_that_does_not_advance_twice_is_counted() -> None:
     clockwork = Clockwork()
     found = [clockwork.wake(now) for now in (0, 0, 1, 2)]
     assert [each.todo for each in found] == [1, 1, 0, 1]
@@ -52,7 +52,7 @@ def test_a_slot_that_does_not_advance_twice_in_a_row_is_noticed() -> None:
 
 
 @given(lag=st.integers(1, MAX_LAG - 1))
-def test_no_slot_is_lost_when_scheduling_was_late(lag: int) -> None:
+def test_late_scheduling_loses_no_slot(lag: int) -> None:
     clockwork = Clockwork()
     start = 7
     for now in range(start + 1):
@@ -67,7 +67,7 @@ def test_no_slot_is_lost_when_scheduling_was_late(lag: int) -> None:
 
 
 @given(lag=st.integers(MAX_LAG, SLOTS - 2), start=st.integers(0, SLOTS - 1))
-def test_far_behind_the_schedule_goes_on_with_the_current_slot(lag: int, start: int) -> None:
+def test_schedule_far_behind_continues_with_the_current_slot(lag: int, start: int) -> None:
     clockwork = Clockwork()
     for now in range(start + 1):
         clockwork.wake(now)
@@ -77,7 +77,7 @@ def test_far_behind_the_schedule_goes_on_with_the_current_slot(lag: int, start: 
 
 
 @given(st.lists(st.integers(0, 3), max_size=300))
-def test_slots_are_done_in_order_and_never_twice(steps: list[int]) -> None:
+def test_slots_are_processed_in_order_and_once(steps: list[int]) -> None:
     clockwork = Clockwork()
     now = 0
     for step in steps:
@@ -87,7 +87,7 @@ def test_slots_are_done_in_order_and_never_twice(steps: list[int]) -> None:
 
 
 @given(frequency=st.integers(1, 0xFFFF), second=st.integers(0, 0xFFFFFFFF))
-def test_an_activity_happens_once_in_its_period(frequency: int, second: int) -> None:
+def test_activity_is_due_once_in_its_period(frequency: int, second: int) -> None:
     assert sum(is_due(second, frequency, remainder) for remainder in {second % frequency, 0, frequency - 1}) == 1
 
 
@@ -99,5 +99,5 @@ def test_slots_of_a_second(microseconds: int) -> None:
 
 
 @pytest.mark.parametrize(("microseconds", "slot"), [(0, 0), (9_998, 0), (9_999, 1), (10_000, 1), (999_999, 0)])
-def test_a_microsecond_early_is_near_enough(microseconds: int, slot: int) -> None:
+def test_wake_up_a_microsecond_early_counts(microseconds: int, slot: int) -> None:
     assert slot_of_us(microseconds, 10_000) == slot

@@ -15,7 +15,7 @@ from tests.apps.conftest import APPS
 
 
 @pytest.mark.parametrize("module", [sch_def_schtbl, sch_def_msgtbl], ids=["schedule", "messages"])
-def test_shipped_tables_are_what_their_definitions_say(module: object) -> None:
+def test_shipped_tables_match_their_definitions(module: object) -> None:
     name = str(module.__name__).rpartition(".")[2]  # type: ignore[attr-defined]
     assert (APPS / f"sch/tables/{name}.tbl").read_bytes() == build(module.image())  # type: ignore[attr-defined]
 
@@ -89,7 +89,7 @@ def test_the_longest_message_is_good() -> None:
     assert judge_messages(message_image({1: init(0x1808, 128)}).data).status == 0
 
 
-def test_definitions_that_cannot_be() -> None:
+def test_invalid_table_definitions_are_refused() -> None:
     with pytest.raises(UsageError, match="100"):
         schedule_image({100: [activity(1)]})
     with pytest.raises(UsageError, match="at most 5 items"):

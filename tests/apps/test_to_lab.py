@@ -115,7 +115,7 @@ def test_adding_and_removing_a_packet(session: Lab) -> None:
     assert spy(session, 2) == 0
 
 
-def test_adding_and_removing_what_cannot_be(session: Lab) -> None:
+def test_invalid_message_id_is_reported_when_added_or_removed(session: Lab) -> None:
     status = CFE_SB_BAD_ARGUMENT
     add, remove = pk.ADD_PKT.packet(Stream=0x2000), pk.REMOVE_PKT.packet(Stream=0)
     assert session.events(add, app="TO_LAB") == [f"TO_LAB 10: L169 TO Can't subscribe 0x2000 status {status}"]
@@ -146,12 +146,12 @@ def test_fifty_packets_in_a_round(session: Lab) -> None:
 
 
 @pytest.mark.parametrize("host", ["10.0.0.7", "127.0.0.1"])
-def test_the_ground_hears_whatever_host_was_named(session: Lab, host: str) -> None:
+def test_ground_receives_packets_for_any_address(session: Lab, host: str) -> None:
     session.events(pk.OUTPUT_ENABLE.packet(dest_IP=host))
     assert session.ground.received()
 
 
-def test_a_host_that_is_no_address_stands_for_this_one(session: Lab) -> None:
+def test_host_name_that_is_not_an_address_stands_for_the_local_host(session: Lab) -> None:
     seen = []
     session.mission.network.outlets.append(seen.append)
     session.events(pk.OUTPUT_ENABLE.packet(dest_IP="ground"))

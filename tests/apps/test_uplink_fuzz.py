@@ -36,7 +36,7 @@ BROKE = {
 
 
 @pytest.mark.parametrize("name", BROKE)
-def test_texts_that_are_no_texts(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_texts_with_invalid_bytes_do_no_harm(tmp_path: Path, name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     packet = bytes.fromhex(BROKE[name])
     monkeypatch.setattr("tests.apps.uplink_fuzz.damaged", lambda seed, count: iter([packet] * count))
     books = fly(tmp_path, 0, 3, monkeypatch)

@@ -27,7 +27,7 @@ def config() -> ConfigServices:
         (14, "MOD_SRCVER_CORE_API"),
     ],
 )
-def test_nasas_ids(config: ConfigServices, index: int, name: str) -> None:
+def test_ids_match_nasas(config: ConfigServices, index: int, name: str) -> None:
     assert config.get_id_by_name(name) == FIRST + index
     assert config.get_name(FIRST + index) == name
 
@@ -48,7 +48,7 @@ def test_each_kind_of_value(config: ConfigServices) -> None:
     assert config.get_array_value(named("PLATFORM_TBL_VALID_SCID")) == ()
 
 
-def test_a_value_of_another_kind_is_none(config: ConfigServices) -> None:
+def test_value_of_another_kind_is_empty(config: ConfigServices) -> None:
     number, text = config.get_id_by_name("CORE_VERSION_MAJOR"), config.get_id_by_name("MISSION_NAME")
     assert config.get_value(text) == 0
     assert config.get_string(number) == UNKNOWN
@@ -57,20 +57,20 @@ def test_a_value_of_another_kind_is_none(config: ConfigServices) -> None:
 
 
 @pytest.mark.parametrize("bad", [0, FIRST + 0xFFFF, 0x160000])
-def test_ids_of_nothing(config: ConfigServices, bad: int) -> None:
+def test_unknown_ids_have_no_values(config: ConfigServices, bad: int) -> None:
     assert config.get_name(bad) == config.get_string(bad) == UNKNOWN
     assert config.get_value(bad) == 0
     assert config.get_id_by_name("NONE") == 0
 
 
-def test_all_keys_in_the_order_of_their_ids(config: ConfigServices) -> None:
+def test_keys_are_iterated_in_the_order_of_their_ids(config: ConfigServices) -> None:
     seen: list[tuple[int, str]] = []
     config.iterate_all(lambda config_id, name: seen.append((config_id, name)))
     assert [config_id for config_id, _ in seen] == list(range(FIRST, FIRST + len(seen)))
     assert len({name for _, name in seen}) == len(seen)
 
 
-def test_the_platform_configuration_as_a_board_has_it() -> None:
+def test_platform_configuration_follows_the_board() -> None:
     config = ConfigServices(PlatformConfig().with_limits({"es_max_applications": 8, "os_max_tasks": 20}), "demo")
     assert config.get_value(config.get_id_by_name("PLATFORM_ES_MAX_APPLICATIONS")) == 8
     assert config.get_value(config.get_id_by_name("OS_MAX_TASKS")) == 20

@@ -65,7 +65,7 @@ def fly(scenario: Scenario, sources: Sources, tmp_path: Path) -> Outcome:
     return Flight(scenario, sources, folder).run()
 
 
-def test_a_node_is_driven_observed_and_asked_to_end(sources: Sources, tmp_path: Path) -> None:
+def test_node_is_driven_observed_and_ended(sources: Sources, tmp_path: Path) -> None:
     stimulus = 'every(10, "/ns/in", "std_msgs/String", lambda i: mc("std_msgs/String")("x%d" % i))\n'
     stimulus += 'R["heard"] = wait("/ns/out", 3)\ncall("count", "/ns/count", "own_msgs/Count", 4)'
     scenario = scenario_of(
@@ -85,7 +85,7 @@ def test_a_node_is_driven_observed_and_asked_to_end(sources: Sources, tmp_path: 
     assert not outcome.ended_itself
 
 
-def test_a_node_that_reads_keys_and_ends_by_itself(sources: Sources, tmp_path: Path) -> None:
+def test_node_reads_keys_and_ends_by_itself(sources: Sources, tmp_path: Path) -> None:
     scenario = scenario_of(sources, "talk", keys=("hello\n",), ends_itself=True, expect=("rc==3", "rec['self_exit']"))
     outcome = fly(scenario, sources, tmp_path)
     assert judge(scenario, outcome).passed
@@ -101,7 +101,7 @@ def test_helpers_run_beside_the_node(sources: Sources, tmp_path: Path) -> None:
     assert outcome.out == "typed \n"
 
 
-def test_a_stimulus_that_fails_is_told(sources: Sources, tmp_path: Path) -> None:
+def test_failed_stimulus_is_reported(sources: Sources, tmp_path: Path) -> None:
     scenario = scenario_of(sources, "echo.py", stimulus="nowhere()", expect=("N['/x']>0",))
     reason = judge(scenario, fly(scenario, sources, tmp_path)).reason
     assert reason == "N['/x']>0; stimulus: NameError: name 'nowhere' is not defined"
@@ -117,7 +117,7 @@ def test_scenarios_run_in_processes_of_their_own(tmp_path: Path) -> None:
     assert verdict.wall_s > 0
 
 
-def test_what_is_missing_is_named(sources: Sources) -> None:
+def test_missing_sources_are_named(sources: Sources) -> None:
     scenario = scenario_of(sources, "talk")
     assert sources.missing(scenario) == ""
     assert "no sources of us/more" in sources.missing(replace(scenario, needs=("us/more",)))
@@ -152,7 +152,7 @@ def test_fetching_a_commit(tmp_path: Path) -> None:
         sources.fetch("us/none", commit, tmp_path / "mirrors")
 
 
-def test_expectations_that_look_at_nothing_do_not_hold() -> None:
+def test_expectations_about_missing_values_fail() -> None:
     scenario = Scenario("x", Program("a/b", "c"), "", 1.0, ("T['/none'][0]==1", "approx(1.0, 1.1, 0.2)", "rc+1"))
     verdict = judge(scenario, Outcome(out="Traceback (most recent call last):\n  x\nKeyError: 'k'\n"))
     assert verdict.reason == "T['/none'][0]==1; rc+1; KeyError: 'k'"
@@ -170,7 +170,7 @@ def test_the_page_has_a_row_for_each_scenario() -> None:
     corpus = read_corpus()
     verdicts = [Verdict("rt_talker", "", 0.4), Verdict("rt_listener", "a|b", 0.5)]
     text = report.page(corpus, verdicts)
-    assert "1 of 2 meet all of theirs" in text
+    assert "1 of 2 scenarios pass all checks" in text
     assert "| does not | 0.5 s | a\\|b |" in text
     assert isinstance(corpus, Corpus)
 
@@ -184,7 +184,7 @@ def test_the_page_in_docs_is_about_these_scenarios() -> None:
     assert rows == list(read_corpus().scenarios)
 
 
-def test_a_node_that_nobody_has_read_is_driven(sources: Sources, tmp_path: Path) -> None:
+def test_unread_node_is_driven_by_its_own_topics_and_services(sources: Sources, tmp_path: Path) -> None:
     scenario = scenario_of(sources, "echo.py", stimulus="drive(rounds=2)", params={"/echo/mark": "!"})
     outcome = fly(scenario, sources, tmp_path)
     assert outcome.remarks["kinds"] == {"> /out": "std_msgs/String", "< /in": "std_msgs/String"}
@@ -210,13 +210,13 @@ def test_times_addresses_frames_and_folders_are_not_compared() -> None:
     assert messages(stamped) == [{"header": {"stamp": "time"}}]
 
 
-def test_two_runs_that_are_not_alike() -> None:
+def test_differences_of_two_outcomes_are_listed() -> None:
     one = Outcome({"/a": 100}, {"/a": [{"data": 1.0000001}]}, status=0, out="x\n")
     other = Outcome({"/a": 80}, {"/a": [{"data": 1.0}]}, status=1, out="y\n")
     assert differences(one, other) == {"status": (0, 1), "printed": (["x"], ["y"]), "/a count": (100, 80)}
 
 
-def test_what_a_node_printed_that_never_ends(sources: Sources, tmp_path: Path) -> None:
+def test_output_of_a_node_that_never_ends_is_kept(sources: Sources, tmp_path: Path) -> None:
     script = sources.script(Program("us/robots", "own_msgs/scripts/echo.py", ()))
     stubborn = script[0] / Path(script[1]).with_name("stubborn.py")
     stubborn.write_text(

@@ -69,7 +69,7 @@ def subcommands(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentP
 
 
 @pytest.mark.slow  # 0.5 s
-def test_subcommands_and_options_of_sentences_are_there() -> None:
+def test_subcommands_and_options_in_sentences_exist() -> None:
     found = {
         (name_of(page), command): what
         for page in PAGES
@@ -89,11 +89,11 @@ def test_subcommands_and_options_of_sentences_are_there() -> None:
         ("cfepy tbl shown FILE", "no subcommand shown"),
     ],
 )
-def test_what_is_wrong(command: str, what: str) -> None:
+def test_invalid_command_is_described(command: str, what: str) -> None:
     assert wrong(command) == what
 
 
-def test_extras_of_sentences_are_there() -> None:
+def test_extras_in_sentences_exist() -> None:
     extras = {
         extra.strip()
         for page in PAGES
@@ -105,7 +105,7 @@ def test_extras_of_sentences_are_there() -> None:
     assert extras - EXTRAS == set()
 
 
-def test_modules_and_tests_of_sentences_are_there() -> None:
+def test_modules_and_tests_in_sentences_exist() -> None:
     for page in PAGES:
         for command in spans(page, "python -m "):
             module = command.split()[2]

@@ -22,25 +22,25 @@ LONGEST_PAGE_S = 900  # each command has a limit of its own
 @pytest.mark.slow
 @needs_own_network
 @pytest.mark.parametrize("scene", READ, ids=lambda scene: name_of(scene.page))
-def test_the_commands_of_a_page(scene: Scene, tmp_path: Path) -> None:
+def test_commands_of_a_page_are_found(scene: Scene, tmp_path: Path) -> None:
     if missing := [program for program in scene.needs if shutil.which(program) is None]:
         pytest.skip(f"not installed: {', '.join(missing)}")
     run_in_own_network("tests.docs.reader", name_of(scene.page), cwd=tmp_path, patience_s=LONGEST_PAGE_S)
 
 
-def test_no_command_is_overlooked() -> None:
+def test_commands_of_all_pages_are_found() -> None:
     assert {name_of(page): found for page in PAGES if (found := overlooked(page))} == {}
     for page in PAGES:
         read = sum(len(re.findall(r"(?:^|/| )cfepy ", command)) for command in commands(page))
         assert read >= len(list(all_of_cfepy(page))), name_of(page)
 
 
-def test_each_entry_of_a_scene_is_about_something_on_its_page() -> None:
+def test_entries_of_a_scene_match_commands_of_its_page() -> None:
     assert set(table()) <= {name_of(page) for page in PAGES}
     assert {name_of(scene.page): idle for scene in SCENES if (idle := list(scene.idle()))} == {}
 
 
-def test_another_test_that_runs_a_command_knows_the_page() -> None:
+def test_of_a_command_elsewhere_names_the_page() -> None:
     pairs = {(scene.page.name, test) for scene in SCENES for test in scene.elsewhere.values()}
     assert [pair for pair in pairs if pair[0] not in (ROOT / pair[1]).read_text(encoding="utf-8")] == []
 
@@ -58,7 +58,7 @@ def test_a_command_in_a_page_without_a_scene_is_overlooked(tmp_path: Path) -> No
     assert overlooked(page_with("```\nname  value\n```\n", tmp_path)) == []
 
 
-def test_a_new_command_in_a_page_is_given(tmp_path: Path) -> None:
+def test_new_command_of_a_page_is_executed(tmp_path: Path) -> None:
     scene = Scene(page_with("```sh\ntrue\n```\n", tmp_path))
     assert list(Reader(scene).problems()) == []
     page_with("```sh\ntrue\n```\n\n```sh\nno-such-program --now\n```\n", tmp_path)
@@ -66,7 +66,7 @@ def test_a_new_command_in_a_page_is_given(tmp_path: Path) -> None:
     assert problem.startswith("no-such-program --now\nended with status 127, not 0")
 
 
-def test_what_a_command_prints_is_what_the_page_shows(tmp_path: Path) -> None:
+def test_output_of_a_command_is_compared_with_the_page(tmp_path: Path) -> None:
     scene = Scene(page_with("```\n$ printf 'a b\\nc d'\na\nb\n...\ne\n$ echo f\nf\n```\n", tmp_path))
     [problem] = Reader(scene).problems()
     assert "did not print what the page shows: 'e'" in problem
@@ -85,7 +85,7 @@ def test_a_command_that_takes_too_long_is_named(tmp_path: Path) -> None:
     assert problem.startswith("sleep 3600\ntook longer than 0 s and was ended")
 
 
-def test_a_command_that_never_says_what_it_should_is_named(tmp_path: Path) -> None:
+def test_command_that_never_becomes_ready_is_named(tmp_path: Path) -> None:
     scene = Scene(page_with("```sh\nsleep 3600\n```\n", tmp_path), steps={"sleep 3600": {"ready": "here"}})
     assert [problem.splitlines()[1] for problem in Reader(scene, patience_s=0.1).problems()] == [
         "never said 'here'",
@@ -93,7 +93,7 @@ def test_a_command_that_never_says_what_it_should_is_named(tmp_path: Path) -> No
     ]
 
 
-def test_what_a_command_is() -> None:
+def test_commands_are_recognized_in_a_block() -> None:
     assert Block("", "$ cfepy board list\nlinux\n").session == [("cfepy board list", "linux\n")]
     assert Block("sh", "cfepy board list   # all\n# none\nls\n").lines == ["cfepy board list", "ls"]
     assert Block("", "A=1 bin/server\n").lines == ["A=1 bin/server"]

@@ -47,7 +47,7 @@ def test_data_outlive_a_reset() -> None:
     assert after.read(handle) == b"0123456789"
 
 
-def test_the_bytes_are_those_of_c() -> None:
+def test_layout_of_the_memory_matches_c() -> None:
     board = Board()
     handle, _ = board.cds.register(10, "APP.Data", is_table=True)
     board.cds.write(handle, b"0123456789")
@@ -87,7 +87,7 @@ def test_a_new_size_without_room_keeps_name_and_handle() -> None:
     assert board.boot().find("APP.Other") is not None
 
 
-def test_what_cannot_be() -> None:
+def test_invalid_arguments_are_refused() -> None:
     board = Board()
     cds = board.cds
     assert status_of(lambda: cds.register(0, "A.A", is_table=False)) == CFE_ES_CDS_INVALID_SIZE
@@ -183,7 +183,7 @@ def test_no_flip_of_a_bit_is_ever_taken_for_data(step: int) -> None:
             assert content in (GOOD[name], CFE_ES_CDS_BLOCK_CRC_ERR), f"bit {bit}: {name} is {content!r}"
 
 
-def test_every_flip_in_the_signatures_and_the_size_of_the_registry_makes_the_cds_anew() -> None:
+def test_flip_in_the_signatures_or_the_registry_size_makes_the_cds_anew() -> None:
     for bit in flips(0, 12) + flips(SIZE - 8, SIZE):
         board = after_flip(bit)
         assert board.log, f"bit {bit}"
@@ -212,14 +212,14 @@ def test_every_flip_in_a_block_is_found(block: int, name: str) -> None:
         assert found(after_flip(bit))[name] == CFE_ES_CDS_BLOCK_CRC_ERR, f"bit {bit} of the data"
 
 
-def test_flips_while_running_are_found_too() -> None:
+def test_flip_while_running_is_found() -> None:
     for bit in flips(POOL_AT, POOL_AT + 24 + 10):
         board = small()
         board.memory[bit // 8] ^= 1 << bit % 8
         assert status_of(lambda: board.cds.read(FIRST_BLOCK)) != CFE_SUCCESS, f"bit {bit}"  # noqa: B023
 
 
-def test_a_small_board_has_a_cds_with_room_for_its_critical_tables() -> None:
+def test_small_board_has_room_for_its_critical_tables() -> None:
     config = load_profile("rx64m").config()
     board = Board(config.es_cds_size, config.es_cds_max_num_entries)
     assert board.cds.is_available
@@ -240,7 +240,7 @@ def test_any_damage_leaves_a_cds_that_works(chance: Random, bytes_hit: int) -> N
     assert board.boot().read(handle) == b"twelve bytes"
 
 
-def test_two_records_cannot_have_one_block() -> None:
+def test_second_record_of_a_block_is_dropped() -> None:
     board = Board()
     handle, _ = board.cds.register(6, "A.One", is_table=False)
     (block,) = board.cds

@@ -41,7 +41,7 @@ def ours(lab: Lab, command: Command, name: str) -> bytes:
 
 
 @pytest.mark.parametrize(("name", "layout", "command"), RECORDS)
-def test_nasas_records_can_be_read_and_made_again(name: str, layout: Layout, command: Command) -> None:
+def test_nasas_records_are_unpacked_and_packed_again(name: str, layout: Layout, command: Command) -> None:
     data = (DATA / name).read_bytes()
     found = records(data, layout)
     assert found
@@ -51,14 +51,14 @@ def test_nasas_records_can_be_read_and_made_again(name: str, layout: Layout, com
 @pytest.mark.parametrize(
     ("name", "command"), [*((name, command) for name, _, command in RECORDS), ("cfe_es_syslog.log", pk.WRITE_SYS_LOG)]
 )
-def test_headers_are_nasas(lab: Lab, name: str, command: Command) -> None:
+def test_headers_match_nasas(lab: Lab, name: str, command: Command) -> None:
     theirs, mine = read_header((DATA / name).read_bytes()), read_header(ours(lab, command, name))
     assert (mine.description, mine.subtype, mine.length) == (theirs.description, theirs.subtype, theirs.length)
     assert (mine.spacecraft_id, mine.processor_id) == (theirs.spacecraft_id, theirs.processor_id)
     assert mine.application_id == theirs.application_id  # CFE_ES
 
 
-def test_the_core_applications_are_described_alike(lab: Lab) -> None:
+def test_records_of_core_applications_match_nasas(lab: Lab) -> None:
     name, layout, command = RECORDS[0]
     theirs = records((DATA / name).read_bytes(), layout)[:5]
     mine = records(ours(lab, command, name), layout)
@@ -67,7 +67,7 @@ def test_the_core_applications_are_described_alike(lab: Lab) -> None:
     assert [_without_ids(record) for record in mine] == [_without_ids(record) for record in theirs]
 
 
-def test_their_tasks_are_described_alike(lab: Lab) -> None:
+def test_records_of_core_tasks_match_nasas(lab: Lab) -> None:
     name, layout, command = RECORDS[1]
     core = {"CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL"}
     theirs = [each for each in records((DATA / name).read_bytes(), layout) if each["AppName"] in core]
@@ -81,7 +81,7 @@ def _without_ids(record: dict[str, Any]) -> dict[str, Any]:
     return {field: value for field, value in record.items() if not field.endswith("Id")}
 
 
-def test_the_power_on_is_logged_alike(lab: Lab) -> None:
+def test_record_of_the_power_on_matches_nasas(lab: Lab) -> None:
     name, layout, command = RECORDS[2]
     theirs, mine = records((DATA / name).read_bytes(), layout), records(ours(lab, command, name), layout)
     for record in (theirs[0], mine[0]):
@@ -90,7 +90,7 @@ def test_the_power_on_is_logged_alike(lab: Lab) -> None:
     assert len(mine) == 20
 
 
-def test_the_system_log_begins_alike(lab: Lab) -> None:
+def test_system_log_begins_like_nasas(lab: Lab) -> None:
     theirs = (DATA / "cfe_es_syslog.log").read_bytes()[HEADER_SIZE:].splitlines()
     mine = ours(lab, pk.WRITE_SYS_LOG, "cfe_es_syslog.log")[HEADER_SIZE:].splitlines()
     assert [line[24:] for line in mine[:6]] == [line[24:] for line in theirs[:6]]

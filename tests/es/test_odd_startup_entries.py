@@ -72,7 +72,7 @@ def test_system_log(tmp_path: Path, name: str) -> None:
     assert [line for line in lines[begin + 1 :] if line.startswith("CFE_ES_")] == expected
 
 
-def test_check_tells_of_entries_without_names() -> None:
+def test_check_reports_entries_without_names() -> None:
     notes = check((app("") + app("APP", "") + LIB.replace("LIB, 0", ", 0") + "!").encode())
     assert [note.is_warning for note in notes] == [True, True, True]
     assert [note.explanation.split(":")[0].split(";")[0] for note in notes] == [

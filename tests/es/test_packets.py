@@ -14,7 +14,7 @@ from tests.layouts import DATA, assert_same
 RECORDED = json.loads((DATA / "packets.json").read_text(encoding="utf-8"))["telemetry"]
 
 
-def test_layouts_are_nasas() -> None:
+def test_layouts_match_nasas_structures() -> None:
     assert_same(pk.HOUSEKEEPING, "CFE_ES_HousekeepingTlm_Payload_t")
     assert_same(pk.APP_INFO, "CFE_ES_AppInfo_t")
     assert_same(pk.TASK_INFO, "CFE_ES_TaskInfo_t")
@@ -32,7 +32,7 @@ def test_every_function_code_is_declared_once() -> None:
     assert len({each.name for each in pk.COMMANDS}) == len(pk.COMMANDS) == 25
 
 
-def test_housekeeping_of_nasas_build_can_be_read_and_made_again() -> None:
+def test_nasas_housekeeping_is_unpacked_and_packed_again() -> None:
     packets = [bytes.fromhex(each["hex"]) for each in RECORDED if each["desc"] == "CFE_ES_HK_TLM"]
     values = pk.HK_TLM.read(packets[0])
     assert (values["CFEMajorVersion"], values["BootSource"], values["RegisteredCoreApps"]) == (7, 1, 5)

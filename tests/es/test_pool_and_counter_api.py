@@ -48,7 +48,7 @@ def in_app(tmp_path: Path) -> Iterator[Callable[[Callable[[Cfe], Any]], Lab]]:
         lab.mission.close()
 
 
-def test_a_pool_that_fails_for_its_block_sizes_uses_up_an_id(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
+def test_pool_that_fails_for_its_block_sizes_uses_up_an_id(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
     """As on NASA's cFE 7.0.1. A pool that is refused before that uses up no id."""
 
     def main(cfe: Cfe) -> None:
@@ -61,7 +61,7 @@ def test_a_pool_that_fails_for_its_block_sizes_uses_up_an_id(in_app: Callable[[C
     in_app(main)
 
 
-def test_pools_of_all_kinds(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
+def test_pools_of_all_kinds_are_created_or_refused(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
     def main(cfe: Cfe) -> None:
         es = cfe.es
         for create in (es.pool_create, es.pool_create_no_sem, es.pool_create_ex, es.pool_create_ex_with_alignment):
@@ -100,7 +100,7 @@ def test_pools_on_memory_of_the_application(in_app: Callable[[Callable[[Cfe], An
     in_app(main)
 
 
-def test_a_mutex_protects_the_pools_that_want_one(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
+def test_mutex_protects_pools_that_were_created_with_one(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
     def main(cfe: Cfe) -> None:
         pool, bare = cfe.es.pool_create(1024), cfe.es.pool_create_no_sem(1024)
         cfe.os.mut_sem_get_id_by_name(f"Pool{pool:08X}")
@@ -111,7 +111,7 @@ def test_a_mutex_protects_the_pools_that_want_one(in_app: Callable[[Callable[[Cf
     in_app(main)
 
 
-def test_there_are_as_many_pools_as_configured(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
+def test_number_of_pools_is_limited_by_the_configuration(in_app: Callable[[Callable[[Cfe], Any]], Lab]) -> None:
     def main(cfe: Cfe) -> None:
         free = cfe.es.pools.capacity - len(cfe.es.pools)
         pools = [cfe.es.pool_create_ex(64, use_mutex=False) for _ in range(free)]

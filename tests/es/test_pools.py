@@ -26,7 +26,7 @@ def test_blocks_come_out_until_the_pool_is_full() -> None:
     assert pool.get(300).offset == block.offset
 
 
-def test_statistics_are_those_of_c() -> None:
+def test_statistics_match_c() -> None:
     pool = MemPool("P", 1024)
     first, _ = pool.get(100), pool.get(8)
     pool.put(first)
@@ -55,7 +55,7 @@ def test_sizes_of_ones_own() -> None:
     assert status_of(lambda: pool.get(101)) == CFE_ES_ERR_MEM_BLOCK_SIZE
 
 
-def test_a_block_of_no_bytes_is_taken_and_never_given_back() -> None:
+def test_block_of_no_bytes_cannot_be_returned() -> None:
     pool = MemPool("P", 1024)
     block = pool.get(0)
     assert len(block.memory) == 0
@@ -66,13 +66,13 @@ def test_a_block_of_no_bytes_is_taken_and_never_given_back() -> None:
     assert status_of(lambda: pool.get(-1)) == CFE_ES_ERR_MEM_BLOCK_SIZE
 
 
-def test_pools_that_cannot_be() -> None:
+def test_invalid_pool_arguments_are_refused() -> None:
     assert status_of(lambda: MemPool("P", 400, alignment=12)) == CFE_ES_BAD_ARGUMENT
     assert status_of(lambda: MemPool("P", 400, sizes=())) == CFE_ES_BAD_ARGUMENT
     assert status_of(lambda: MemPool("P", 400, sizes=(8, 0))) == CFE_ES_ERR_MEM_BLOCK_SIZE
 
 
-def test_what_is_no_block_in_use_is_not_taken_back() -> None:
+def test_block_that_is_not_in_use_is_refused() -> None:
     pool, other = MemPool("P", 1024), MemPool("Q", 1024)
     block = pool.get(100)
     assert pool.size_of(block) == 100
@@ -83,7 +83,7 @@ def test_what_is_no_block_in_use_is_not_taken_back() -> None:
     assert pool.statistics()["CheckErrCtr"] == 1
 
 
-def test_every_flip_of_a_bit_beside_the_size_in_a_descriptor_is_found() -> None:
+def test_flip_of_a_bit_in_a_descriptor_is_found_outside_its_size() -> None:
     for bit in [*range(8 * 8), *range(16 * 8, DESCRIPTOR.size * 8)]:
         pool = MemPool("P", 1024)
         block = pool.get(100)
@@ -140,7 +140,7 @@ def test_memory_that_cannot_hold_the_pool(memory: object) -> None:
     assert status_of(lambda: MemPool("P", 1024, memory=memory)) == CFE_ES_BAD_ARGUMENT  # type: ignore[arg-type]
 
 
-def test_memory_of_c_is_not_cleared_and_blocks_are_told_by_their_addresses() -> None:
+def test_memory_of_c_is_not_cleared_and_blocks_are_found_by_address() -> None:
     memory = bytearray(b"\xaa" * 1024)
 
     def read(offset: int, size: int) -> bytes:

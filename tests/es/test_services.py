@@ -51,7 +51,7 @@ def status_of(call: Callable[[], object]) -> int:
     return 0
 
 
-def test_an_app_is_running_once_it_loops(make_lab: Callable[..., Lab]) -> None:
+def test_app_is_running_once_it_calls_run_loop(make_lab: Callable[..., Lab]) -> None:
     def one(cfe: Cfe) -> None:
         states.append(cfe.es.calling_app().state)
         while cfe.es.run_loop():
@@ -69,7 +69,7 @@ def test_an_app_is_running_once_it_loops(make_lab: Callable[..., Lab]) -> None:
 
 
 @pytest.mark.parametrize("status", [0, 2, 3, 99])
-def test_run_loop_with_another_status_ends_it(make_lab: Callable[..., Lab], status: int) -> None:
+def test_run_loop_with_another_status_returns_false(make_lab: Callable[..., Lab], status: int) -> None:
     def one(cfe: Cfe) -> None:
         answers.append(cfe.es.run_loop(status))
         answers.append(cfe.es.calling_app().state)
@@ -103,7 +103,7 @@ def test_a_restart_request_ends_the_loop(make_lab: Callable[..., Lab]) -> None:
     assert status_of(lambda: lab.es.get_app_name(first)) == CFE_ES_ERR_RESOURCEID_NOT_VALID
 
 
-def test_an_app_has_as_long_for_its_end_as_in_nasas(make_lab: Callable[..., Lab]) -> None:
+def test_ending_of_an_app_takes_as_long_as_on_nasas_cfe(make_lab: Callable[..., Lab]) -> None:
     """NASA's cFE took 6.2497 s and 6.2494 s from the command to the start; 5 s of it are the kill timeout."""
 
     def one(cfe: Cfe) -> None:
@@ -122,7 +122,7 @@ def test_an_app_has_as_long_for_its_end_as_in_nasas(make_lab: Callable[..., Lab]
     assert starts[1] - commanded == pytest.approx(6.25 + 0.05, abs=0.005)  # a task starts 50 ms after its creation
 
 
-def test_apps_that_cannot_be_controlled(make_lab: Callable[..., Lab]) -> None:
+def test_control_of_core_and_unknown_apps_is_refused(make_lab: Callable[..., Lab]) -> None:
     lab = make_lab(idle=lambda cfe: cfe.os.task_delay(100_000))
     app_id = lab.start("idle")
     lab.mission.run_for(1)
@@ -135,7 +135,7 @@ def test_apps_that_cannot_be_controlled(make_lab: Callable[..., Lab]) -> None:
     assert "CFE_ES_LockUserAppRecord: Invalid Application ID received for Delete, AppID = 1114265" in lab.log()
 
 
-def test_apps_that_cannot_be_started(make_lab: Callable[..., Lab]) -> None:
+def test_invalid_starts_of_apps_are_refused(make_lab: Callable[..., Lab]) -> None:
     lab = make_lab(idle=lambda cfe: cfe.os.task_delay(100_000))
     lab.start("idle")
     assert status_of(lambda: lab.start("idle")) == CFE_ES_ERR_DUPLICATE_NAME
@@ -144,7 +144,7 @@ def test_apps_that_cannot_be_started(make_lab: Callable[..., Lab]) -> None:
     assert "CFE_ES_LoadModule: Could not load file:/cf/missing.so. EC = -1" in lab.log()
 
 
-def test_the_id_of_an_app_or_library_that_fails_is_used_up(make_lab: Callable[..., Lab]) -> None:
+def test_id_of_an_app_or_library_that_fails_is_used_up(make_lab: Callable[..., Lab]) -> None:
     lab = make_lab(idle=lambda cfe: cfe.os.task_delay(100_000), lib=lambda cfe: 0, bad=lambda cfe: -1)
     assert status_of(lambda: lab.start("missing")) == CFE_STATUS_EXTERNAL_RESOURCE_FAIL
     assert status_of(lambda: lab.es.load_library("BAD", "/cf/bad.so", "init")) == -1
@@ -240,7 +240,7 @@ def test_memory_pools(make_lab: Callable[..., Lab]) -> None:
     assert lab.mission.memory.used == booked + 600 + 8192
 
 
-def test_names_that_are_not_there(make_lab: Callable[..., Lab]) -> None:
+def test_unknown_names_are_not_found(make_lab: Callable[..., Lab]) -> None:
     lab = make_lab()
     for look_up in (lab.es.get_app_id_by_name, lab.es.get_task_id_by_name, lab.es.get_lib_id_by_name):
         assert status_of(lambda: look_up("NOBODY")) == CFE_ES_ERR_NAME_NOT_FOUND  # noqa: B023
@@ -258,7 +258,7 @@ def test_libraries(make_lab: Callable[..., Lab]) -> None:
     assert len(lab.es.libs) == 1
 
 
-def test_a_child_task_that_dies_is_its_apps_fault(make_lab: Callable[..., Lab]) -> None:
+def test_death_of_a_child_task_restarts_its_app(make_lab: Callable[..., Lab]) -> None:
     def child() -> None:
         raise RuntimeError("child")
 

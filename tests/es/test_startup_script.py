@@ -64,7 +64,7 @@ def app(*, name: bytes = b"HK", priority: bytes = b"90", stack: bytes = b"16384"
     return b"CFE_APP,hk,HK_AppMain,%s,%s,%s,0x0,%s;" % (name, priority, stack, action)
 
 
-def test_a_good_entry() -> None:
+def test_valid_entry_is_parsed() -> None:
     entry = only(b"\n\n  CFE_APP, apps/hk, HK_AppMain,\n HK, 90, 0x4000, 0x0, 3;")
     assert entry == StartupEntry(
         kind=CFE_APP,
@@ -81,7 +81,7 @@ def test_a_good_entry() -> None:
     )
 
 
-def test_the_log_of_a_bad_script_is_that_of_cfe() -> None:
+def test_log_of_an_invalid_script_matches_nasas() -> None:
     assert log_of(BAD_SCRIPT) == REAL_LOG
 
 
@@ -94,7 +94,7 @@ def test_entry_numbers_and_text_lines() -> None:
     assert results[0].kind == CFE_LIB
 
 
-def test_bad_lines_explain_themselves() -> None:
+def test_invalid_lines_have_an_explanation() -> None:
     bad = {result.number: result for result in parse(BAD_SCRIPT) if isinstance(result, BadLine)}
     assert bad[7].explanation == "the entry must have 8 fields, not 3"
     assert bad[8].status == status.CFE_ES_ERR_APP_CREATE
@@ -105,13 +105,13 @@ def test_bad_lines_explain_themselves() -> None:
     assert bad[15].source == "#comment"
 
 
-def test_check_tells_of_the_lost_entry_too() -> None:
+def test_check_reports_the_incomplete_last_entry() -> None:
     notes = check(BAD_SCRIPT)
     assert [note.line for note in notes] == [7, 8, 11, 13, 14, 16, 17]
     assert "is ignored, because its ';' is missing" in notes[-1].explanation
 
 
-def test_check_of_a_good_script_is_silent() -> None:
+def test_check_of_a_valid_script_reports_nothing() -> None:
     assert check(b"CFE_LIB, l, L_Init, L, 0, 0, 0x0, 0;\n" + app() + b"\n! the end") == []
 
 
@@ -125,7 +125,7 @@ def test_check_of_a_good_script_is_silent() -> None:
         (app().replace(b"HK_AppMain", b"A_Symbol_Beyond_20_Chars"), "is cut to 'A_Symbol_Beyond_20_'"),
     ],
 )
-def test_check_tells_of_silent_changes(script: bytes, text: str) -> None:
+def test_check_reports_silent_changes(script: bytes, text: str) -> None:
     (note,) = check(script)
     assert text in note.explanation
 
@@ -187,5 +187,5 @@ def test_the_longest_entry(version: str, longest: int) -> None:
     assert isinstance(bad, BadLine)
 
 
-def test_bytes_beyond_ascii_vanish_like_blanks() -> None:
+def test_bytes_beyond_ascii_are_skipped_like_blanks() -> None:
     assert only(app(name=b"H\xffK\x80")) == only(app(name=b"HK"))

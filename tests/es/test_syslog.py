@@ -84,7 +84,7 @@ def test_overwriting_begins_at_the_top_and_reads_whole_lines_from_the_oldest_on(
         (115, CFE_SUCCESS, line("four")),
     ],
 )
-def test_discarding_keeps_what_fits(size: int, status: int, kept: bytes) -> None:
+def test_full_log_in_discard_mode_keeps_the_part_that_fits(size: int, status: int, kept: bytes) -> None:
     log = make(size=size, mode=DISCARD)
     for text in ("one", "two", "three"):
         assert log.write_to_sys_log(text) == CFE_SUCCESS
@@ -92,7 +92,7 @@ def test_discarding_keeps_what_fits(size: int, status: int, kept: bytes) -> None
     assert log.read() == line("one") + line("two") + line("three") + kept
 
 
-def test_it_goes_on_in_memory_that_was_retained() -> None:
+def test_log_continues_in_retained_memory() -> None:
     first, second = make(), make()
     first.write_to_sys_log("before")
     second.data = first.data

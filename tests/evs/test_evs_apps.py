@@ -38,7 +38,7 @@ def test_the_brake_never_stops_events_that_keep_to_the_rate(pauses_ms: list[int]
 
 
 @given(st.lists(st.tuples(st.sampled_from("+-"), st.integers(0, 12)), max_size=60))
-def test_filters_are_found_as_long_as_they_are_there(steps: list[tuple[str, int]]) -> None:
+def test_filter_is_found_until_it_is_deleted(steps: list[tuple[str, int]]) -> None:
     filters, model = Filters(8), set[int]()
     for step, event_id in steps:
         slot = filters.find(event_id)
@@ -59,7 +59,7 @@ def test_of_two_filters_for_an_event_the_first_counts() -> None:
 
 
 @given(st.integers(0, 70), st.sampled_from([OVERWRITE, DISCARD]))
-def test_the_log_holds_one_end_of_what_came(events: int, mode: int) -> None:
+def test_full_log_keeps_the_first_or_the_last_events(events: int, mode: int) -> None:
     log = EventLog(20, mode)
     packets = [bytes([number]) for number in range(events)]
     for packet in packets:

@@ -48,7 +48,7 @@ def test_declarations_are_complete_and_as_recorded() -> None:
         (pk.APP_DATA_RECORD, "CFE_EVS_AppDataFile_t"),
     ],
 )
-def test_layouts_are_those_of_c(layout: Layout, c_name: str) -> None:
+def test_layouts_match_nasas_structures(layout: Layout, c_name: str) -> None:
     assert_same(layout, c_name)
 
 
@@ -100,7 +100,7 @@ OK_COMMANDS = [
 
 
 @pytest.mark.parametrize(("code", "payload", "event_id", "event_type", "text"), OK_COMMANDS)
-def test_a_command_is_done_counted_and_confirmed(
+def test_valid_command_is_executed_counted_and_confirmed(
     loud: World, code: int, payload: bytes, event_id: int, event_type: int, text: str
 ) -> None:
     loud.call(lambda: loud.evs.register([(5, 0xFFFF)]))
@@ -144,7 +144,7 @@ BAD_COMMANDS = [
 
 
 @pytest.mark.parametrize(("code", "payload", "event_id", "text"), BAD_COMMANDS)
-def test_a_bad_command_is_refused_counted_and_told_of(
+def test_invalid_command_is_refused_counted_and_reported(
     world: World, code: int, payload: bytes, event_id: int, text: str
 ) -> None:
     world.call(lambda: world.evs.register([(5, 0xFFFF)]))
@@ -158,7 +158,7 @@ def test_a_strange_message_is_refused(world: World) -> None:
     assert world.sent() == [("CFE_EVS", 5, ERROR, "Invalid command packet, Message ID = 0x00001899")]
 
 
-def test_event_types_are_switched_for_all_and_for_one(world: World) -> None:
+def test_event_types_are_switched_for_all_apps_and_for_one(world: World) -> None:
     world.command(pk.ENABLE_EVENT_TYPE_CC, b"\1\0")
     assert {app.types for app in world.evs.apps.values()} == {0x0F}
     world.command(pk.DISABLE_EVENT_TYPE_CC, b"\2\0")
@@ -190,7 +190,7 @@ def test_filters_are_added_changed_and_deleted(world: World) -> None:
     assert world.evs.apps[APP_ID].filters.find(5) is None
 
 
-def test_there_is_an_end_to_filters(world: World) -> None:
+def test_number_of_filters_is_limited(world: World) -> None:
     for event_id in range(9):
         world.command(pk.ADD_EVENT_FILTER_CC, name() + u16(event_id, 1))
     text = "Add Filter Command: number of registered filters has reached max = 8"
@@ -255,7 +255,7 @@ def test_housekeeping(world: World) -> None:
     ]
 
 
-def test_reset_counters_is_not_counted_itself(loud: World) -> None:
+def test_reset_counters_command_is_not_counted(loud: World) -> None:
     loud.command(0)
     loud.command(pk.RESET_COUNTERS_CC)
     fields = loud.housekeeping()
@@ -263,7 +263,7 @@ def test_reset_counters_is_not_counted_itself(loud: World) -> None:
     assert loud.sent()[-1].text == "Reset Counters Command Received"
 
 
-def test_the_log_file_is_made_as_the_real_one(world: World) -> None:
+def test_log_file_matches_nasas_log_file(world: World) -> None:
     """Same header but for application and time, same record length, same first record but for its time."""
     real = (DATA / "cfe_evs.log").read_bytes()
     world.command(pk.WRITE_LOG_DATA_FILE_CC, bytes(64))
@@ -275,7 +275,7 @@ def test_the_log_file_is_made_as_the_real_one(world: World) -> None:
     assert ours[76:236] == real[76:236].replace(b"v7.0.0", b"v7.0.1")
 
 
-def test_the_app_data_file_is_made_as_the_real_one(world: World) -> None:
+def test_app_data_file_matches_nasas_app_data_file(world: World) -> None:
     """Same header except for the time. The records of EVS and SB, which registers NASA's filters, are the real ones."""
     real = (DATA / "cfe_evs_app.dat").read_bytes()
     world.evs.apps.clear()
@@ -291,7 +291,7 @@ def test_the_app_data_file_is_made_as_the_real_one(world: World) -> None:
     assert ours[32:] == real[32 : 64 + 2 * 92]
 
 
-def test_a_file_that_cannot_be_opened_is_an_event(world: World) -> None:
+def test_file_that_cannot_be_opened_causes_an_event(world: World) -> None:
     world.command(pk.WRITE_LOG_DATA_FILE_CC, pk.LOG_FILE_COMMAND.pack(LogFilename="/ram/none/x"))
     world.command(pk.WRITE_APP_DATA_FILE_CC, pk.APP_DATA_COMMAND.pack(AppDataFilename="/ram/none/x"))
     world.command(pk.WRITE_APP_DATA_FILE_CC, pk.APP_DATA_COMMAND.pack(AppDataFilename="/ram/.dat"))
@@ -316,7 +316,7 @@ def test_a_file_that_cannot_be_opened_is_an_event(world: World) -> None:
         ),
     ],
 )
-def test_a_full_disk_is_told_of(world: World, room: int, events: list[tuple[int, str]]) -> None:
+def test_full_disk_is_reported(world: World, room: int, events: list[tuple[int, str]]) -> None:
     world.send(1)
     for number in range(2):
         disk = Volume(capacity=room if number == 0 else min(room, 64 + 92))

@@ -25,7 +25,7 @@ from tests.evs.conftest import APP_ID, EVS_ID, MUTE_ID, Sent, World
 READY = "cFE EVS Initialized: CFE_EVS v7.0.1+dev0 (Draco) v7.0.1 Official Release, EDS disabled"
 
 
-def test_it_tells_that_it_is_ready(fresh: World) -> None:
+def test_evs_reports_that_it_is_ready(fresh: World) -> None:
     fresh.evs.early_init(fresh.kept)
     fresh.kernel.spawn("CFE_EVS", fresh.evs.task_main, 61, fresh.apps[EVS_ID])
     fresh.kernel.run(1000)
@@ -35,7 +35,7 @@ def test_it_tells_that_it_is_ready(fresh: World) -> None:
     assert fresh.perf == [2, -2]
 
 
-def test_a_long_event_has_the_bytes_of_the_real_one(world: World) -> None:
+def test_long_event_has_the_bytes_of_nasas_event(world: World) -> None:
     world.call(lambda: world.evs.send_event(3, INFORMATION, "TO telemetry output enabled for IP 127.0.0.1"))
     real = (
         "0808c00000a5000f4628800000000000"
@@ -60,7 +60,7 @@ def test_short_format_sends_the_identity_only_but_logs_and_shows_all(world: Worl
     ("send", "event_type"),
     [("send_dbg", DEBUG), ("send_info", INFORMATION), ("send_err", ERROR), ("send_crit", CRITICAL)],
 )
-def test_each_type_has_its_own_call(world: World, send: str, event_type: int) -> None:
+def test_each_event_type_has_its_own_call(world: World, send: str, event_type: int) -> None:
     world.evs.apps[APP_ID].types = 0x0F
     world.call(lambda: getattr(world.evs, send)(9, "text"))
     assert world.sent() == [Sent("HK", 9, event_type, "text")]
@@ -73,7 +73,7 @@ def test_debug_events_are_off_by_default(world: World) -> None:
 
 
 @pytest.mark.parametrize(("length", "ending"), [(121, "xx"), (122, "x$"), (500, "x$")])
-def test_a_text_that_does_not_fit_ends_in_a_dollar_sign(world: World, length: int, ending: str) -> None:
+def test_too_long_text_ends_in_a_dollar_sign(world: World, length: int, ending: str) -> None:
     world.send(1, text="x" * length)
     (event,) = world.sent()
     assert len(event.text) == 121
@@ -100,7 +100,7 @@ def test_the_time_of_a_timed_event_has_32_bits(world: World) -> None:
         assert caught.value.status == CFE_EVS_INVALID_PARAMETER
 
 
-def test_an_event_goes_out_in_the_name_of_another_with_the_types_of_its_sender(world: World) -> None:
+def test_event_in_the_name_of_another_app_uses_the_types_of_its_sender(world: World) -> None:
     world.evs.apps[APP_ID].types = 0x0F
     world.call(lambda: world.evs.send_event_with_app_id(4, DEBUG, APP_ID, "for HK"), EVS_ID)
     world.call(lambda: world.evs.send_event_with_app_id(5, DEBUG, EVS_ID, "for EVS"), APP_ID)
@@ -127,7 +127,7 @@ def test_ports_are_lines_on_the_console(world: World) -> None:
 # -- permission ----------------------------------------------------------------------------------------------------
 
 
-def test_an_unregistered_app_is_refused_and_told_of_once(world: World) -> None:
+def test_unregistered_app_is_refused_and_reported_once(world: World) -> None:
     for _ in range(2):
         with pytest.raises(CfeError, match="MUTE is not registered") as caught:
             world.call(lambda: world.evs.send_event(1, ERROR, "x"), MUTE_ID)
@@ -138,7 +138,7 @@ def test_an_unregistered_app_is_refused_and_told_of_once(world: World) -> None:
     assert world.housekeeping()["UnregisteredAppCounter"] == 1
 
 
-def test_after_each_register_it_is_told_again(world: World) -> None:
+def test_unregistered_app_is_reported_again_after_each_register(world: World) -> None:
     """A register that fails wipes the record, as one that does not."""
 
     def fail() -> None:
@@ -160,7 +160,7 @@ def test_host_code_belongs_to_no_app(world: World) -> None:
         assert caught.value.status == CFE_EVS_APP_ILLEGAL_APP_ID
 
 
-def test_the_app_id_of_an_event_must_be_one(world: World) -> None:
+def test_invalid_app_id_of_an_event_is_refused(world: World) -> None:
     send = world.evs.send_event_with_app_id
     with pytest.raises(CfeError) as caught:
         world.call(lambda: send(1, 2, 0x160001, "x"))
@@ -170,7 +170,7 @@ def test_the_app_id_of_an_event_must_be_one(world: World) -> None:
     assert caught.value.status == CFE_EVS_APP_NOT_REGISTERED
 
 
-def test_an_app_that_is_not_there_has_no_name_in_the_event(world: World) -> None:
+def test_unknown_app_has_no_name_in_the_event(world: World) -> None:
     gone = 0x1100FF
     with pytest.raises(CfeError, match="AppId 0x1100ff is not registered"):
         world.call(lambda: world.evs.send_event_with_app_id(1, 2, gone, "x"))
@@ -178,7 +178,7 @@ def test_an_app_that_is_not_there_has_no_name_in_the_event(world: World) -> None
 
 
 @pytest.mark.parametrize("event_type", [DEBUG, INFORMATION, ERROR, CRITICAL])
-def test_nobody_has_app_id_0(world: World, event_type: int) -> None:
+def test_app_id_0_is_refused(world: World, event_type: int) -> None:
     with pytest.raises(CfeError) as caught:
         world.call(lambda: world.evs.send_event_with_app_id(0, event_type, 0, "OK"))
     assert caught.value.status == CFE_EVS_APP_ILLEGAL_APP_ID
@@ -226,7 +226,7 @@ def test_a_cleaned_up_app_is_not_registered_any_more(world: World) -> None:
         (evs.FIRST_64_STOP, range(20)),
     ],
 )
-def test_a_filter_passes_what_count_and_mask_say(world: World, mask: int, passed: list[int]) -> None:
+def test_filter_passes_events_by_count_and_mask(world: World, mask: int, passed: list[int]) -> None:
     """cEVS3104.2: an event is filtered out when its count and the mask have a bit in common."""
     world.call(lambda: world.evs.register([(5, mask)]))
     for number in range(20):
@@ -234,7 +234,7 @@ def test_a_filter_passes_what_count_and_mask_say(world: World, mask: int, passed
     assert [int(event.text) for event in world.sent()] == list(passed)
 
 
-def test_a_reset_filter_counts_anew(world: World) -> None:
+def test_reset_filter_counts_from_zero(world: World) -> None:
     world.call(lambda: world.evs.register([(5, 0xFFFF), (6, 0xFFFF)]))
     for reset in (lambda: None, lambda: world.evs.reset_filter(5), world.evs.reset_all_filters):
         world.call(reset)
@@ -243,7 +243,7 @@ def test_a_reset_filter_counts_anew(world: World) -> None:
     assert [event.event_id for event in world.sent()] == [5, 6, 5, 5, 6]
 
 
-def test_only_a_filter_that_is_there_can_be_reset(world: World) -> None:
+def test_reset_of_an_unknown_filter_is_refused(world: World) -> None:
     with pytest.raises(CfeError) as caught:
         world.call(lambda: world.evs.reset_filter(5))
     assert caught.value.status == CFE_EVS_EVT_NOT_REGISTERED
@@ -264,7 +264,7 @@ def test_a_filter_locks_at_its_last_count(world: World) -> None:
     assert slot.count == 0xFFFF
 
 
-def test_filters_beyond_the_limit_are_left_out(world: World) -> None:
+def test_filters_beyond_the_limit_are_ignored(world: World) -> None:
     world.call(lambda: world.evs.register([(event_id, 0xFFFF) for event_id in range(10)]))
     assert world.log[-1] == "CFE_EVS_Register: Filter limit truncated to 8"
     assert world.evs.apps[APP_ID].filters.find(7) is not None
@@ -278,7 +278,7 @@ def test_a_filter_is_two_numbers(world: World, bad: object) -> None:
     assert caught.value.status == CFE_ES_BAD_ARGUMENT
 
 
-def test_there_is_one_filter_scheme_and_asking_for_another_costs_the_registration(world: World) -> None:
+def test_unknown_filter_scheme_fails_the_registration(world: World) -> None:
     with pytest.raises(CfeError) as caught:
         world.call(lambda: world.evs.register([], 1))
     assert caught.value.status == CFE_EVS_UNKNOWN_FILTER
@@ -297,7 +297,7 @@ def _flood(world: World, events: int) -> None:
     world.call(send)
 
 
-def test_a_flood_is_cut_after_a_burst_and_told_of_once(world: World) -> None:
+def test_flood_is_stopped_after_a_burst_and_reported_once(world: World) -> None:
     _flood(world, 100)
     events = world.sent()
     assert len(events) == 33
@@ -307,7 +307,7 @@ def test_a_flood_is_cut_after_a_burst_and_told_of_once(world: World) -> None:
     assert app_data[1]["AppMessageSquelchedCounter"] == 68  # type: ignore[index]
 
 
-def test_the_sender_learns_what_became_of_an_event(world: World) -> None:
+def test_sender_gets_success_when_filtered_and_an_error_when_squelched(world: World) -> None:
     """Held back by the type or by a filter is success, held back by the brake is not, as in NASA's evs_send_test.c."""
     send = world.evs.send_event
     world.call(lambda: world.evs.register([(9, 0xFFFF)]))

@@ -26,7 +26,7 @@ TALKER = """
 
 
 @BOTH
-def test_a_crash_is_an_exception_that_es_answers(tmp_path: Path, tasks: str) -> None:
+def test_crash_is_an_exception_handled_by_es(tmp_path: Path, tasks: str) -> None:
     mission = fly(tmp_path, {"crash": "TAKER", "at": 1.8}, tasks=tasks, seconds=12)
     history = mission.record.history["TAKER"]
     assert (history.deaths, history.restarts) == (1, 1)
@@ -37,7 +37,7 @@ def test_a_crash_is_an_exception_that_es_answers(tmp_path: Path, tasks: str) -> 
     assert row(mission, "crash-1")["at_s"] == [1.8]
 
 
-def test_an_application_cannot_catch_its_crash(tmp_path: Path) -> None:
+def test_application_cannot_catch_its_crash(tmp_path: Path) -> None:
     stubborn = """
         def taker_main(cfe):
             cfe.es.run_loop()
@@ -70,14 +70,14 @@ def test_a_crash_at_the_nth_message(tmp_path: Path) -> None:
 
 
 @BOTH
-def test_an_application_that_hangs_takes_nothing(tmp_path: Path, tasks: str) -> None:
+def test_hanging_application_reads_no_messages(tmp_path: Path, tasks: str) -> None:
     mission = fly(tmp_path, {"hang": "TAKER", "at": 1.8}, tasks=tasks, seconds=5)
     assert values(mission) == [0, 1, 2]
     assert values(mission, "OTHER")[:9] == list(range(9))
     assert any("Pipe Overflow" in line and "TAKER_PIPE" in line for line in mission.console.lines)
 
 
-def test_it_goes_on_when_the_time_is_over(tmp_path: Path) -> None:
+def test_hang_ends_after_its_duration(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"hang": "TAKER", "at": 1.8, "for": 0.17})
     assert values(mission)[:8] == list(range(8))
     assert "for 0.17 s" in row(mission, "hang-1")["details"][0]
@@ -99,7 +99,7 @@ def test_a_slow_application_uses_more_cpu_time(tmp_path: Path) -> None:
     assert row(slow, "slow-1")["times"] == 1
 
 
-def test_slow_multiplies_what_calls_cost_on_a_board(tmp_path: Path) -> None:
+def test_slow_fault_multiplies_call_costs_on_a_board(tmp_path: Path) -> None:
     cpu_ns = {}
     for times in (1, 10):
         faults = [{"slow": "TAKER", "times": times}] if times > 1 else []
@@ -107,7 +107,7 @@ def test_slow_multiplies_what_calls_cost_on_a_board(tmp_path: Path) -> None:
     assert cpu_ns[10] > 3 * cpu_ns[1] > 0
 
 
-def test_stop_and_restart_are_those_of_es(tmp_path: Path) -> None:
+def test_stop_and_restart_use_es(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"stop": "OTHER", "at": 1.8}, {"restart": "TAKER", "at": 1.8}, seconds=5)
     assert [app.name for app in mission.cfe.es.apps if app.name in ("TAKER", "OTHER")] == ["TAKER"]
     assert any("Stop Application OTHER Completed" in line for line in mission.console.lines)
@@ -115,7 +115,7 @@ def test_stop_and_restart_are_those_of_es(tmp_path: Path) -> None:
     assert mission.record.history["TAKER"].restarts == 1
 
 
-def test_who_is_not_there_is_told(tmp_path: Path) -> None:
+def test_unknown_application_is_reported(tmp_path: Path) -> None:
     mission = fly(
         tmp_path, {"crash": "NOBODY", "at": 1.5}, {"restart": "CFE_ES", "at": 1.5}, {"hang": "TAKER", "at": 0}
     )
@@ -125,13 +125,13 @@ def test_who_is_not_there_is_told(tmp_path: Path) -> None:
     assert nevers[2] == "no application TAKER runs at 0 s"
 
 
-def test_several_applications_at_once(tmp_path: Path) -> None:
+def test_fault_on_several_applications_strikes_all(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"crash": ["TAKER", "OTHER"], "at": 1.8})
     assert row(mission, "crash-1")["times"] == 2
 
 
 @BOTH
-def test_a_node_crashes_as_a_process_does(tmp_path: Path, tasks: str) -> None:
+def test_crashed_node_ends_like_a_process(tmp_path: Path, tasks: str) -> None:
     mission = fly(tmp_path, {"crash": "TALKER", "at": 1.8}, startup=NODE_STARTUP, talker=TALKER, tasks=tasks)
     assert not any("caught" in line or "cleaned up" in line for line in mission.console.lines)
     assert told(mission, "[talker] Segmentation fault (fault crash-1)")
@@ -147,14 +147,14 @@ def goes_on(mission: Mission) -> bool:
 
 
 @pytest.mark.parametrize("action", [0, 1])
-def test_es_does_with_a_crashed_node_what_its_line_says(tmp_path: Path, action: int) -> None:
+def test_crashed_node_gets_the_exception_action_of_its_startup_line(tmp_path: Path, action: int) -> None:
     startup = NODE_STARTUP.replace("0x0, 0;", f"0x0, {action};")
     mission = fly(tmp_path, {"crash": "TALKER", "at": 1.8}, startup=startup, talker=TALKER, seconds=12)
     assert (mission.record.history["TALKER"].restarts, len(mission.record.resets)) == (1 - action, action)
     assert goes_on(mission)
 
 
-def test_a_node_that_respawns_is_no_exception(tmp_path: Path) -> None:
+def test_respawning_node_is_not_an_exception(tmp_path: Path) -> None:
     mission_yaml = "nodes: {TALKER: {respawn: true, respawn_delay: 0.5 s}}"
     crash = {"crash": "TALKER", "at": 1.8}
     mission = fly(tmp_path, crash, startup=NODE_STARTUP, talker=TALKER, mission_yaml=mission_yaml)

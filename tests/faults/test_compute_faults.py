@@ -25,7 +25,7 @@ WORKER = """
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_the_nth_message_takes_longer_and_holds_up_who_is_less_urgent(tmp_path: Path, tasks: str) -> None:
+def test_longer_message_delays_tasks_of_lower_priority(tmp_path: Path, tasks: str) -> None:
     longer = {"compute": "TAKER", "message": "NUMBER_TLM", "number": 4, "for": 0.25}
     mission = fly(tmp_path, longer, tasks=tasks)
     assert mission.record.history["TAKER"].cpu_ns == 250_000_000
@@ -37,7 +37,7 @@ def test_the_nth_message_takes_longer_and_holds_up_who_is_less_urgent(tmp_path: 
 
 
 @pytest.mark.slow
-def test_a_wait_that_is_over_from_an_instant_on(tmp_path: Path) -> None:
+def test_wait_takes_longer_from_an_instant_on(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"compute": "TAKER", "after": 1.5, "count": 3, "for": 0.01})
     assert mission.record.history["TAKER"].cpu_ns == 30_000_000
     once = fly(tmp_path, {"compute": "TAKER", "at": [1.5, 2], "for": 0.01, "name": "late"})
@@ -45,7 +45,7 @@ def test_a_wait_that_is_over_from_an_instant_on(tmp_path: Path) -> None:
     assert all(began >= asked for began, asked in zip(row(once, "late")["at_s"], (1.5, 2), strict=True))
 
 
-def test_work_takes_so_many_times_as_long(tmp_path: Path) -> None:
+def test_work_takes_longer_by_a_factor(tmp_path: Path) -> None:
     slow = fly(tmp_path, {"compute": ["TAKER", "OTHER"], "times": 4, "after": 1.5}, taker=WORKER)
     worked = told(slow, "worked")
     assert set(worked) == {"worked 1000 us", "worked 4000 us"}
@@ -53,7 +53,7 @@ def test_work_takes_so_many_times_as_long(tmp_path: Path) -> None:
     assert row(slow, "compute-1")["details"][0] == "lets TAKER compute for 0.004 s instead of 0.001 s"
 
 
-def test_only_one_task(tmp_path: Path) -> None:
+def test_compute_fault_is_limited_to_one_task(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"compute": "TAKER", "for": 0.01, "task": "OTHER*"})
     assert row(mission, "compute-1")["never"] == "no matching occasion occurred"
 
@@ -67,18 +67,18 @@ def test_only_one_task(tmp_path: Path) -> None:
         ({"compute": "A", "for": 0}, "must be a number of seconds greater than 0"),
     ],
 )
-def test_what_cannot_be(fault: dict[str, object], why: str) -> None:
+def test_invalid_compute_fault_is_refused(fault: dict[str, object], why: str) -> None:
     with pytest.raises(UsageError, match=why):
         FaultPlan.from_dict({"faults": [fault]})
 
 
-def test_a_plan_is_written_as_it_was_read() -> None:
+def test_compute_fault_is_written_as_it_was_read() -> None:
     plain = {"compute": "A", "name": "compute-1", "number": 3, "message": "/x", "task": "A", "for": 0.02}
     assert FaultPlan.from_dict({"faults": [plain]}).to_dict() == {"faults": [plain]}
 
 
 @pytest.mark.slow
-def test_a_task_that_is_not_there_is_found_by_the_check(tmp_path: Path) -> None:
+def test_unknown_task_is_found_by_the_check(tmp_path: Path) -> None:
     from cfepy.faults.targets import look_at
 
     startup = (
@@ -114,7 +114,7 @@ LISTENER = """
 
 
 @pytest.mark.slow
-def test_callbacks_of_nodes(tmp_path: Path) -> None:
+def test_compute_fault_applies_to_callbacks_of_nodes(tmp_path: Path) -> None:
     third = {"compute": "LISTENER", "message": "/times", "number": 3, "for": 0.02}
     yaml = "nodes: {LISTENER: {compute: {/times: 2 ms}}}"
     twice = {"compute": "LISTENER", "times": 2}

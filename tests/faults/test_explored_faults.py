@@ -82,7 +82,7 @@ def explored(plan: RunPlan, policy: str = "all", seeds: int = 60, depth: int | N
 
 
 @pytest.mark.slow
-def test_a_crash_between_two_steps_is_found_and_shrunk_to_itself(tmp_path: Path) -> None:
+def test_crash_between_two_steps_is_found_and_shrunk(tmp_path: Path) -> None:
     (told,) = explored(plan_of(tmp_path, CRASH)).findings
     assert told.finding.failure.kind == INVARIANT
     assert told.shrunk is not None
@@ -99,7 +99,7 @@ def test_every_instant_of_a_crash_is_tried(tmp_path: Path, how: str, fails: bool
 
 
 @pytest.mark.parametrize("kind", FAULTS)
-def test_fifo_has_none(tmp_path: Path, kind: str) -> None:
+def test_explored_fault_does_not_strike_under_fifo(tmp_path: Path, kind: str) -> None:
     plan = plan_of(tmp_path, FAULTS[kind])
     flown = fly(plan)
     (row,) = flown.mission.record.rows("faults")
@@ -124,7 +124,7 @@ class Strikes(Policy):
 
 
 @pytest.mark.parametrize("number", [1, 4])
-def test_any_message_may_be_the_one_that_is_lost(tmp_path: Path, number: int) -> None:
+def test_explored_drop_can_strike_any_message(tmp_path: Path, number: int) -> None:
     flown = fly(plan_of(tmp_path, DROP), policy=Strikes(number))
     (row,) = flown.mission.record.rows("faults")
     assert row["details"] == [f"drops /request #{number} sent by CANDIDATES"]
@@ -132,7 +132,7 @@ def test_any_message_may_be_the_one_that_is_lost(tmp_path: Path, number: int) ->
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", FAULTS)
-def test_threads_and_greenlets_do_the_same(tmp_path: Path, kind: str) -> None:
+def test_threads_and_greenlets_give_the_same_verdicts(tmp_path: Path, kind: str) -> None:
     plan = plan_of(tmp_path, FAULTS[kind])
     one, other = (
         [Trial(replace(plan, tasks=tasks)).run(Schedule("random", seed)) for seed in range(6)]
@@ -142,7 +142,7 @@ def test_threads_and_greenlets_do_the_same(tmp_path: Path, kind: str) -> None:
     assert len({verdict.trace for verdict in one}) > 2
 
 
-def test_early_and_late_occasions_have_their_chance() -> None:
+def test_early_and_late_occasions_have_equal_chances() -> None:
     drawn = []
     for seed in range(300):
         policy = Schedule("random", seed).policy()
@@ -166,12 +166,12 @@ def test_early_and_late_occasions_have_their_chance() -> None:
         ("{fill: PIPE, explored: 1}", "unknown option of fill"),
     ],
 )
-def test_what_cannot_be_explored(fault: str, text: str) -> None:
+def test_invalid_explored_fault_is_refused(fault: str, text: str) -> None:
     with pytest.raises(UsageError, match=text):
         FaultPlan.from_dict(yaml.safe_load(f"faults: [{fault}]"))
 
 
-def test_a_call_that_may_fail_is_a_place_where_others_get_in_all_the_same(tmp_path: Path) -> None:
+def test_call_that_may_fail_is_a_scheduling_point(tmp_path: Path) -> None:
     mission = str(write_mission(tmp_path, worlds.STARTUP, source=worlds.SOURCE, taker=worlds.TAKER, other=worlds.TAKER))
     never = tmp_path / "never.yaml"
     never.write_text(

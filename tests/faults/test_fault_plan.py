@@ -64,7 +64,7 @@ def test_every_kind_is_read_and_written(tmp_path: Path) -> None:
     assert plan.faults[1].line == 4
 
 
-def test_the_list_may_stand_alone(tmp_path: Path) -> None:
+def test_list_of_faults_needs_no_key(tmp_path: Path) -> None:
     assert read_plan(write(tmp_path, "- drop: /a")).faults == (Fault("drop", ("/a",), "drop-1"),)
 
 
@@ -114,7 +114,7 @@ def test_the_list_may_stand_alone(tmp_path: Path) -> None:
         ("- {fill: [A, B], at: 1}", 1, "takes one target"),
     ],
 )
-def test_mistakes_say_where_and_what_to_do(tmp_path: Path, text: str, line: int, says: str) -> None:
+def test_mistakes_in_a_plan_are_reported_with_line_and_remedy(tmp_path: Path, text: str, line: int, says: str) -> None:
     path = write(tmp_path, text)
     with pytest.raises(UsageError) as caught:
         read_plan(path)
@@ -141,7 +141,7 @@ fault: []
     assert [error.field for error in caught.value.each] == fields.split()
 
 
-def test_no_file_and_no_yaml(tmp_path: Path) -> None:
+def test_missing_file_and_invalid_yaml_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be read"):
         read_plan(tmp_path / "none.yaml")
     with pytest.raises(UsageError, match="is not YAML"):
@@ -170,7 +170,7 @@ TARGETS: Any = st.builds(
 
 @settings(max_examples=30)
 @given(st.integers(0, 2**64), TARGETS, st.sampled_from(sorted(INTENSITIES)))
-def test_random_plans_are_plans(seed: int, targets: Targets, intensity: str) -> None:
+def test_random_plans_are_valid(seed: int, targets: Targets, intensity: str) -> None:
     plan = random_plan(seed, targets, intensity)
     assert plan == random_plan(seed, targets, intensity)
     assert len(plan.faults) == INTENSITIES[intensity]

@@ -25,21 +25,21 @@ def test_a_dropped_message_leaves_a_gap_in_the_sequence_counts(tmp_path: Path, n
     assert told(mission, "cfepy fault drop-1: drops NUMBER_TLM #3 sent by SOURCE")
 
 
-def test_books_count_a_dropped_message_as_sent_only(tmp_path: Path) -> None:
+def test_dropped_message_is_counted_as_sent_only(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"drop": NUMBER, "number": 3})
     route = mission.cfe.sb.routes[0x0883]
     count = len(values(mission))
     assert (route.sent, route.totals()[0]) == (count + 1, 2 * count)
 
 
-def test_for_one_receiver_the_other_gets_it(tmp_path: Path) -> None:
+def test_drop_for_one_receiver_spares_the_other(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"drop": NUMBER, "number": 3, "to": "OTHER"})
     assert values(mission)[:4] == [0, 1, 2, 3]
     assert values(mission, "OTHER")[:4] == [0, 1, 3, 4]
     assert row(mission, "drop-1")["details"] == ["drops NUMBER_TLM #3 on pipe OTHER_PIPE"]
 
 
-def test_to_may_be_a_pipe_and_from_the_sender(tmp_path: Path) -> None:
+def test_drop_selects_a_pipe_and_a_sender(tmp_path: Path) -> None:
     drop = {"drop": NUMBER, "count": 2}
     mission = fly(
         tmp_path,
@@ -52,28 +52,28 @@ def test_to_may_be_a_pipe_and_from_the_sender(tmp_path: Path) -> None:
     assert [row(mission, name)["times"] for name in ("right", "wrong", "nobody")] == [2, 0, 0]
 
 
-def test_a_duplicate_has_the_same_sequence_count(tmp_path: Path) -> None:
+def test_duplicate_has_the_same_sequence_count(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"duplicate": NUMBER, "number": 2, "copies": 2})
     assert values(mission)[:6] == [0, 1, 1, 1, 2, 3]
     assert told(mission, "TAKER got")[:2] == ["TAKER got 2 after 2", "TAKER got 2 after 2"]
     assert mission.cfe.sb.routes[0x0883].sent == len(values(mission)) - 2
 
 
-def test_a_duplicate_for_one_receiver(tmp_path: Path) -> None:
+def test_duplicate_reaches_only_its_receiver(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"duplicate": NUMBER, "number": 2, "to": "TAKER"})
     assert values(mission)[:5] == [0, 1, 1, 2, 3]
     assert values(mission, "OTHER")[:4] == [0, 1, 2, 3]
 
 
 @pytest.mark.parametrize("to", [{}, {"to": "TAKER"}])
-def test_a_delayed_message_comes_between_later_ones(tmp_path: Path, to: dict[str, str]) -> None:
+def test_delayed_message_arrives_between_later_ones(tmp_path: Path, to: dict[str, str]) -> None:
     mission = fly(tmp_path, {"delay": NUMBER, "by": 0.25, "number": 2, **to})
     assert values(mission)[:6] == [0, 2, 3, 1, 4, 5]
     assert values(mission, "OTHER")[:3] == ([0, 1, 2] if to else [0, 2, 3])
     assert "delays by 0.25 s" in row(mission, "delay-1")["details"][0]
 
 
-def test_a_short_delay_that_begins_during_a_long_one_ends_first(tmp_path: Path) -> None:
+def test_short_delay_during_a_long_one_ends_first(tmp_path: Path) -> None:
     long, short = {"delay": NUMBER, "by": 0.25, "number": 2}, {"delay": NUMBER, "by": 0.02, "number": 3}
     mission = fly(tmp_path, long | {"name": "long"}, short | {"name": "short"})
     assert values(mission)[:6] == [0, 2, 3, 1, 4, 5]
@@ -90,12 +90,12 @@ def test_a_delay_may_have_a_range(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("to", [{}, {"to": "TAKER"}])
-def test_reordered_messages_come_after_later_ones(tmp_path: Path, to: dict[str, str]) -> None:
+def test_reordered_messages_arrive_after_later_ones(tmp_path: Path, to: dict[str, str]) -> None:
     mission = fly(tmp_path, {"reorder": NUMBER, "number": 2, "past": 2, **to})
     assert values(mission)[:6] == [0, 2, 3, 1, 4, 5]
 
 
-def test_a_message_that_no_other_follows_comes_in_time(tmp_path: Path) -> None:
+def test_reordered_message_arrives_at_its_time_limit_when_no_other_follows(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"reorder": NUMBER, "number": 2, "past": 500, "within": 0.55})
     assert values(mission)[:8] == [0, 2, 3, 4, 5, 6, 1, 7]
 
@@ -107,14 +107,14 @@ def test_bits_of_the_payload_turn_over(tmp_path: Path) -> None:
     assert not told(mission, "TAKER got")
 
 
-def test_a_corrupt_command_has_a_bad_checksum_unless_it_is_fixed(tmp_path: Path) -> None:
+def test_corrupt_command_has_a_bad_checksum_unless_it_is_fixed(tmp_path: Path) -> None:
     order = {"corrupt": "ORDER_CMD", "bytes": {"8": 77}}
     kept = fly(tmp_path, order | {"number": 2})
     assert told(kept, "TAKER sees") == ["TAKER sees a bad checksum in order 77"]
     assert not told(fly(tmp_path, order | {"number": 2, "checksum": "fix"}), "TAKER sees")
 
 
-def test_a_header_may_be_damaged_and_its_sender_does_not_learn_it(tmp_path: Path) -> None:
+def test_damaged_header_does_not_affect_its_sender(tmp_path: Path) -> None:
     mission = fly(
         tmp_path,
         {"corrupt": NUMBER, "number": 2, "bytes": {"4": 0x7F}},  # the length
@@ -125,7 +125,7 @@ def test_a_header_may_be_damaged_and_its_sender_does_not_learn_it(tmp_path: Path
     assert sum("Send Err" in line for line in mission.console.lines) == 2
 
 
-def test_random_bits_of_a_packet_without_data_leave_the_primary_header_alone(tmp_path: Path) -> None:
+def test_random_bits_spare_the_primary_header_of_a_packet_without_data(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"corrupt": "CFE_TIME_TONE_CMD", "bits": 16})
     assert row(mission, "corrupt-1")["times"] > 1
     assert all(history.deaths == 0 for history in mission.record.history.values())
@@ -141,7 +141,7 @@ def test_a_field_is_set(tmp_path: Path) -> None:
     assert not told(mission, "TAKER sees")
 
 
-def test_a_field_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_unknown_field_is_reported(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"corrupt": NUMBER, "number": 2, "fields": {"Valu": 1}})
     why = "cannot set Valu of NUMBER_TLM: the field is missing or has another type"
     assert told(mission, "cfepy fault") == [f"cfepy fault corrupt-1: did not happen: {why}"]
@@ -149,7 +149,7 @@ def test_a_field_that_is_not_there_is_told(tmp_path: Path) -> None:
     assert values(mission)[:3] == [0, 1, 2]
 
 
-def test_faults_strike_one_after_the_other(tmp_path: Path) -> None:
+def test_faults_strike_in_the_order_of_the_plan(tmp_path: Path) -> None:
     mission = fly(
         tmp_path,
         {"duplicate": NUMBER, "number": 2},
@@ -158,7 +158,7 @@ def test_faults_strike_one_after_the_other(tmp_path: Path) -> None:
     assert values(mission)[:4] == [0, 99, 99, 2]
 
 
-def test_what_is_dropped_meets_no_other_fault(tmp_path: Path) -> None:
+def test_dropped_message_gets_no_other_fault(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"drop": NUMBER, "number": 2}, {"duplicate": NUMBER, "number": 2})
     assert values(mission)[:3] == [0, 2, 3]
     assert row(mission, "duplicate-1")["never"] == "drop-1 has dropped the message before"
@@ -172,7 +172,7 @@ def test_windows_counts_and_instants(tmp_path: Path) -> None:
     assert values(fly(tmp_path, drop | {"number": [1, 3]}))[:3] == [1, 3, 4]
 
 
-def test_probability_follows_from_seed_and_name_alone(tmp_path: Path) -> None:
+def test_probability_depends_only_on_seed_and_name(tmp_path: Path) -> None:
     drop = {"drop": NUMBER, "probability": 0.5, "name": "half"}
     alone = values(fly(tmp_path, drop, seconds=6))
     assert 10 < len(alone) < 40
@@ -182,7 +182,7 @@ def test_probability_follows_from_seed_and_name_alone(tmp_path: Path) -> None:
     assert values(fly(tmp_path, drop | {"name": "another"}, seconds=6)) != alone
 
 
-def test_the_trace_is_the_same_on_both_contexts_and_each_time(tmp_path: Path) -> None:
+def test_trace_is_reproducible_on_threads_and_greenlets(tmp_path: Path) -> None:
     faults = [
         {"drop": NUMBER, "probability": 0.2},
         {"delay": "ORDER_CMD", "by": [0.01, 0.3], "probability": 0.5},
@@ -194,7 +194,7 @@ def test_the_trace_is_the_same_on_both_contexts_and_each_time(tmp_path: Path) ->
     assert fly(tmp_path).trace.digest() not in digests
 
 
-def test_a_queue_that_nobody_has_says_what_to_take_for_a_pipe(tmp_path: Path) -> None:
+def test_fault_of_an_unused_queue_call_suggests_the_call_for_pipes(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"fail": "OS_QueueGet", "number": 1}, {"fail": "OS_MutSemTake", "app": "TAKER"})
     reasons = [each["never"] for each in mission.record.rows("faults")]
     text = "pipes are read without it: use a fault of CFE_SB_ReceiveBuffer"
@@ -202,7 +202,7 @@ def test_a_queue_that_nobody_has_says_what_to_take_for_a_pipe(tmp_path: Path) ->
     assert reasons[1] == "no matching task called os.mut_sem_take"
 
 
-def test_what_never_happened_says_why(tmp_path: Path) -> None:
+def test_fault_that_never_struck_has_a_reason(tmp_path: Path) -> None:
     mission = fly(
         tmp_path,
         {"drop": "NUMBRE_TLM"},
@@ -215,7 +215,7 @@ def test_what_never_happened_says_why(tmp_path: Path) -> None:
     assert "none" in reasons[2] or "but never at one" in reasons[2]
 
 
-def test_faults_go_on_after_a_reset(tmp_path: Path) -> None:
+def test_faults_continue_after_a_reset(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"drop": NUMBER, "number": [2, 12]}, {"reset": "processor", "at": 1.98}, seconds=5)
     assert len(mission.record.resets) == 1
     numbers = values(mission)
@@ -226,7 +226,7 @@ def test_faults_go_on_after_a_reset(tmp_path: Path) -> None:
     assert row(mission, "drop-1")["times"] == 2
 
 
-def test_a_plan_without_messages_leaves_the_bus_alone(tmp_path: Path) -> None:
+def test_plan_without_message_faults_does_not_change_the_bus(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"jump_clock": 1, "at": 50})
     assert type(mission.cfe.sb).__name__ == "SoftwareBus"
     assert FaultInjector(FaultPlan()).bus(Mission) is Mission  # type: ignore[arg-type, comparison-overlap]

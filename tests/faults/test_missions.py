@@ -59,7 +59,7 @@ def test_many_random_faults_repeat(name: str, count: int, seconds: float) -> Non
     check(name, range(100, 100 + count), seconds)
 
 
-def test_a_plan_by_its_seed_by_its_text_and_as_a_run_plan() -> None:
+def test_plan_is_equal_by_seed_by_text_and_as_a_run_plan() -> None:
     spec = read_mission("lab")
     plan = plan_of("seed:3:low", spec)
     assert len(plan.faults) == 2
@@ -73,7 +73,7 @@ def test_a_plan_by_its_seed_by_its_text_and_as_a_run_plan() -> None:
 LOST = FaultPlan.from_dict({"faults": [{"drop": "/no_such_topic"}, {"crash": "NOBODY", "at": 2}]}).to_yaml()
 
 
-def test_a_prepared_plan_says_what_is_not_in_the_mission() -> None:
+def test_prepared_plan_reports_names_missing_in_the_mission() -> None:
     spec = read_mission("lab")
     prepared = prepare(LOST, spec)
     assert prepared.injector.plan == plan_of(LOST, spec)
@@ -83,7 +83,7 @@ def test_a_prepared_plan_says_what_is_not_in_the_mission() -> None:
     assert prepare("seed:3", spec, flies=True).problems == ()
 
 
-def test_an_injector_serves_one_mission_after_the_other() -> None:
+def test_injector_serves_several_missions_in_turn() -> None:
     injector = FaultInjector(plan_of("seed:5:high", read_mission("lab")))
     traces = []
     for _ in range(2):
@@ -94,12 +94,12 @@ def test_an_injector_serves_one_mission_after_the_other() -> None:
 
 
 @pytest.mark.parametrize("text", ["seed:", "seed:x", "seed:3:much", "seed:-1"])
-def test_seeds_that_are_none(text: str) -> None:
+def test_invalid_seed_of_a_plan_is_refused(text: str) -> None:
     with pytest.raises(UsageError, match="seed:7"):
         plan_of(text, read_mission("lab"))
 
 
-def test_another_seed_of_the_run_draws_other_numbers() -> None:
+def test_seed_of_the_run_changes_the_draws() -> None:
     plan = FaultPlan.from_dict({"faults": [{"drop": "CFE_TIME_*", "probability": 0.5}]}).to_yaml()
     traces = {fly(RunPlan(("lab",), seconds=10, seed=seed, faults=plan)).trace for seed in (1, 1, 2)}
     assert len(traces) == 2

@@ -46,14 +46,14 @@ def test_the_clock_of_cfe_jumps(tmp_path: Path, by: int) -> None:
 
 
 @pytest.mark.parametrize("by", [5, -5])
-def test_ros_nodes_see_the_jump_and_go_on_at_their_rate(tmp_path: Path, by: int) -> None:
+def test_ros_nodes_notice_the_jump_and_continue_at_their_rate(tmp_path: Path, by: int) -> None:
     mission = fly(tmp_path, {"jump_clock": by, "at": 1.95}, startup=NODE_STARTUP, clock=CLOCK, seconds=4)
     lines = [line for line in mission.console.lines if "jump of" in line]
     assert lines[0].endswith(f"jump of {by:.1f} {by:.1f}")
     assert len(lines) <= 2
 
 
-def test_only_one_of_the_clocks(tmp_path: Path) -> None:
+def test_jump_is_limited_to_one_of_the_clocks(tmp_path: Path) -> None:
     cfe = fly(tmp_path, {"jump_clock": 5, "at": 1.95, "clock": "cfe"}, startup=NODE_STARTUP, clock=CLOCK)
     assert not any("jump of" in line for line in cfe.console.lines)
     ros = fly(tmp_path, {"jump_clock": 5, "at": 1.95, "clock": "ros"}, startup=NODE_STARTUP, clock=CLOCK)
@@ -69,14 +69,14 @@ def test_the_clock_drifts(tmp_path: Path) -> None:
     assert row(mission, "drift_clock-1")["times"] == 1
 
 
-def test_it_drifts_on_after_a_reset(tmp_path: Path) -> None:
+def test_drift_continues_after_a_reset(tmp_path: Path) -> None:
     reset = {"reset": "processor", "at": 2.5}
     usual = fly(tmp_path, reset, seconds=6)
     mission = fly(tmp_path, {"drift_clock": 1000, "after": 1, "until": 5.5}, reset, seconds=6)
     assert mission.cfe.os.get_local_time() - usual.cfe.os.get_local_time() == 3 * 10_000  # at 3, 4 and 5 s
 
 
-def test_without_tones_the_clock_flies(tmp_path: Path) -> None:
+def test_clock_enters_flywheel_without_tones(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"lose_1hz": "tone", "after": 2, "until": 12}, seconds=15)
     events = [line for line in mission.console.lines if "FLYWHEEL" in line]
     assert "Start FLYWHEEL" in events[-2]
@@ -84,7 +84,7 @@ def test_without_tones_the_clock_flies(tmp_path: Path) -> None:
     assert row(mission, "lose_1hz-1")["times"] == 10
 
 
-def test_without_the_1hz_signal_nothing_happens_each_second(tmp_path: Path) -> None:
+def test_lost_1hz_signals_are_not_processed(tmp_path: Path) -> None:
     usual = fly(tmp_path, seconds=8).cfe.time.tone.counters
     lost = fly(tmp_path, {"lose_1hz": "1hz", "count": 3, "after": 2}, seconds=8).cfe.time.tone.counters
     assert lost.local_interrupt == usual.local_interrupt - 3
@@ -94,7 +94,7 @@ def test_without_the_1hz_signal_nothing_happens_each_second(tmp_path: Path) -> N
 # -- pipes -------------------------------------------------------------------------------------------------------------
 
 
-def test_a_full_pipe_overflows_and_takes_messages_again(tmp_path: Path) -> None:
+def test_full_pipe_overflows_and_accepts_messages_again(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"fill": "TAKER_PIPE", "at": 1.9, "for": 0.4})
     assert values(mission)[:6] == [0, 1, 2, 3, 8, 9]
     assert values(mission, "OTHER")[:6] == list(range(6))
@@ -102,7 +102,7 @@ def test_a_full_pipe_overflows_and_takes_messages_again(tmp_path: Path) -> None:
     assert mission.cfe.sb.counters.pipe_overflow_error == 8
 
 
-def test_a_pipe_that_is_not_there(tmp_path: Path) -> None:
+def test_unknown_pipe_is_reported(tmp_path: Path) -> None:
     mission = fly(tmp_path, {"fill": "NO_PIPE", "at": 1.9})
     assert row(mission, "fill-1")["never"] == "the pipe NO_PIPE does not exist at 1.9 s"
 
@@ -125,7 +125,7 @@ TABLE = """
 """
 
 
-def test_a_table_image_changes_under_its_application(tmp_path: Path) -> None:
+def test_table_image_changes_while_its_application_uses_it(tmp_path: Path) -> None:
     fault = {"corrupt_table": "WORKER.Table", "at": 2, "bytes": {"7": 0xFF}}
     mission = fly(tmp_path, fault, startup=STARTUP, worker=TABLE)
     seen = told(mission, "WORKER sees")
@@ -149,7 +149,7 @@ def test_a_file_is_damaged_before_it_is_loaded(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_processor_reset_finds_the_cds_invalid(tmp_path: Path) -> None:
+def test_processor_reset_finds_the_cds_invalid(tmp_path: Path) -> None:
     reset = {"reset": "processor", "at": 2.5}
     kept = fly(tmp_path, reset, startup=STARTUP, worker=TABLE, seconds=5)
     lost = fly(tmp_path, {"corrupt_memory": "cds", "at": 2}, reset, startup=STARTUP, worker=TABLE, seconds=5)
@@ -230,7 +230,7 @@ def test_the_nth_call_fails(tmp_path: Path) -> None:
     assert len(failures(tmp_path, {"fail": "os.queue_put", "object": "WORK_QUEUE"})) == 4
 
 
-def test_every_processor_has_the_failing_call(tmp_path: Path) -> None:
+def test_each_processor_has_the_failing_call(tmp_path: Path) -> None:
     fault = {"fail": "OS_QueuePut", "app": "WORKER", "number": [1, 6]}
     reset = {"reset": "processor", "at": 2}
     mission = fly(tmp_path, fault, reset, startup=STARTUP, worker=CALLER, seconds=4)

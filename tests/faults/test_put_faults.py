@@ -27,7 +27,7 @@ def sb_events(mission: Mission) -> list[str]:
 
 
 @BOTH
-def test_a_put_into_a_pipe_fails_as_if_it_were_full(tmp_path: Path, tasks: str) -> None:
+def test_failed_put_into_a_pipe_acts_like_a_full_pipe(tmp_path: Path, tasks: str) -> None:
     mission = fly(tmp_path, INTO_TAKER | {"number": 3}, tasks=tasks)  # numbers and orders take turns
     assert numbers(mission) == [0, 2, 3, 4, 5]
     assert numbers(mission, "OTHER") == [0, 1, 2, 3, 4]
@@ -57,7 +57,7 @@ def test_another_status_is_a_write_error(tmp_path: Path, tasks: str) -> None:
     assert next(pipe for pipe in sb.pipes if pipe.name == "TAKER_PIPE").dropped == 1
 
 
-def test_each_put_counts(tmp_path: Path) -> None:
+def test_each_put_is_counted(tmp_path: Path) -> None:
     """The newest subscriber gets a message first: OTHER, then TAKER."""
     mission = fly(tmp_path, PUT | {"app": "SOURCE", "number": [1, 6]})
     assert numbers(mission, "OTHER") == [1, 2, 3, 4, 5]
@@ -65,7 +65,7 @@ def test_each_put_counts(tmp_path: Path) -> None:
     assert row(mission, "fail-1")["times"] == 2
 
 
-def test_faults_count_each_for_itself(tmp_path: Path) -> None:
+def test_faults_count_occasions_independently(tmp_path: Path) -> None:
     mission = fly(tmp_path, INTO_TAKER | {"number": 3}, INTO_TAKER | {"number": 5})
     assert numbers(mission) == [0, 3, 4, 5, 6]
     assert [row(mission, f"fail-{number}")["times"] for number in (1, 2)] == [1, 1]
@@ -86,7 +86,7 @@ def test_a_random_plan_lets_puts_into_pipes_fail() -> None:
     assert {fault.options["object"] for fault in puts} == {"P", "Q"}
 
 
-def test_events_meet_the_fault_too(tmp_path: Path) -> None:
+def test_events_about_failed_puts_fail_without_an_endless_loop(tmp_path: Path) -> None:
     """Every put fails, including the put of the event about it. This causes no endless loop."""
     mission = fly(tmp_path, PUT | {"after": 1.8})
     assert values(mission) == [0, 1, 2]
@@ -94,7 +94,7 @@ def test_events_meet_the_fault_too(tmp_path: Path) -> None:
     assert sb_events(mission)
 
 
-def test_what_never_matched(tmp_path: Path) -> None:
+def test_put_fault_that_never_matched_has_a_reason(tmp_path: Path) -> None:
     mission = fly(tmp_path, PUT | {"object": "NO_PIPE"}, PUT | {"app": "TAKER", "object": "OTHER_PIPE"})
     reasons = [each["never"] for each in mission.record.rows("faults")]
     assert reasons == ["no matching task called os.queue_put"] * 2
@@ -102,7 +102,7 @@ def test_what_never_matched(tmp_path: Path) -> None:
     assert values(mission) == values(fly(tmp_path))
 
 
-def test_it_stands_beside_other_faults_and_resets(tmp_path: Path) -> None:
+def test_put_fault_works_with_other_faults_and_resets(tmp_path: Path) -> None:
     faults = [{"duplicate": "NUMBER_TLM", "number": 2, "to": "OTHER"}, INTO_TAKER | {"number": [3, 25]}]
     mission = fly(tmp_path, *faults, {"reset": "processor", "at": 1.98}, seconds=5)
     assert numbers(mission, "OTHER", 4) == [0, 1, 1, 2]
@@ -110,12 +110,12 @@ def test_it_stands_beside_other_faults_and_resets(tmp_path: Path) -> None:
     assert len(mission.record.resets) == 1
 
 
-def test_the_same_trace_on_both_contexts(tmp_path: Path) -> None:
+def test_put_faults_give_one_trace_on_threads_and_greenlets(tmp_path: Path) -> None:
     fault = PUT | {"probability": 0.2, "status": "OS_ERROR"}
     digests = {fly(tmp_path, fault, tasks=tasks).trace.digest() for tasks in ("thread", "greenlet", "thread")}
     assert len(digests) == 1
     assert fly(tmp_path).trace.digest() not in digests
 
 
-def test_another_call_that_fails_leaves_the_bus_alone(tmp_path: Path) -> None:
+def test_fault_of_another_call_does_not_change_the_bus(tmp_path: Path) -> None:
     assert type(fly(tmp_path, {"fail": "OS_write"}).cfe.sb) is SoftwareBus

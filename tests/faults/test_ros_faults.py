@@ -60,12 +60,12 @@ def test_topics_are_struck_by_name_and_pattern(tmp_path: Path, tasks: str) -> No
     assert row(mission, "drop-1")["details"] == ["drops /numbers #3 sent by TALKER"]
 
 
-def test_only_one_node_loses_it(tmp_path: Path) -> None:
+def test_drop_for_one_node_loses_one_message(tmp_path: Path) -> None:
     mission = ros(tmp_path, {"drop": "/numbers", "number": 3, "from": "TALKER", "to": "LISTENER"})
     assert numbers(mission)[:3] == [0, 1, 3]
 
 
-def test_a_node_may_be_called_by_its_own_name(tmp_path: Path) -> None:
+def test_node_is_selected_by_its_ros_name(tmp_path: Path) -> None:
     yaml = "nodes: {TALKER: {name: talker}, LISTENER: {name: ear, namespace: /left}}"
     drop = {"drop": "/numbers", "number": 1, "from": "/talker", "to": "/left/ear"}
     crash = {"crash": "/left/ear", "at": 2.5}
@@ -118,14 +118,14 @@ def test_parts_of_fields(tmp_path: Path) -> None:
     assert said == ["[listener] joints ['long name', 'b'] (1.0, 7.5)", "[listener] pose nowhere -1.0"]
 
 
-def test_a_long_message_is_lost_as_a_whole(tmp_path: Path) -> None:
+def test_long_message_is_dropped_as_a_whole(tmp_path: Path) -> None:
     mission = ros(tmp_path, {"drop": "/images", "number": 2})
     assert images(mission)[:3] == ["[0]", "[2]", "[3]"]
     assert row(mission, "drop-1")["times"] == 1
     assert sum(topic.lost for topic in mission.ros.graph.topics.values()) == 0
 
 
-def test_or_one_segment_of_it(tmp_path: Path) -> None:
+def test_segment_of_a_long_message_is_dropped(tmp_path: Path) -> None:
     mission = ros(tmp_path, {"drop": "/images", "number": 6, "unit": "segment"})
     assert images(mission)[:3] == ["[0]", "[2]", "[3]"]
     assert mission.ros.graph.topics["/images"].lost == 1
@@ -142,17 +142,19 @@ def test_or_one_segment_of_it(tmp_path: Path) -> None:
         ({"corrupt": "/images", "bytes": {"2000": 200}}, ["[0]", "[1, 200]", "[2]", "[3]"]),
     ],
 )
-def test_what_else_happens_to_long_messages(tmp_path: Path, fault: dict[str, Any], seen: list[str]) -> None:
+def test_long_message_is_duplicated_delayed_and_reordered(
+    tmp_path: Path, fault: dict[str, Any], seen: list[str]
+) -> None:
     assert images(ros(tmp_path, fault | {"number": 2}))[:4] == seen
 
 
-def test_no_field_of_a_segment_can_be_set(tmp_path: Path) -> None:
+def test_field_of_a_segment_cannot_be_set(tmp_path: Path) -> None:
     mission = ros(tmp_path, {"corrupt": "/images", "fields": {"data": []}, "number": 2})
     assert "is sent in segments" in row(mission, "corrupt-1")["never"]
     assert images(mission)[:3] == ["[0]", "[1]", "[2]"]
 
 
-def test_a_node_of_a_launch_file_comes_back(tmp_path: Path) -> None:
+def test_crashed_node_of_a_launch_file_is_restarted(tmp_path: Path) -> None:
     (tmp_path / "beat.py").write_text(
         "#!/usr/bin/env python3\nimport rospy\nrospy.init_node('beat')\nprint('begins')\nrospy.spin()\n",
         encoding="utf-8",

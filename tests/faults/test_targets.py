@@ -10,7 +10,7 @@ from cfepy.faults import plan_of, targets
 from cfepy.mission import MissionSpec, read_mission
 
 
-def test_a_mission_is_flown_once_as_long_as_its_files_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_candidates_are_collected_again_when_files_change(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
     looked: list[MissionSpec] = []
     look_at = targets.look_at

@@ -19,12 +19,12 @@ def fired(when: When, times: range | list[int], seed: int = 0) -> list[int]:
 
 
 @pytest.mark.parametrize("probability", [0.02, 0.3, 0.5, 0.9])
-def test_a_probability_is_one(probability: float) -> None:
+def test_probability_equals_the_share_of_occasions(probability: float) -> None:
     count = len(fired(When(probability=probability), range(OCCASIONS)))
     assert abs(count - OCCASIONS * probability) <= 4 * sqrt(OCCASIONS * probability * (1 - probability))
 
 
-def test_certain_and_never() -> None:
+def test_certain_and_impossible_faults_follow_their_probability() -> None:
     assert fired(When(), range(5)) == [0, 1, 2, 3, 4]
     assert fired(When(probability=0.0), range(OCCASIONS)) == []
 
@@ -53,11 +53,11 @@ def test_windows_numbers_and_counts(when: When, times: list[int]) -> None:
     assert fired(when, range(10)) == times
 
 
-def test_a_time_waits_for_the_next_occasion() -> None:
+def test_fault_at_a_time_waits_for_the_next_occasion() -> None:
     assert fired(When(at_ns=(5, 6, 20)), [0, 4, 9, 10, 11, 30, 31]) == [9, 10, 30]
 
 
-def test_occasions_are_counted_in_and_outside_the_window() -> None:
+def test_occasions_are_counted_inside_and_outside_the_window() -> None:
     gate = Gate(When(after_ns=3, count=1), Random(0))
     assert [gate.opens(time) for time in range(6)] == [False, False, False, True, False, False]
     assert (gate.seen, gate.fired) == (6, 1)

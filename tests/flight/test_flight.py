@@ -36,7 +36,7 @@ def flight(folder: Path) -> Iterator[Flight]:
         yield flight
 
 
-def test_the_run_is_that_of_the_command(folder: Path) -> None:
+def test_run_equals_the_run_of_the_command(folder: Path) -> None:
     plan = RunPlan((str(folder),), seconds=2.0, seed=4, schedule=Schedule.parse("random:3"))
     with Flight(plan) as flight:
         flight.run_until_operational()
@@ -45,7 +45,7 @@ def test_the_run_is_that_of_the_command(folder: Path) -> None:
         assert flight.command() == f"cfepy run --for 2 --seed 4 --schedule random:3 {folder}"
 
 
-def test_what_a_test_does_is_the_same_on_both_task_contexts(folder: Path) -> None:
+def test_actions_of_a_test_give_one_trace_on_threads_and_greenlets(folder: Path) -> None:
     digests = set()
     for tasks in ("thread", "greenlet"):
         with Flight(RunPlan((str(folder),), tasks=tasks, schedule=Schedule.parse("random:1"))) as flight:
@@ -59,7 +59,7 @@ def test_what_a_test_does_is_the_same_on_both_task_contexts(folder: Path) -> Non
     assert len(digests) == 1
 
 
-def test_expectations_look_back_to_what_was_done_last(flight: Flight) -> None:
+def test_expectation_includes_events_since_the_last_action(flight: Flight) -> None:
     flight.send("CFE_ES_NOOP")
     flight.run_for(3)
     assert flight.expect_event("CFE_ES", 3, re.compile("^No-op"), within=0).type_name == "INFORMATION"
@@ -68,7 +68,7 @@ def test_expectations_look_back_to_what_was_done_last(flight: Flight) -> None:
         flight.expect_event("CFE_ES", 3, within=0.1)
 
 
-def test_what_must_not_come(flight: Flight) -> None:
+def test_unexpected_event_or_message_fails_the_expectation(flight: Flight) -> None:
     flight.expect_no_event("CFE_ES", 3, within=0.2)
     flight.send("CFE_ES_NOOP")
     with pytest.raises(ExpectationError, match="expected no event CFE_ES 3 within 1 s\ninstead: CFE_ES 3 INFORMATION"):
@@ -77,7 +77,7 @@ def test_what_must_not_come(flight: Flight) -> None:
         flight.expect_no_message("/count", data=lambda number: number > 0)
 
 
-def test_telemetry_is_told_by_its_values(flight: Flight) -> None:
+def test_telemetry_is_matched_by_its_values(flight: Flight) -> None:
     flight.send("CFE_ES_SEND_HK")
     packet = flight.expect_telemetry("CFE_ES_HK_TLM", lambda hk: hk["SysLogEntries"] > 3, RegisteredExternalApps=3)
     assert packet.sender == "CFE_ES"
@@ -111,7 +111,7 @@ def test_long_messages_go_out_in_segments(flight: Flight) -> None:
     assert flight.stdout("/big") == ["100000"]
 
 
-def test_it_goes_on_over_resets(flight: Flight) -> None:
+def test_flight_continues_after_a_reset(flight: Flight) -> None:
     flight.send("CFE_ES_RESTART", RestartType=1)
     flight.expect_event("CFE_ES", 1, within=2)
     assert len(flight.mission.record.resets) == 1
@@ -120,7 +120,7 @@ def test_it_goes_on_over_resets(flight: Flight) -> None:
     assert flight.expect_message("/count", data=900, within=0.1).data == 900
 
 
-def test_mistakes_are_told_at_once(flight: Flight) -> None:
+def test_mistakes_are_reported_at_once(flight: Flight) -> None:
     with pytest.raises(ExpectationError, match=r"unknown topic /jum \(so far\); did you mean /jump"):
         flight.publish("/jum", data=1)
     with pytest.raises(ExpectationError, match=r"/count has no subscriber at 0\.6"):
@@ -139,7 +139,7 @@ def test_mistakes_are_told_at_once(flight: Flight) -> None:
         flight.send(b"\x18\x06\xc0\x00\x00\x10\x00\x00")
 
 
-def test_a_service_that_fails_or_does_not_answer(flight: Flight, tmp_path: Path) -> None:
+def test_service_that_fails_or_does_not_answer_fails_the_expectation(flight: Flight, tmp_path: Path) -> None:
     with pytest.raises(ExpectationError, match="expected the answer of /reset within 0 s"):
         flight.call_service("/reset", within=0)
     failing = TALKER.replace('return TriggerResponse(success=True, message="from 0")', "raise ValueError('no way')")

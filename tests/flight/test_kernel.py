@@ -52,7 +52,7 @@ def cell() -> Iterator[Cell]:
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_the_stop_button(cell: Cell, tasks: str) -> None:
+def test_stop_button_interrupts_the_run(cell: Cell, tasks: str) -> None:
     cell(f"""
 import cfepy
 

@@ -61,7 +61,7 @@ def test_a_run() -> None:
     assert any(text.startswith("Console: the last 30 of ") for text in shown)
 
 
-def test_a_run_that_failed_shows_it_first(tmp_path: Path) -> None:
+def test_failed_run_shows_its_failure_first(tmp_path: Path) -> None:
     (tmp_path / "fails.py").write_text(FAILS, encoding="utf-8")
     run = cfepy.run(tmp_path / "fails.py", seconds=1, tasks="greenlet")
     page = run._repr_html_()
@@ -119,7 +119,7 @@ def test_nothing_of_a_mission_is_html(text: str) -> None:
 
 
 @pytest.mark.slow
-def test_the_notebook_of_the_documentation_shows_what_it_says(tmp_path: Path) -> None:
+def test_notebook_of_the_documentation_is_up_to_date(tmp_path: Path) -> None:
     pytest.importorskip("nbclient")
     nbformat = pytest.importorskip("nbformat")
     committed = nbformat.read(notebook.FILE, as_version=4)

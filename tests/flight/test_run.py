@@ -36,7 +36,7 @@ def test_plans() -> None:
     assert (node.command, node.words, node.seed) == (NODE, ("talker.py", "_rate:=5"), 4)
 
 
-def test_an_option_that_is_not_there() -> None:
+def test_unknown_option_is_refused() -> None:
     with pytest.raises(TypeError, match=r"unknown option 'second'; did you mean seconds\?"):
         cfepy.run("capture", second=3)  # type: ignore[call-arg]
     with pytest.raises(TypeError, match="unknown option 'schedule'"):
@@ -45,19 +45,19 @@ def test_an_option_that_is_not_there() -> None:
         cfepy.explore("capture", faults={"faults": []})
 
 
-def test_a_mission_that_is_not_there() -> None:
+def test_unknown_mission_is_refused() -> None:
     with pytest.raises(cfepy.UsageError, match="captur"):
         cfepy.run("captur")
 
 
-def test_the_run_is_that_of_the_pilot(run: cfepy.Run) -> None:
+def test_run_equals_the_run_of_the_pilot(run: cfepy.Run) -> None:
     assert run.trace == fly(RunPlan(("capture",), seconds=3, seed=3)).trace
     assert run.command() == "cfepy run --for 3 --seed 3 --tasks greenlet capture"
     assert (run.now, run.problems, run.notes) == (3, [], ())
     assert run.speed > 0
 
 
-def test_what_can_be_asked_of_it(run: cfepy.Run) -> None:
+def test_run_has_topics_apps_events_console_and_packets(run: cfepy.Run) -> None:
     rows = {row.name: row for row in run.topics}
     assert len(run.topic("/joint_states")) == len(run.messages("/joint_states"))
     assert rows["/joint_states"].sent == len(run.topic("/joint_states")) - 1, "the first one had no subscriber"
@@ -80,7 +80,7 @@ def test_values_over_time(run: cfepy.Run) -> None:
 
 
 @pytest.mark.slow
-def test_a_journal_is_replayed(run: cfepy.Run, tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_journal_is_replayed(run: cfepy.Run, tmp_path_factory: pytest.TempPathFactory) -> None:
     journal = next(tmp_path_factory.getbasetemp().glob("runs*/run.cfepy"))
     again = cfepy.replay(journal)
     assert again.trace == run.trace
@@ -107,7 +107,7 @@ def test_a_picture(run: cfepy.Run, tmp_path: Path) -> None:
         run.plot("/joint_states", "position[0]", file=tmp_path / "arm.nothing")
 
 
-def test_a_node_s_file_that_fails(tmp_path: Path) -> None:
+def test_failed_file_of_a_node_is_reported(tmp_path: Path) -> None:
     (tmp_path / "broken.py").write_text("import sys\nsys.exit(3)\n", encoding="utf-8")
     run = cfepy.run(tmp_path / "broken.py", seconds=1, tasks="greenlet")
     assert run.problems == ["BROKEN ended with exit status 3 (node /BROKEN)"]

@@ -117,13 +117,15 @@ def flying(mission: str, tasks: str) -> Iterator[cfepy.Flight]:
 
 
 @each_kind_of_task
-def test_in_the_first_thread_another_and_two_at_once(tasks: str, counter: str, usual: str) -> None:
+def test_trace_is_the_same_in_the_main_thread_another_thread_and_two_at_once(
+    tasks: str, counter: str, usual: str
+) -> None:
     assert digest(counter, tasks) == usual
     runs = [in_thread(digest, counter, tasks) for _ in range(2)]
     assert [run.result(LONGEST_S) for run in runs] == [usual] * 2
 
 
-def test_a_mission_on_threads_goes_on_in_another_thread(counter: str, usual: str) -> None:
+def test_mission_on_threads_continues_in_another_thread(counter: str, usual: str) -> None:
     def go_on() -> str:
         flight.run_until(SECONDS)
         return flight.trace
@@ -132,7 +134,7 @@ def test_a_mission_on_threads_goes_on_in_another_thread(counter: str, usual: str
         assert in_thread(go_on).result(LONGEST_S) == usual
 
 
-def test_a_mission_that_began_in_another_thread_goes_on_in_a_third(counter: str, usual: str) -> None:
+def test_mission_begun_in_another_thread_continues_in_a_third(counter: str, usual: str) -> None:
     """As with asyncio.to_thread, which takes any thread of a pool."""
     flight = in_thread(cfepy.boot, counter, seed=7).result(LONGEST_S)
     with flight:
@@ -142,7 +144,7 @@ def test_a_mission_that_began_in_another_thread_goes_on_in_a_third(counter: str,
     assert str(run.results.task_kind) == "thread tasks (begun outside of Python's main thread)"
 
 
-def test_greenlets_of_another_thread_say_so(counter: str) -> None:
+def test_greenlets_in_another_thread_are_refused(counter: str) -> None:
     with flying(counter, "greenlet") as flight:
         for touch in (lambda: flight.run_for(0.1), flight.close, lambda: flight.trace):
             with pytest.raises(RuntimeError, match="greenlets of the thread that booted it"):
@@ -154,7 +156,7 @@ def test_greenlets_of_another_thread_say_so(counter: str) -> None:
 
 
 @each_kind_of_task
-def test_inside_asyncio(tasks: str, counter: str, usual: str) -> None:
+def test_trace_is_the_same_inside_asyncio(tasks: str, counter: str, usual: str) -> None:
     async def fly() -> list[str]:
         first = digest(counter, tasks)  # in the loop itself, which stands still meanwhile
         two = await asyncio.gather(*(asyncio.to_thread(digest, counter, tasks) for _ in range(2)))
@@ -168,7 +170,7 @@ def test_inside_asyncio(tasks: str, counter: str, usual: str) -> None:
 
 @needs_fork
 @each_kind_of_task
-def test_after_a_fork(tasks: str, counter: str, usual: str) -> None:
+def test_trace_is_the_same_after_a_fork(tasks: str, counter: str, usual: str) -> None:
     digest(counter, tasks)  # so that there are threads that the child does not have
     assert in_fork(digest, counter, tasks) == usual
 
@@ -176,7 +178,7 @@ def test_after_a_fork(tasks: str, counter: str, usual: str) -> None:
 @pytest.mark.slow
 @needs_fork
 @each_kind_of_task
-def test_after_a_fork_beside_a_mission_that_flies(tasks: str, counter: str, usual: str) -> None:
+def test_trace_is_the_same_after_a_fork_during_another_mission(tasks: str, counter: str, usual: str) -> None:
     """At the moment of the fork, the other thread may be anywhere in its run."""
     over = threading.Event()
 
@@ -193,7 +195,7 @@ def test_after_a_fork_beside_a_mission_that_flies(tasks: str, counter: str, usua
 
 
 @needs_fork
-def test_a_mission_on_threads_does_not_come_along_into_a_forked_process(counter: str, usual: str) -> None:
+def test_mission_on_threads_is_refused_in_a_forked_process(counter: str, usual: str) -> None:
     with flying(counter, "thread") as flight:
         for touch in (lambda: flight.run_for(0.1), flight.close, lambda: flight.trace):
             error = in_fork(touch)
@@ -205,7 +207,7 @@ def test_a_mission_on_threads_does_not_come_along_into_a_forked_process(counter:
 
 
 @needs_fork
-def test_a_mission_on_greenlets_goes_on_in_a_forked_process(counter: str, usual: str) -> None:
+def test_mission_on_greenlets_continues_in_a_forked_process(counter: str, usual: str) -> None:
     def go_on() -> str:
         flight.run_until(SECONDS)
         return flight.trace
@@ -218,7 +220,7 @@ def test_a_mission_on_greenlets_goes_on_in_a_forked_process(counter: str, usual:
 @pytest.mark.slow
 @each_kind_of_task
 @pytest.mark.parametrize("method", multiprocessing.get_all_start_methods())
-def test_in_a_pool_of_processes(method: str, tasks: str, counter: str, usual: str) -> None:
+def test_trace_is_the_same_in_a_pool_of_processes(method: str, tasks: str, counter: str, usual: str) -> None:
     context = multiprocessing.get_context(method)
     with context.Pool(2) as pool:  # which ends by killing them
         results = pool.starmap_async(digest, [(counter, tasks)] * 4)
@@ -226,7 +228,7 @@ def test_in_a_pool_of_processes(method: str, tasks: str, counter: str, usual: st
 
 
 @pytest.mark.slow
-def test_in_a_pool_of_threads_many_at_once(counter: str, usual: str) -> None:
+def test_trace_is_the_same_in_a_pool_of_threads(counter: str, usual: str) -> None:
     with ThreadPoolExecutor(8) as pool:
         runs = [pool.submit(digest, counter, TASKS[number % 2]) for number in range(40)]
         assert {run.result(LONGEST_S) for run in runs} == {usual}

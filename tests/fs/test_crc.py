@@ -16,16 +16,16 @@ def test_known_values(data: bytes, crc: int) -> None:
 
 
 @pytest.mark.parametrize("kind", [fs.CRC_NONE, fs.CRC_8, fs.CRC_32, 99])
-def test_other_kinds_give_zero(kind: int) -> None:
+def test_other_kinds_of_crc_are_zero(kind: int) -> None:
     assert fs.calculate_crc(b"123456789", 5, kind) == 0
 
 
-def test_no_data_gives_the_crc_that_came_in() -> None:
+def test_crc_of_no_data_is_the_input_crc() -> None:
     assert fs.calculate_crc(b"", 0x1234, fs.CRC_8) == 0x1234
 
 
 @pytest.mark.parametrize("size", [511, 512, 513, 1000, 4096, 5000])
-def test_long_data_are_what_their_bytes_are_one_by_one(size: int) -> None:
+def test_crc_of_long_data_equals_the_crc_of_its_single_bytes(size: int) -> None:
     data = bytes(number * number % 251 for number in range(size))
     for before in (0, 0x1234, 0xFFFF):
         crc = before

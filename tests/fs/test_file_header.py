@@ -11,7 +11,7 @@ from cfepy.status import CfeError, UsageError
 from tests.layouts import DATA, c_structs
 
 
-def test_sizes_are_those_of_c() -> None:
+def test_header_sizes_match_c() -> None:
     assert c_structs()["CFE_FS_Header_t"].size == fs.HEADER_SIZE
     assert c_structs()["CFE_TBL_File_Hdr_t"].size == fs.TABLE_HEADER_SIZE
     offsets = {field.name: field.offset for field in c_structs()["CFE_FS_Header_t"].fields}
@@ -68,19 +68,19 @@ def test_short_and_wrong_files() -> None:
         fs.read_header(good[:63])
 
 
-def test_numbers_that_do_not_fit() -> None:
+def test_numbers_beyond_32_bits_are_refused() -> None:
     with pytest.raises(UsageError, match="32 bits"):
         FileHeader("d", subtype=1 << 32).pack()
     with pytest.raises(UsageError, match="32 bits"):
         TableHeader("t", -1).pack()
 
 
-def test_a_table_name_that_fills_its_field_loses_its_last_character() -> None:
+def test_table_name_that_fills_its_field_loses_its_last_character() -> None:
     """NASA's puts a NUL there before it looks the name up (CFE_TBL_DecodeInputData)."""
     header = bytes(12) + b"T" * 40
     assert fs.read_table_header(header, 0).table_name == "T" * 39
 
 
-def test_bytes_of_a_header_that_are_not_utf8_stay_as_they_are() -> None:
+def test_header_bytes_that_are_not_utf8_are_kept() -> None:
     header = bytes(12) + b"A.\xff\xe9".ljust(40, b"\0")
     assert to_bytes(fs.read_table_header(header, 0).table_name) == b"A.\xff\xe9"

@@ -43,7 +43,7 @@ def test_explicit_defaults(arguments: tuple[str, str | None, str | None, str | N
 
 
 @pytest.mark.parametrize("name", ["", "/", "/cf/", "/cf/.so", ".."])
-def test_no_name(name: str) -> None:
+def test_empty_name_is_refused(name: str) -> None:
     with pytest.raises(CfeError) as caught:
         fs.parse_input_file_name(name, FileCategory.DYNAMIC_MODULE)
     assert caught.value.status == status.CFE_FS_INVALID_PATH

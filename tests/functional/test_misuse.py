@@ -68,7 +68,7 @@ def test_numbers_in_file_headers_have_32_bits(cfe: Cfe) -> None:
 
 
 @pytest.mark.parametrize(("said", "told"), [(0, 0), (-5, -5), (7, 7), (1 << 40, 0), (-(1 << 40) - 5, -5)])
-def test_table_validation_is_told_to_the_ground(cfe: Cfe, said: int, told: int) -> None:
+def test_status_of_a_table_validation_reaches_the_ground(cfe: Cfe, said: int, told: int) -> None:
     assert validation_told(cfe, said) == told
 
 
@@ -122,22 +122,22 @@ def test_table_notification_is_sent_or_reported(cfe: Cfe) -> None:
     assert notification(CMD_MID, 5, 0) is not None, "Table Services are still there"
 
 
-def test_a_cds_block_is_refused_before_the_application_has_events(cfe: Cfe) -> None:
+def test_registration_of_a_cds_block_is_refused_before_events_are_available(cfe: Cfe) -> None:
     assert status_of(cfe.evs.register, (), 99) == CFE_EVS_UNKNOWN_FILTER
     assert status_of(cfe.es.register_cds, 0, "Block") == CFE_ES_CDS_INVALID_SIZE
 
 
-def test_a_header_that_cannot_be_stamped_is_logged(cfe: Cfe) -> None:
+def test_failed_timestamp_of_a_header_is_logged(cfe: Cfe) -> None:
     assert status_of(cfe.fs.set_timestamp, 0, (1, 2)) == CFE_STATUS_EXTERNAL_RESOURCE_FAIL
     assert cfe.es.syslog.read().endswith(b" CFE_FS_SetTimestamp: Failed to lseek time fields (Status=-16)\n")
 
 
-def test_statuses_of_osal_and_psp_are_told_in_decimals(cfe: Cfe) -> None:
+def test_statuses_of_osal_and_psp_are_decimal_texts(cfe: Cfe) -> None:
     assert [cfe.os.status_to_string(each) for each in (0, -35, 0xCA000003)] == ["0", "-35", "-905969661"]
     assert cfe.psp.status_to_string(-4) == "-4"
 
 
-def test_what_is_wrong_with_a_table_is_logged(cfe: Cfe) -> None:
+def test_invalid_table_registration_is_logged(cfe: Cfe) -> None:
     log = cfe.es.syslog
     for name, size, options, line in (
         ("", 4, 0, "CFE_TBL_TxnCheckConfig: bad table name: '' (0xffffffffcc000002)"),
@@ -151,17 +151,17 @@ def test_what_is_wrong_with_a_table_is_logged(cfe: Cfe) -> None:
     assert log.read().endswith(b" existing table ('CFE_TEST.T') with different size(8!=4)\n")
 
 
-def test_a_notification_that_is_refused_is_logged_with_its_status(cfe: Cfe) -> None:
+def test_refused_notification_is_logged_with_its_status(cfe: Cfe) -> None:
     status_of(cfe.tbl.notify_by_message, 0x1B0009, CMD_MID, 1, 2)
     assert cfe.es.syslog.read().endswith(b" Handle=1769481 status code=ffffffffcc000001\n")
 
 
-def test_a_long_cds_name_is_cut_in_the_log(cfe: Cfe) -> None:
+def test_long_cds_name_is_cut_in_the_log(cfe: Cfe) -> None:
     status_of(cfe.es.register_cds, 4, "N" * 45)
     assert b"CDS Name (" + b"N" * 39 + b") is" in cfe.es.syslog.read()
 
 
-def test_a_critical_table_without_an_image_cannot_be_kept(cfe: Cfe) -> None:
+def test_critical_table_without_an_image_cannot_be_stored(cfe: Cfe) -> None:
     handle = cfe.tbl.register("T", 4, OPT_CRITICAL)
     cfe.tbl.modified(handle)
     text = b"Unable to update Critical Table 'CFE_TEST.T' in CDS (Err=0xCC000005)\n"

@@ -35,5 +35,5 @@ def test_more_damaged_inputs_are_read_or_refused(name: str, tmp_path: Path) -> N
     assert [each.what for each in failures(name, MORE * SLOW.get(name, USUAL), 2, tmp_path)] == []
 
 
-def test_there_are_kinds_enough() -> None:
+def test_fuzzing_has_at_least_20_kinds() -> None:
     assert len(KINDS) >= 20

@@ -123,7 +123,7 @@ def read(bag: Path) -> list[tuple[str, bytes, int]]:
         return [(each.topic, each.data, each.at_ns // 1_000_000) for each in reader.messages()]
 
 
-def test_all_that_is_published_is_recorded(tmp_path: Path) -> None:
+def test_all_published_messages_are_recorded(tmp_path: Path) -> None:
     bag = tmp_path / "run.bag"
     fly(tmp_path, {"HEARS": HEARS, "TALKS": TALKS}, str(bag))
     found = read(bag)
@@ -141,7 +141,7 @@ def test_all_that_is_published_is_recorded(tmp_path: Path) -> None:
     assert headers["/alone"]["type"] == b"std_msgs/String"
 
 
-def test_the_run_is_the_same_and_so_are_the_bytes(tmp_path: Path) -> None:
+def test_recording_does_not_change_the_run_and_bags_are_equal(tmp_path: Path) -> None:
     scripts = {"HEARS": HEARS, "TALKS": TALKS}
     bags = [tmp_path / f"{number}.bag" for number in range(3)]
     digests = [
@@ -153,7 +153,7 @@ def test_the_run_is_the_same_and_so_are_the_bytes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("chunk", [1000, 1_000_000], ids=["on the way", "at the end"])
-def test_a_full_disk_is_told_at_the_end_and_the_run_is_the_same(
+def test_full_disk_is_reported_at_the_end_and_does_not_change_the_run(
     chunk: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("cfepy.ground.bag.CHUNK_BYTES", chunk)
@@ -164,7 +164,7 @@ def test_a_full_disk_is_told_at_the_end_and_the_run_is_the_same(
     assert flown == [without]
 
 
-def test_only_some_topics(tmp_path: Path) -> None:
+def test_selected_topics_are_recorded(tmp_path: Path) -> None:
     bag = tmp_path / "run.bag"
     fly(tmp_path, {"HEARS": HEARS, "TALKS": TALKS}, str(bag), patterns=["/alo*", "/latched"])
     assert {topic for topic, _, _ in read(bag)} == {"/alone", "/latched"}
@@ -192,7 +192,7 @@ def test_packets_of_applications_are_recorded(tmp_path: Path) -> None:
     assert headers["/raw"]["type"] == b"std_msgs/UInt8MultiArray"
 
 
-def test_files_that_cannot_be(tmp_path: Path) -> None:
+def test_unusable_bag_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="could not be written"):
         BagRecorder(str(tmp_path / "no" / "such.bag"))
     with pytest.raises(UsageError, match="could not be read"):
@@ -231,7 +231,7 @@ def test_a_broken_bag_is_read_or_named(whole: Path, changes: list[tuple[float, i
         read(broken)
 
 
-def test_what_outside_nodes_publish_is_recorded_with_their_names(tmp_path: Path) -> None:
+def test_messages_of_external_nodes_are_recorded_with_their_names(tmp_path: Path) -> None:
     """Two publishers outside of one topic: each message has the header of its own."""
     (tmp_path / "hears.py").write_text(textwrap.dedent(HEARS), encoding="utf-8")
     (tmp_path / "startup.scr").write_text(

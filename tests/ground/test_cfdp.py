@@ -41,7 +41,7 @@ class Sky:
 
 
 @pytest.mark.parametrize("cfdp_class", [CLASS_1, CLASS_2])
-def test_a_file_arrives(tmp_path: Path, cfdp_class: int) -> None:
+def test_file_arrives(tmp_path: Path, cfdp_class: int) -> None:
     sky = Sky(tmp_path)
     (tmp_path / "ground" / "a.dat").write_bytes(DATA)
     sky.ground.put("a.dat", "b.dat", cfdp_class)
@@ -50,7 +50,7 @@ def test_a_file_arrives(tmp_path: Path, cfdp_class: int) -> None:
     assert sky.craft.transfers == [Transfer("down", "b.dat", 0, True)]
 
 
-def test_what_is_lost_comes_again_in_class_2(tmp_path: Path) -> None:
+def test_lost_pdus_are_sent_again_in_class_2(tmp_path: Path) -> None:
     sky = Sky(tmp_path, lost=(3, 5))
     (tmp_path / "ground" / "a.dat").write_bytes(DATA)
     sky.ground.put("a.dat", "b.dat", CLASS_2)
@@ -59,7 +59,7 @@ def test_what_is_lost_comes_again_in_class_2(tmp_path: Path) -> None:
     assert sky.now < LIMIT_S
 
 
-def test_a_pdu_in_a_packet() -> None:
+def test_pdu_is_sent_in_a_packet() -> None:
     assert pdu_in(bytes(telemetry(CF_OUT_MID, b"pdu"))) == b"pdu"
     assert pdu_in(bytes(telemetry(0x800, b"pdu"))) is None
     assert uplinked(b"pdu")[8:] == b"pdu"

@@ -67,7 +67,7 @@ def mission(tmp_path: Path) -> str:
     return write_mission(tmp_path, NODES, own=APP, talker=TALKER, mission_yaml=yaml)
 
 
-def test_the_services_and_the_missions_apps_are_in_it(mission: str) -> None:
+def test_dictionary_has_services_and_apps_of_the_mission(mission: str) -> None:
     found = dictionary_of(read_mission(mission))
     assert {"CFE_ES_NOOP", "CFE_EVS_NOOP", "CFE_SB_NOOP", "CFE_TBL_NOOP", "CFE_TIME_NOOP", "OWN_SET"} <= set(
         found.commands
@@ -77,7 +77,7 @@ def test_the_services_and_the_missions_apps_are_in_it(mission: str) -> None:
     assert found.problems == []
 
 
-def test_without_a_mission_everything_that_cfepy_brings_along_is_in_it() -> None:
+def test_dictionary_without_a_mission_has_all_shipped_declarations() -> None:
     found = dictionary_of(None)
     assert {"CFE_ES_NOOP", "SAMPLE_APP_NOOP", "TO_LAB_OUTPUT_ENABLE"} <= set(found.commands)
     assert found.problems == []
@@ -91,19 +91,19 @@ def test_names_and_ids_are_unique() -> None:
     assert len(set(ids)) == len(ids)
 
 
-def test_an_app_that_declares_nothing_is_not_executed(tmp_path: Path) -> None:
+def test_app_without_declarations_is_not_executed(tmp_path: Path) -> None:
     startup = "CFE_APP, own, Main, OWN, 50, 8192, 0, 0;\n!\n"
     source = "raise RuntimeError('executed')\ndef Main(cfe):\n    pass\n"
     assert dictionary_of(read_mission(write_mission(tmp_path, startup, own=source))).problems == []
 
 
-def test_a_number_of_that_name_declares_nothing(tmp_path: Path) -> None:
+def test_number_named_like_a_declaration_declares_nothing(tmp_path: Path) -> None:
     startup = "CFE_APP, own, Main, OWN, 50, 8192, 0, 0;\n!\n"
     source = "COMMANDS = 6\ndef Main(cfe):\n    pass\n"
     assert dictionary_of(read_mission(write_mission(tmp_path, startup, own=source))).problems == []
 
 
-def test_an_app_that_cannot_be_executed_is_a_problem_that_unknown_names_tell_of(tmp_path: Path) -> None:
+def test_app_that_fails_is_a_problem_named_in_errors_about_unknown_names(tmp_path: Path) -> None:
     startup = "CFE_APP, own, Main, OWN, 50, 8192, 0, 0;\n!\n"
     source = "COMMANDS = (undefined,)\ndef Main(cfe):\n    pass\n"
     found = dictionary_of(read_mission(write_mission(tmp_path, startup, own=source)))
@@ -112,7 +112,7 @@ def test_an_app_that_cannot_be_executed_is_a_problem_that_unknown_names_tell_of(
         found.command("OWN_SET")
 
 
-def test_modules_of_a_mission_do_not_stay_in_the_process(mission: str) -> None:
+def test_modules_of_a_mission_are_removed_from_the_process(mission: str) -> None:
     import sys
 
     before = set(sys.modules)
@@ -128,7 +128,7 @@ def small() -> Dictionary:
 
 
 @pytest.mark.parametrize("name", ["APP_SETT", "app_sett", "APP_ST"])
-def test_an_unknown_name_comes_with_those_that_are_like_it(small: Dictionary, name: str) -> None:
+def test_unknown_name_suggests_similar_names(small: Dictionary, name: str) -> None:
     with pytest.raises(UsageError) as error:
         small.command(name)
     assert str(error.value) == f"unknown command {name}; did you mean APP_SET?"
@@ -154,7 +154,7 @@ def test_telemetry_by_name_and_by_number(small: Dictionary) -> None:
         small.telemetry_of("APP_HK")
 
 
-def test_packets_are_read_by_what_is_in_them(small: Dictionary) -> None:
+def test_packets_are_decoded_by_their_headers(small: Dictionary) -> None:
     decoded = small.decode(SET.packet(Value=5))
     assert (decoded.name, decoded.values, decoded.time_s, decoded.problem) == ("APP_SET", {"Value": 5}, None, "")
     packet = telemetry(0x0883, HK.payload.pack(Count=9))
@@ -163,7 +163,7 @@ def test_packets_are_read_by_what_is_in_them(small: Dictionary) -> None:
     assert (decoded.name, decoded.values, decoded.time_s) == ("APP_HK_TLM", {"Count": 9}, 2.5)
 
 
-def test_packets_that_cannot_be_read_say_why(small: Dictionary) -> None:
+def test_undecodable_packets_have_a_reason(small: Dictionary) -> None:
     assert small.decode(bytes(command(0x1882, 4)))[0] == "0x1882/4"
     assert small.decode(bytes(command(0x1882, 4))).problem == "its layout is not known"
     short = small.decode(bytes(telemetry(0x0883, b"x")))
@@ -172,7 +172,7 @@ def test_packets_that_cannot_be_read_say_why(small: Dictionary) -> None:
     assert small.decode(bytes(telemetry(0x0883))[:9]).problem == "9 bytes are too few for a header of 16"
 
 
-def test_topics_are_read_when_their_type_is_known(mission: str) -> None:
+def test_topics_are_decoded_when_their_type_is_known(mission: str) -> None:
     spec = read_mission(mission)
     found, seen = dictionary_of(spec), list[Seen]()
     watch = PacketWatch(seen.append, lambda each: each == 0x0950)
@@ -193,7 +193,7 @@ def test_a_survey_finds_types_and_ids(mission: str, tmp_path: Path) -> None:
     assert topic_id(spec, "/rosout") == found["/rosout"].msg_id
 
 
-def test_what_is_no_whole_message_of_a_topic_is_refused() -> None:
+def test_incomplete_message_of_a_topic_is_refused() -> None:
     topic = Topic("/count", 0x0950, "std_msgs/UInt32")
     packet = telemetry(0x0950, bytes([1, 0, 0, 0]))
     assert topic.read(bytes(packet)) == {"data": 1}
@@ -213,7 +213,7 @@ def test_every_command_can_be_written_as_text(declared: Command) -> None:
     assert packet_of(declared, words) == declared.packet(values)
 
 
-def test_a_packet_of_another_version_is_not_read() -> None:
+def test_packet_of_another_version_is_not_decoded() -> None:
     dictionary = dictionary_of(None)
     for head, size in ((0xE8, 16), (0x78, 8)):
         decoded = dictionary.decode(bytes([head, 0]) + bytes(size))
@@ -229,7 +229,7 @@ def test_shipped_apps_declare_their_tables() -> None:
     assert all(kind.file.startswith("/cf/") and kind.file.endswith(".tbl") for kind in known.values() if kind.file)
 
 
-def test_a_missions_own_apps_come_first(tmp_path: Path) -> None:
+def test_own_apps_of_a_mission_have_precedence(tmp_path: Path) -> None:
     mission = write_mission(
         tmp_path,
         "CFE_APP, own, Main, OWN, 50, 8192, 0, 0;\nCFE_APP, other, Main, OTHER, 50, 8192, 0, 0;\n!\n",
@@ -241,7 +241,7 @@ def test_a_missions_own_apps_come_first(tmp_path: Path) -> None:
     assert known["SAMPLE_APP.ExampleTable"].rows == 7
 
 
-def test_each_file_is_asked_once_and_leaves_nothing_behind(tmp_path: Path) -> None:
+def test_each_file_is_executed_once_and_its_modules_removed(tmp_path: Path) -> None:
     entries = "".join(f"CFE_APP, own, Main, OWN{number}, 50, 8192, 0, 0;\n" for number in range(3))
     mission = write_mission(tmp_path, entries + "!\n", own=TABLES.format(name="OWN.Table", rows=2))
     before = set(sys.modules)
@@ -250,7 +250,7 @@ def test_each_file_is_asked_once_and_leaves_nothing_behind(tmp_path: Path) -> No
     assert not {name for name in set(sys.modules) - before if name.startswith("cfepy_app_")}
 
 
-def test_broken_apps_are_named_and_the_others_found(tmp_path: Path) -> None:
+def test_broken_apps_are_reported_and_others_found(tmp_path: Path) -> None:
     mission = write_mission(
         tmp_path,
         "CFE_APP, bad, Main, BAD, 50, 8192, 0, 0;\nCFE_APP, ends, Main, ENDS, 50, 8192, 0, 0;\n"
@@ -268,7 +268,7 @@ def test_broken_apps_are_named_and_the_others_found(tmp_path: Path) -> None:
     ]
 
 
-def test_nodes_and_apps_that_declare_nothing_are_not_executed(tmp_path: Path) -> None:
+def test_nodes_and_apps_without_declarations_are_not_executed(tmp_path: Path) -> None:
     mission = write_mission(
         tmp_path,
         "CFE_APP, node.py, __main__, NODE, 50, 8192, 0, 0;\nCFE_APP, plain, Main, PLAIN, 50, 8192, 0, 0;\n!\n",

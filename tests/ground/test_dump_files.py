@@ -103,7 +103,7 @@ def test_bus_files() -> None:
     assert shown(golden("cfe_sb_msgmap.dat"), 1) == ["0x1809", "1"]
 
 
-def test_a_cut_file_gives_its_whole_records_and_says_so() -> None:
+def test_truncated_file_gives_its_complete_records_and_a_problem() -> None:
     dump = read_dump((DATA / "cfe_sb_pipe.dat").read_bytes()[:-1], "x")
     assert len(dump.records) == 10
     assert dump.problem == "is truncated: record 10 has 59 of 60 bytes"
@@ -149,7 +149,7 @@ def test_performance_data() -> None:
     assert (found[5].open, found[7].unpaired, dump.problem) == ([200_000], 1, "")
 
 
-def test_an_entry_inside_another_of_the_same_id() -> None:
+def test_entry_inside_another_of_the_same_id_is_timed() -> None:
     dump = read_dump(perf_file((5, 0, 0), (5, 0, 10), (5 | EXIT_BIT, 0, 15), (5 | EXIT_BIT, 0, 40)), "perf")
     assert timings(dump.records)[5].taken_us == [5_000, 40_000]
 
@@ -163,11 +163,11 @@ def test_an_entry_inside_another_of_the_same_id() -> None:
         (perf_file(endian=1), "big-endian"),
     ],
 )
-def test_bad_performance_data(data: bytes, words: str) -> None:
+def test_invalid_performance_data_is_reported(data: bytes, words: str) -> None:
     assert words in read_dump(data, "perf").problem
 
 
-def test_a_timer_without_rollover_counts_whole_words() -> None:
+def test_timer_without_rollover_counts_whole_words() -> None:
     head = PERF_METADATA.pack(TimerTicksPerSecond=1 << 31, DataCount=1)
     body = head + struct.pack("<III", 1, 2, 1 << 31)
     dump = read_dump(FileHeader("p", SUBTYPE_ES_PERFDATA).pack() + body, "perf")

@@ -50,12 +50,12 @@ def dumps(tmp_path_factory: pytest.TempPathFactory) -> dict[str, DumpFile]:
     return {name: read_dump(files[name], name) for name in COMMANDS}
 
 
-def test_all_are_whole(dumps: dict[str, DumpFile]) -> None:
+def test_dump_files_are_complete(dumps: dict[str, DumpFile]) -> None:
     assert {name: dump.problem for name, dump in dumps.items()} == dict.fromkeys(COMMANDS, "")
     assert len({dump.kind for dump in dumps.values()}) == len(COMMANDS)
 
 
-def test_what_is_in_them(dumps: dict[str, DumpFile]) -> None:
+def test_dump_files_have_the_expected_records(dumps: dict[str, DumpFile]) -> None:
     assert dumps["events"].records[0]["Message"].startswith("cFE ES Initialized: ")
     assert [row["AppName"] for row in dumps["event_apps"].records][-1] == "SAMPLE_APP"
     assert [row["Name"] for row in dumps["apps"].records if row["Type"] == 2] == ["SAMPLE_APP"]

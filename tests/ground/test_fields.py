@@ -42,7 +42,7 @@ def test_fields_of_packets_and_items_of_arrays(path: str, value: object) -> None
 
 
 @pytest.mark.parametrize("path", ["nose", "pose.position.x.y", "pose[0]", "header.frame_id[0]", "pose position", "a[]"])
-def test_what_is_not_there(path: str) -> None:
+def test_missing_field_is_an_error(path: str) -> None:
     with pytest.raises(LookupError):
         value_at(a_pose(), steps_of(path))
     with pytest.raises(LookupError):

@@ -59,26 +59,26 @@ IDLE (application)
 """
 
 
-def test_what_is_of_interest_is_told() -> None:
+def test_text_shows_the_nodes_of_interest() -> None:
     assert graph_text(GRAPH.of_interest()) == TEXT
 
 
 @pytest.mark.parametrize("width", [40, 60])
-def test_lines_fit_and_what_is_in_brackets_stays_together(width: int) -> None:
+def test_lines_fit_and_brackets_are_not_split(width: int) -> None:
     text = graph_text(GRAPH.of_interest(), width)
     assert max(map(len, text.splitlines())) <= width
     assert "(nav_msgs/Odometry, 50.0 Hz)" in text
     assert text.split() == TEXT.split()
 
 
-def test_everything_has_each_service_of_cfe_and_the_logs() -> None:
+def test_complete_graph_has_each_service_of_cfe_and_the_logs() -> None:
     text = graph_text(GRAPH)
     assert "CFE_TIME (the core)\n  sends\n    0x0805 CFE_TIME_HK_TLM -> HK\n    0x1810 CFE_TIME_TONE_CMD" in text
     assert "0x0900 /rosout -> nobody" in text
     assert "offers the service /base/get_loggers" in text
 
 
-def test_graphviz_gets_quoted_names() -> None:
+def test_names_are_quoted_for_graphviz() -> None:
     dot = graph_dot(GRAPH.of_interest())
     assert dot.startswith('digraph "rover" {\n')
     assert '"0x0901" [shape=note, label="/odom<1>\\n0x0901\\nnav_msgs/Odometry"];' in dot
@@ -86,7 +86,7 @@ def test_graphviz_gets_quoted_names() -> None:
     assert '"0x0901" -> "HK" [label="HK_PIPE\\ndepth 40, limit 4"];' in dot
 
 
-def test_the_drawing_has_all_names_and_its_boxes_have_room() -> None:
+def test_drawing_has_all_names_in_boxes_with_room() -> None:
     root = ElementTree.fromstring(graph_svg(GRAPH.of_interest()))
     texts = ["".join(each.itertext()) for each in root.iter(f"{SVG}text")]
     for name in ("rover", "HK", "cFE", "/base_controller", "HK_PIPE", "HK_CMD", "0x0901", "action /drive"):
@@ -103,17 +103,17 @@ def test_the_drawing_has_all_names_and_its_boxes_have_room() -> None:
         assert boxes[-1][0] + boxes[-1][1] < float(root.attrib["height"])
 
 
-def test_messages_of_the_same_sender_and_taker_share_a_box() -> None:
+def test_messages_with_the_same_sender_and_receiver_share_a_box() -> None:
     root = ElementTree.fromstring(graph_svg(GRAPH.of_interest()))
     lines = [each for each in root.iter(f"{SVG}path") if each.get("class") == "line"]
     assert len(lines) == 2 + 3  # cFE and /base_controller to two boxes; these and HK_CMD to HK
 
 
-def test_the_same_graph_gives_the_same_drawing() -> None:
+def test_equal_graphs_give_equal_drawings() -> None:
     assert graph_svg(GRAPH) == graph_svg(GRAPH)
 
 
-def test_an_empty_graph_can_be_shown() -> None:
+def test_empty_graph_can_be_shown() -> None:
     empty = MissionGraph("none", (), (), ())
     assert graph_text(empty) == "none: 0 nodes, 0 applications, 0 messages, 0 pipes\n"
     assert graph_svg(empty).startswith("<svg ")

@@ -27,7 +27,7 @@ def test_the_commands_of_the_page(part: str, tmp_path: Path) -> None:
     not (FOLDER / "Subsystems/cmdUtil/cmdUtil").exists(),
     reason=f"{GROUND_SYSTEM} names no folder with NASA's cFS-GroundSystem and its cmdUtil",
 )
-def test_nasas_command_tool_sends_what_cfepy_sends(tmp_path: Path) -> None:
+def test_nasas_command_tool_sends_the_same_packets_as_cfepy(tmp_path: Path) -> None:
     said = run_in_own_network("tests.ground.page_flight", "ground_system", FOLDER, cwd=tmp_path)
     assert [bytes.fromhex(packet) for packet in re.findall(r"^packet (\w+)$", said, re.MULTILINE)] == [
         bytes(OUTPUT_ENABLE.packet(dest_IP="127.0.0.1")),

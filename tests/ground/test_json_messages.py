@@ -36,7 +36,7 @@ def test_arrays() -> None:
     assert [each.pose.position.x for each in path.poses] == [1.0, 0.0]
 
 
-def test_not_a_number_is_null() -> None:
+def test_not_a_number_becomes_null() -> None:
     assert math.isnan(made("std_msgs/Float64", {"data": None}).data)
 
 
@@ -59,6 +59,6 @@ def test_not_a_number_is_null() -> None:
         ("std_msgs/Header", {"stamp": {"sec": "1"}}, "is not like"),
     ],
 )
-def test_what_does_not_fit_is_told_with_its_path(kind: str, value: Any, why: str) -> None:
+def test_invalid_value_is_reported_with_its_path(kind: str, value: Any, why: str) -> None:
     with pytest.raises(ValueError, match=why):
         message_from_json(message_class, kind, value)

@@ -35,14 +35,14 @@ def test_up_and_down() -> None:
         assert ground.received(port=1) == []
 
 
-def test_nobody_listens_before_the_boot_nor_elsewhere() -> None:
+def test_packet_is_lost_before_the_boot_and_at_an_unused_port() -> None:
     with mission() as flight, GroundLink(flight) as ground:
         assert not ground.send(ENABLE)
         flight.run_for(2)
         assert not ground.send(ENABLE, port=1233)
 
 
-def test_a_full_socket_takes_no_more() -> None:
+def test_full_socket_drops_packets() -> None:
     with mission() as flight, GroundLink(flight) as ground:
         flight.run_for(2)
         taken = [ground.send(bytes(700)) for _ in range(300)]
@@ -50,7 +50,7 @@ def test_a_full_socket_takes_no_more() -> None:
         assert taken == sorted(taken, reverse=True)
 
 
-def test_a_callback_gets_each_datagram_at_once() -> None:
+def test_callback_gets_each_datagram_at_once() -> None:
     seen: list[Datagram] = []
     with mission() as flight, GroundLink(flight, seen.append) as ground:
         flight.run_for(2)
@@ -60,7 +60,7 @@ def test_a_callback_gets_each_datagram_at_once() -> None:
         assert ground.received() == []
 
 
-def test_the_link_outlives_a_reset() -> None:
+def test_link_survives_a_reset() -> None:
     with mission() as flight, GroundLink(flight) as ground:
         flight.run_for(2)
         ground.send(PROCESSOR_RESET)
@@ -72,7 +72,7 @@ def test_the_link_outlives_a_reset() -> None:
 
 
 @pytest.mark.parametrize("step", [0.5, 0.25])
-def test_the_same_input_at_the_same_instants_is_the_same_run(step: float) -> None:
+def test_same_input_at_the_same_times_gives_the_same_run(step: float) -> None:
     runs = []
     for tasks in ("thread", "greenlet"):
         with mission(tasks) as flight, GroundLink(flight) as ground:

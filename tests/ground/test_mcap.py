@@ -41,7 +41,7 @@ def peer(file: Path) -> Iterator[tuple[Any, Any, Any]]:
         yield from make_reader(stream, validate_crcs=True).iter_messages(log_time_order=False)
 
 
-def test_the_topics_are_those_of_the_bag(runs: Path) -> None:
+def test_topics_equal_the_topics_of_the_bag(runs: Path) -> None:
     assert is_bag(str(runs / "run.mcap"))
     both = []
     for name in ("run.bag", "run.mcap"):
@@ -53,7 +53,7 @@ def test_the_topics_are_those_of_the_bag(runs: Path) -> None:
     assert len(both[0]) > 10
 
 
-def test_the_library_mcap_reads_the_same(runs: Path) -> None:
+def test_mcap_library_reads_the_same_messages(runs: Path) -> None:
     found = [
         (channel.topic, message.data, message.log_time)
         for _, channel, message in peer(runs / "run.mcap")
@@ -63,11 +63,11 @@ def test_the_library_mcap_reads_the_same(runs: Path) -> None:
         assert sorted(found) == sorted((each.topic, each.data, each.stamp_ns) for each in reader.messages())
 
 
-def test_the_same_run_gives_the_same_bytes(runs: Path) -> None:
+def test_equal_runs_give_equal_files(runs: Path) -> None:
     assert (runs / "run.mcap").read_bytes() == (runs / "again.mcap").read_bytes()
 
 
-def test_packets_are_json_that_their_schema_describes(runs: Path) -> None:
+def test_packets_are_json_that_matches_their_schema(runs: Path) -> None:
     seen = set()
     for schema, channel, message in peer(runs / "run.mcap"):
         if channel.message_encoding == "json":
@@ -83,7 +83,7 @@ def test_packets_are_json_that_their_schema_describes(runs: Path) -> None:
     assert {"/cfe/CFE_EVS_LONG_EVENT_MSG", "/cfe/CFE_TIME_TONE_CMD", "/cfe/events"} <= seen
 
 
-def test_events_are_what_foxglove_takes_for_a_log(runs: Path) -> None:
+def test_events_have_the_schema_of_a_foxglove_log(runs: Path) -> None:
     logs = [json.loads(message.data) for schema, _, message in peer(runs / "run.mcap") if schema.name == "foxglove.Log"]
     assert logs[0]["name"] == "CFE_ES"
     assert logs[0]["line"] == 1
@@ -92,7 +92,7 @@ def test_events_are_what_foxglove_takes_for_a_log(runs: Path) -> None:
     assert logs[0]["timestamp"]["nsec"] < SECOND
 
 
-def test_only_some_channels(tmp_path: Path) -> None:
+def test_selected_channels_are_recorded(tmp_path: Path) -> None:
     file = tmp_path / "run.mcap"
     fly(tmp_path, SCRIPTS, str(file), patterns=["/alone", "/cfe/CFE_TIME_*"])
     topics = {channel.topic for _, channel, _ in peer(file)}
@@ -101,14 +101,14 @@ def test_only_some_channels(tmp_path: Path) -> None:
     assert len(topics) > 1
 
 
-def test_before_there_is_a_time_nothing_is_recorded(tmp_path: Path) -> None:
+def test_nothing_is_recorded_before_the_first_time(tmp_path: Path) -> None:
     file = tmp_path / "run.mcap"
     fly(tmp_path, {"CLOCK": CLOCK}, str(file), params={"use_sim_time": True})
     times = [message.log_time for _, _, message in peer(file)]
     assert min(times) == 700 * SECOND
 
 
-def test_what_was_flushed_is_there_when_a_run_is_killed(tmp_path: Path) -> None:
+def test_flushed_messages_are_in_the_file_of_a_killed_run(tmp_path: Path) -> None:
     """A killed process leaves everything that was written before the digest was taken."""
     file = tmp_path / "run.mcap"
     left: list[bytes] = []
@@ -119,12 +119,12 @@ def test_what_was_flushed_is_there_when_a_run_is_killed(tmp_path: Path) -> None:
         BagReader(str(tmp_path / "killed.mcap"))
 
 
-def test_a_full_disk_is_told_at_the_end(tmp_path: Path) -> None:
+def test_full_disk_is_reported_at_the_end(tmp_path: Path) -> None:
     with room_for(20_000), pytest.raises(UsageError, match="--bag: could not be written: "):
         fly(tmp_path, SCRIPTS, str(tmp_path / "run.mcap"))
 
 
-def test_the_library_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_mcap_library_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "mcap", None)
     with pytest.raises(UsageError, match="pip install 'cfepy\\[mcap\\]'"):
         McapRecorder(str(tmp_path / "run.mcap"))

@@ -17,7 +17,7 @@ MODES = Layout("Modes", [("Mode", ValueNames("u8", OFF=0, ON=1)), ("Mask", Value
 XTCE = f"{{{NAMESPACE}}}"
 
 
-def test_a_layout_takes_names_and_gives_numbers() -> None:
+def test_layout_accepts_names_and_returns_numbers() -> None:
     assert (
         MODES.unpack(MODES.pack(Mode="ON", Mask="a+B"))
         == {"Mode": 1, "Mask": 3}
@@ -54,7 +54,7 @@ def test_values_are_shown_by_their_names(values: dict[str, int], line: str) -> N
         ("CFE_TBL_VALIDATE", "ActiveTableFlag=ACTIVE", "ActiveTableFlag=1"),
     ],
 )
-def test_commands_take_names(name: str, named: str, number: str) -> None:
+def test_commands_accept_names(name: str, named: str, number: str) -> None:
     command = dictionary_of(None).command(name)
     assert packet_of(command, [named]) == packet_of(command, [number])
     path, _, value = named.partition("=")
@@ -62,7 +62,7 @@ def test_commands_take_names(name: str, named: str, number: str) -> None:
         packet_of(command, [f"{path}={value.split('+')[0]}X"])
 
 
-def test_telemetry_has_names_on_its_line() -> None:
+def test_telemetry_line_shows_names() -> None:
     dictionary = dictionary_of(None)
     packet = packet_of(dictionary.command("CFE_EVS_SET_LOG_MODE"), ["LogMode=DISCARD"])
     assert dictionary.decode(packet).line() == "LogMode=DISCARD Spare=0"
@@ -79,7 +79,7 @@ def test_a_script_compares_with_names() -> None:
         steps("DISCRAD")
 
 
-def test_other_ground_systems_get_the_names() -> None:
+def test_xtce_export_has_the_names() -> None:
     document = ElementTree.fromstring(xtce_of("all", dictionary_of(None)))
     kinds = {each.get("name"): each for each in document.iter(f"{XTCE}EnumeratedArgumentType")}
     labels = kinds["u8_SHORT_LONG"].iter(f"{XTCE}Enumeration")

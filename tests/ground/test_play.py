@@ -74,7 +74,7 @@ def heard(folder: Path, options: str | None, *, suffix: str = ".mcap", tasks: st
 
 
 @pytest.mark.parametrize("suffix", [".bag", ".mcap"])
-def test_options_are_those_of_rosbag_play(suffix: str, tmp_path: Path) -> None:
+def test_play_options_match_rosbag_play(suffix: str, tmp_path: Path) -> None:
     found, _ = heard(tmp_path, "--rate 2 --start 0.5 --duration 1 --topics /said /said:=/there", suffix=suffix)
     words = [line.split() for line in found]
     assert [(topic, text) for topic, text, *_ in words] == [("/there", str(each)) for each in range(5, 16)]
@@ -82,19 +82,19 @@ def test_options_are_those_of_rosbag_play(suffix: str, tmp_path: Path) -> None:
     assert 0.4 <= times[-1] - times[0] <= 0.6
 
 
-def test_without_options_all_is_played(tmp_path: Path) -> None:
+def test_all_messages_are_played_without_options(tmp_path: Path) -> None:
     found, _ = heard(tmp_path, None)
     assert [line.split()[1] for line in found if line.startswith("/other")] == ["o0", "o1"]
     assert len(found) == 23
 
 
-def test_the_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
+def test_played_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
     runs = [heard(tmp_path, "--rate 3", tasks=tasks) for tasks in ("thread", "thread", "greenlet")]
     assert runs[0] == runs[1] == runs[2]
 
 
 @pytest.mark.parametrize("suffix", [".bag", ".mcap"])
-def test_the_run_is_the_same_wherever_the_recording_lies(
+def test_played_run_does_not_depend_on_the_folder_of_the_recording(
     suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     near, far = tmp_path / "a", tmp_path / "another" / "folder"
@@ -110,7 +110,7 @@ def test_the_run_is_the_same_wherever_the_recording_lies(
     assert any("heard /said" in line for line in runs[0][0])
 
 
-def test_a_recording_whose_name_looks_like_an_option_is_played(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_recording_named_like_an_option_is_played(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     recording(tmp_path, ".bag").rename("--loop")
     lines, _ = played(tmp_path / "hears.py", "--loop")
@@ -127,13 +127,13 @@ def test_a_recording_whose_name_looks_like_an_option_is_played(tmp_path: Path, m
         ("--topics '/a", "No closing quotation"),
     ],
 )
-def test_options_that_cannot_be(options: str, why: str, tmp_path: Path) -> None:
+def test_invalid_play_options_are_refused(options: str, why: str, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=f"--play-options: .*{why}"):
         heard(tmp_path, options)
 
 
 @pytest.mark.slow
-def test_packets_of_a_raw_topic_are_played_as_they_were_recorded(tmp_path: Path) -> None:
+def test_packets_of_a_raw_topic_are_played_unchanged(tmp_path: Path) -> None:
     bag, topic = tmp_path / "packets.bag", "/cfe/hk/combined_pkt1"
     assert main(["run", "capture", "--for", "4", "--quiet", "--bag", str(bag), "--bag-topics", topic]) == 0
     with BagReader(str(bag)) as reader:
@@ -147,13 +147,13 @@ def test_packets_of_a_raw_topic_are_played_as_they_were_recorded(tmp_path: Path)
     assert sent[1] == sent[0] + recorded
 
 
-def test_options_need_a_bag(tmp_path: Path) -> None:
+def test_play_options_require_a_bag(tmp_path: Path) -> None:
     (tmp_path / "hears.py").write_text(HEARS, encoding="utf-8")
     with pytest.raises(UsageError, match="requires --play FILE"):
         RunPlan((str(tmp_path / "hears.py"),), NODE, play_options="--rate 2").spec()
 
 
-def test_the_command_that_does_it_again_says_them() -> None:
+def test_command_line_has_the_play_options() -> None:
     plan = RunPlan(("capture",), play="my drive.bag", play_options="--rate 2 /a:=/b")
     words = shlex.split(plan.command_line())[1:]
     said = parser_for(words).parse_args(words)

@@ -47,7 +47,7 @@ def as_bytes(found: list[tuple[str, dict[str, Any]]]) -> list[tuple[str, dict[st
 
 
 @pytest.mark.parametrize(("suffix", "kind"), FORMATS)
-def test_a_conversion_loses_nothing(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+def test_conversion_is_lossless(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     there = written(folder, suffix, kind)
     back = converted(there, tmp_path / "back.bag", "none")
     made = folder / "made.bag"
@@ -61,7 +61,7 @@ def test_a_conversion_loses_nothing(suffix: str, kind: str, folder: Path, tmp_pa
 
 
 @pytest.mark.parametrize("name", ["golden.bag", "golden_api_bz2.bag", "golden_api_lz4.bag", "golden_api_none.bag"])
-def test_bags_of_ros_come_back_as_they_were(name: str, tmp_path: Path) -> None:
+def test_ros_bags_survive_conversion_to_mcap_and_back(name: str, tmp_path: Path) -> None:
     rewrite(str(DATA / name), str(tmp_path / "there.mcap"), "zstd", strict=True)
     rewrite(str(tmp_path / "there.mcap"), str(tmp_path / "back.bag"), strict=True)
     assert read(tmp_path / "there.mcap") == read(tmp_path / "back.bag") == read(DATA / name)
@@ -70,7 +70,7 @@ def test_bags_of_ros_come_back_as_they_were(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("kind", KINDS[".mcap"])
-def test_the_library_mcap_reads_what_is_written(kind: str, folder: Path) -> None:
+def test_mcap_library_reads_written_files(kind: str, folder: Path) -> None:
     file = written(folder, ".mcap", kind)
     with file.open("rb") as stream:
         found = [
@@ -80,14 +80,14 @@ def test_the_library_mcap_reads_what_is_written(kind: str, folder: Path) -> None
     assert found == read(file)
 
 
-def test_rosbags_reads_what_comes_back(folder: Path, tmp_path: Path) -> None:
+def test_rosbags_library_reads_converted_files(folder: Path, tmp_path: Path) -> None:
     back = converted(written(folder, ".mcap", "lz4"), tmp_path / "back.bag", "lz4")
     with Reader(back) as reader:
         found = [(connection.topic, bytes(data), time) for connection, time, data in reader.messages()]
     assert found == read(folder / "made.bag")
 
 
-def test_what_is_no_topic_is_left_out_of_a_bag_and_kept_in_an_mcap_file(tmp_path: Path) -> None:
+def test_data_without_a_ros_topic_is_dropped_in_a_bag_and_kept_in_an_mcap_file(tmp_path: Path) -> None:
     library = storage()
     source = tmp_path / "run.mcap"
     with source.open("wb") as stream:
@@ -111,7 +111,7 @@ def test_what_is_no_topic_is_left_out_of_a_bag_and_kept_in_an_mcap_file(tmp_path
     assert messages == [(at, at + 1, at + 2, b'{"a":%d}' % at) for at in range(3)]
 
 
-def test_a_file_becomes_itself_again(folder: Path, tmp_path: Path) -> None:
+def test_file_can_be_rewritten_in_place(folder: Path, tmp_path: Path) -> None:
     file = tmp_path / "run.mcap"
     file.write_bytes(written(folder, ".mcap", "zstd").read_bytes())
     before = read(file)
@@ -120,7 +120,7 @@ def test_a_file_becomes_itself_again(folder: Path, tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_the_md5sum_that_a_recording_leaves_out_is_made_of_the_definition(tmp_path: Path) -> None:
+def test_missing_md5sum_is_computed_from_the_definition(tmp_path: Path) -> None:
     library, file = storage(), tmp_path / "other.mcap"
     names = (
         "std_msgs/String",
@@ -147,7 +147,7 @@ def test_the_md5sum_that_a_recording_leaves_out_is_made_of_the_definition(tmp_pa
 
 
 @pytest.mark.parametrize(("suffix", "kind"), FORMATS)
-def test_of_a_file_that_is_cut_off_all_before_is_left(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+def test_truncated_file_keeps_earlier_messages(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     file = written(folder, suffix, kind)
     whole, cut = file.read_bytes(), tmp_path / f"cut{suffix}"
     before = 0
@@ -176,7 +176,7 @@ NOT_PACKED = pytest.mark.parametrize("suffix", [".bag", ".mcap"])
 
 
 @NOT_PACKED
-def test_a_whole_message_before_the_cut_is_not_lost(suffix: str, folder: Path, tmp_path: Path) -> None:
+def test_complete_message_before_the_cut_is_kept(suffix: str, folder: Path, tmp_path: Path) -> None:
     file = written(folder, suffix, "none")
     whole, places = file.read_bytes(), ends(file)
     for cut in range(places[150], places[151] + 1):
@@ -186,7 +186,7 @@ def test_a_whole_message_before_the_cut_is_not_lost(suffix: str, folder: Path, t
 
 @pytest.mark.slow
 @NOT_PACKED
-def test_of_a_file_that_is_cut_anywhere_every_whole_message_is_left(suffix: str, folder: Path, tmp_path: Path) -> None:
+def test_truncated_file_keeps_all_complete_messages(suffix: str, folder: Path, tmp_path: Path) -> None:
     file = written(folder, suffix, "none")
     whole, places = file.read_bytes(), ends(file)
     cut_off, left = tmp_path / f"cut{suffix}", tmp_path / f"left{suffix}"
@@ -217,15 +217,13 @@ def look_at_cuts(suffix: str, kind: str, folder: Path, tmp_path: Path, step: int
 
 
 @PACKED
-def test_of_a_packed_file_that_is_cut_off_each_whole_chunk_is_left(
-    suffix: str, kind: str, folder: Path, tmp_path: Path
-) -> None:
+def test_truncated_compressed_file_keeps_complete_chunks(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     look_at_cuts(suffix, kind, folder, tmp_path, 997)
 
 
 @pytest.mark.slow
 @PACKED
-def test_of_a_packed_file_that_is_cut_anywhere_each_whole_chunk_is_left(
+def test_compressed_file_truncated_anywhere_keeps_complete_chunks(
     suffix: str, kind: str, folder: Path, tmp_path: Path
 ) -> None:
     look_at_cuts(suffix, kind, folder, tmp_path, 16)
@@ -235,7 +233,7 @@ def test_of_a_packed_file_that_is_cut_anywhere_each_whole_chunk_is_left(
     ("suffix", "kind", "block"),
     [(".bag", "lz4", 0), (".mcap", "lz4", 0), (".mcap", "zstd", 128 << 10), (".bag", "bz2", 900_000)],
 )
-def test_of_a_large_chunk_that_is_cut_off_the_beginning_is_left(
+def test_truncated_large_chunk_keeps_its_beginning(
     suffix: str, kind: str, block: int, folder: Path, tmp_path: Path
 ) -> None:
     """All that is there, but for the last block of a kind that is unpacked by blocks."""
@@ -265,7 +263,7 @@ def test_of_a_large_chunk_that_is_cut_off_the_beginning_is_left(
 
 
 @NOT_PACKED
-def test_one_damaged_bit_in_a_message_loses_no_other(suffix: str, folder: Path, tmp_path: Path) -> None:
+def test_damaged_bit_in_a_message_loses_no_other_message(suffix: str, folder: Path, tmp_path: Path) -> None:
     file = written(folder, suffix, "none")
     places, draw = ends(file), random.Random(3)
     spots = range(places[150], places[151])
@@ -277,7 +275,7 @@ def test_one_damaged_bit_in_a_message_loses_no_other(suffix: str, folder: Path, 
 
 @pytest.mark.slow
 @NOT_PACKED
-def test_no_bit_of_a_message_matters_to_another(suffix: str, folder: Path, tmp_path: Path) -> None:
+def test_bit_flip_in_a_message_does_not_affect_others(suffix: str, folder: Path, tmp_path: Path) -> None:
     file = written(folder, suffix, "none")
     places = ends(file)
     for spot in range(places[150], places[151]):
@@ -289,7 +287,9 @@ def test_no_bit_of_a_message_matters_to_another(suffix: str, folder: Path, tmp_p
 
 @pytest.mark.parametrize("suffix", [".bag", ".mcap"])
 @pytest.mark.parametrize("part", ["a message", "its length", "the length of a chunk"])
-def test_what_is_damaged_is_lost_and_nothing_else(part: str, suffix: str, folder: Path, tmp_path: Path) -> None:
+def test_damaged_part_is_lost_and_reported_and_all_else_kept(
+    part: str, suffix: str, folder: Path, tmp_path: Path
+) -> None:
     file = written(folder, suffix, "none")
     data = bytearray(file.read_bytes())
     text = data.index(b"/a 77 ")
@@ -393,19 +393,19 @@ def look_at_damage(file: Path, folder: Path, count: int, seed: int) -> list[int]
 
 
 @pytest.mark.parametrize(("suffix", "kind"), [(".bag", "none"), (".mcap", "zstd")])
-def test_damage_is_told_and_the_rest_is_read(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+def test_damage_is_reported_and_the_rest_is_read(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     look_at_damage(written(folder, suffix, kind), tmp_path, 1, seed=1)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("suffix", "kind"), FORMATS)
-def test_much_damage_is_told_and_the_rest_is_read(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+def test_heavy_damage_is_reported_and_the_rest_is_read(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     left = look_at_damage(written(folder, suffix, kind), tmp_path, 250, seed=7)
     assert sum(left) > 0.5 * len(left) * 2 * COUNT
 
 
 @pytest.mark.parametrize(("suffix", "kind"), FORMATS)
-def test_an_index_that_is_damaged_renames_no_topic(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+def test_damaged_index_renames_no_topic(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     file = written(folder, suffix, kind)
     data, end = bytearray(file.read_bytes()), placed_chunks(file)[-1].end
     at = data.index(b"/a", data.index(b"topic=", end) if suffix == ".bag" else end)
@@ -418,7 +418,7 @@ def test_an_index_that_is_damaged_renames_no_topic(suffix: str, kind: str, folde
 
 @pytest.mark.slow
 @NOT_PACKED
-def test_a_damaged_record_behind_a_message_does_not_take_it_along(suffix: str, folder: Path, tmp_path: Path) -> None:
+def test_damaged_record_after_a_message_does_not_lose_the_message(suffix: str, folder: Path, tmp_path: Path) -> None:
     """The message before the last one of a chunk, and the last one, which an index follows."""
     file = written(folder, suffix, "none")
     whole, places, last = file.read_bytes(), ends(file), placed_chunks(file)[1].messages - 1
@@ -434,7 +434,7 @@ def test_a_damaged_record_behind_a_message_does_not_take_it_along(suffix: str, f
 
 
 @pytest.mark.parametrize("suffix", [".bag", ".mcap"])
-def test_messages_of_a_chunk_of_lz4_whose_checksum_is_wrong_are_kept_and_counted(
+def test_messages_of_an_lz4_chunk_with_a_wrong_checksum_are_kept_and_counted(
     suffix: str, folder: Path, tmp_path: Path
 ) -> None:
     file = written(folder, suffix, "lz4")
@@ -453,13 +453,13 @@ def test_messages_of_a_chunk_of_lz4_whose_checksum_is_wrong_are_kept_and_counted
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("suffix", "kind"), FORMATS)
-def test_a_bit_that_has_flipped_loses_nothing_before_it(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
+def test_flipped_bit_loses_nothing_before_it(suffix: str, kind: str, folder: Path, tmp_path: Path) -> None:
     found = flips_of(written(folder, suffix, kind), tmp_path, 300, seed=5)
     assert not found.failures
     assert found.messages > found.lost
 
 
-def test_what_is_no_recording(tmp_path: Path) -> None:
+def test_invalid_recording_is_refused(tmp_path: Path) -> None:
     (tmp_path / "text.txt").write_text("hello", encoding="utf-8")
     (tmp_path / "empty.bag").write_bytes(b"")
     (tmp_path / "noise.mcap").write_bytes(b"\x06" * 500)

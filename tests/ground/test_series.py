@@ -35,7 +35,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Recorded:
     return Recorded(flown.results.trace, recorder, bag_series(file))
 
 
-def test_a_topic_over_time(recorded: Recorded) -> None:
+def test_topic_has_values_over_time(recorded: Recorded) -> None:
     series = recorded.of_run.series("/joint_states")
     times, positions = series.to_numpy("position")
     assert positions.shape == (len(series), 7)
@@ -48,7 +48,7 @@ def test_a_topic_over_time(recorded: Recorded) -> None:
     assert repr(series) == f"</joint_states: {len(series)} of sensor_msgs/JointState>"
 
 
-def test_a_packet_over_time(recorded: Recorded) -> None:
+def test_packet_has_values_over_time(recorded: Recorded) -> None:
     series = recorded.of_run.series("CFE_TIME_HK_TLM")
     times, seconds = series.to_numpy("MET.Seconds")
     assert times.shape == (len(series),)
@@ -56,18 +56,18 @@ def test_a_packet_over_time(recorded: Recorded) -> None:
     assert series.type == "telemetry"
 
 
-def test_a_bag_has_the_same_values(recorded: Recorded) -> None:
+def test_bag_has_the_same_values_as_the_run(recorded: Recorded) -> None:
     of_run, of_bag = recorded.of_run.series("/joint_states"), recorded.of_bag.series("/joint_states")
     assert (of_run.to_numpy("position").values == of_bag.to_numpy("position").values).all()
     assert (of_run.stamps_ns == of_bag.stamps_ns).all()
     assert set(recorded.of_bag.names) == {name for name in recorded.of_run.names if name.startswith("/")}
 
 
-def test_recording_changes_nothing(recorded: Recorded) -> None:
+def test_series_recorder_does_not_change_the_run(recorded: Recorded) -> None:
     assert fly(PLAN).results.trace == recorded.trace
 
 
-def test_only_what_was_asked_for() -> None:
+def test_selected_series_are_recorded() -> None:
     asked = SeriesRecorder(["/joint_states.position", "CFE_ES.HK_TLM.CommandCounter", "0x0801", "CFE_TBL_SEND_HK"])
     with takeoff(PLAN, attachments=[asked]) as run:
         run.run_until(1_500_000_000)
@@ -90,19 +90,19 @@ def test_only_what_was_asked_for() -> None:
         ("CFE_ES.HK_TLM.CommandCounter", "CFE_ES_HK_TLM", "CommandCounter"),
     ],
 )
-def test_what_a_word_means(recorded: Recorded, word: str, name: str, field: str) -> None:
+def test_word_selects_a_series_and_a_field(recorded: Recorded, word: str, name: str, field: str) -> None:
     series, found = recorded.of_run.found(word)
     assert (series.name, found) == (name, field)
 
 
-def test_a_pattern_means_several_topics(recorded: Recorded) -> None:
+def test_pattern_selects_several_topics(recorded: Recorded) -> None:
     assert len(recorded.of_run.matching("/arm_health/*")) == 4
     assert [field for _, field in recorded.of_run.matching("/phase.data")] == ["data"]
     with pytest.raises(UsageError, match="unknown topic"):
         recorded.of_run.matching("/leg/*")
 
 
-def test_words_may_mean_topics_within_topics() -> None:
+def test_word_selects_nested_topics() -> None:
     assert list(meanings("/a/b.c")) == [("/a/b", "c"), ("/a", "b.c")]
 
 
@@ -116,7 +116,7 @@ def test_words_may_mean_topics_within_topics() -> None:
         ("/joint_states", "not a single field; name one of its fields: header, name"),
     ],
 )
-def test_what_is_not_there_is_told_with_what_is(recorded: Recorded, word: str, why: str) -> None:
+def test_unknown_name_suggests_known_names(recorded: Recorded, word: str, why: str) -> None:
     def values() -> object:
         series, field = recorded.of_run.found(word)
         return series.to_numpy(field)
@@ -125,7 +125,7 @@ def test_what_is_not_there_is_told_with_what_is(recorded: Recorded, word: str, w
         values()
 
 
-def test_a_packet_that_the_mission_has_not() -> None:
+def test_unknown_packet_is_refused() -> None:
     with pytest.raises(UsageError, match="unknown telemetry packet CFE_ES_HK_TIM; did you mean CFE_ES_HK_TLM"):
         fly(PLAN, attachments=[SeriesRecorder(["CFE_ES_HK_TIM.CommandCounter"])])
 
@@ -139,7 +139,7 @@ def test_a_bag_has_topics_only(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_an_mcap_file_has_packets_as_the_run_has(tmp_path: Path) -> None:
+def test_mcap_file_has_the_packets_of_the_run(tmp_path: Path) -> None:
     file, recorder = str(tmp_path / "run.mcap"), SeriesRecorder()
     with McapRecorder(file) as mcap:
         fly(PLAN, attachments=[recorder, mcap])

@@ -35,7 +35,7 @@ def rows_of(mission: str) -> dict[int, MidRow]:
         return {row.msg_id: row for row in survey.rows()}
 
 
-def test_core_names_are_nasas() -> None:
+def test_core_names_match_nasas() -> None:
     names = core_names()
     assert names[0x0808] == "CFE_EVS_LONG_EVENT_MSG"
     assert names[0x1806] == "CFE_ES_CMD"
@@ -57,7 +57,7 @@ def test_names_in_an_apps_source(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["CMD_MID=0x1890", "CMD_MID \\\n    = 0x1890", "(CMD_MID) = 0x1890"])
-def test_constants_are_found_however_they_are_assigned(tmp_path: Path, text: str) -> None:
+def test_constants_are_found_in_any_form_of_assignment(tmp_path: Path, text: str) -> None:
     file = tmp_path / "packets.py"
     file.write_text(f"import math\n{text}\n")
     assert list(constants_in(file)) == [("CMD_MID", 0x1890)]
@@ -70,7 +70,7 @@ def test_names_of_a_mission() -> None:
     assert names[0x1801] == "CFE_EVS_CMD"
 
 
-def test_who_sends_and_who_subscribes() -> None:
+def test_senders_and_subscribers_of_msg_ids_are_listed() -> None:
     rows = rows_of("rx64m_pubsub")
     there, back = rows[0x0901], rows[0x0902]
     assert (there.name, there.type) == ("/left_to_right", "std_msgs/UInt32")
@@ -87,7 +87,7 @@ def ids_of(mission: str) -> dict[str, int]:
         return {row.name: row.msg_id for row in flight.ros.topics()}
 
 
-def test_a_mission_whose_topics_collide_flies_once_it_is_locked(
+def test_mission_with_colliding_topics_flies_after_it_is_locked(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE)
@@ -103,7 +103,7 @@ def test_a_mission_whose_topics_collide_flies_once_it_is_locked(
     }
 
 
-def test_locking_again_changes_nothing_but_adds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_second_lock_only_adds_names(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE)
     main(["graph", "--mids", "--lock", mission])
     before = (tmp_path / "topics.lock").read_text(encoding="utf-8")
@@ -118,7 +118,7 @@ def test_locking_again_changes_nothing_but_adds(tmp_path: Path, capsys: pytest.C
     assert [line.split(":")[0].strip() for line in added] == ["/new"]
 
 
-def test_a_lock_that_gives_an_id_twice_is_refused(tmp_path: Path) -> None:
+def test_lock_file_with_a_repeated_id_is_refused(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE, mission_yaml="topics: {/a: {msg_id: 0x0910}, /c: {msg_id: 5}}\n")
     (tmp_path / "topics.lock").write_text("topics:\n  /a: 0x0911\n  /b: 0x0910\nservices: {}\n", encoding="utf-8")
     with pytest.raises(UsageError, match=r"topics.lock:3: topics./b: the MsgId 0x0910 is already used by /a; remove"):
@@ -126,7 +126,7 @@ def test_a_lock_that_gives_an_id_twice_is_refused(tmp_path: Path) -> None:
     assert [(found.file.name, found.line) for found in check_mission(mission)] == [("topics.lock", 3)]
 
 
-def test_the_mission_file_comes_before_the_lock(tmp_path: Path) -> None:
+def test_mission_file_has_precedence_over_the_lock_file(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, STARTUP, n=NODE, mission_yaml="topics: {/a: {msg_id: 0x0910}}\n")
     (tmp_path / "topics.lock").write_text("topics: {/a: 0x0911, /b: 0x0911}\n", encoding="utf-8")
     assert read_mission(mission).ros.locked_topics == {"/b": 0x0911}

@@ -46,18 +46,18 @@ def file_of(kind: TableType, image: bytes, offset: int = 0) -> TableContents:
 
 
 @pytest.mark.parametrize("name", GOLDEN)
-def test_golden_tables_come_back_byte_for_byte(name: str, tmp_path: Path) -> None:
+def test_golden_tables_survive_conversion_to_yaml(name: str, tmp_path: Path) -> None:
     data = (DATA / name).read_bytes()
     assert through_yaml(take_apart(data, find, name), tmp_path).pack() == data
 
 
-def test_golden_tables_are_all_there() -> None:
+def test_all_golden_tables_are_tested() -> None:
     assert len(GOLDEN) == 5
 
 
 @settings(max_examples=60, deadline=None)
 @given(image=st.binary(min_size=PLAN.size, max_size=PLAN.size))
-def test_any_image_comes_back(image: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
+def test_any_image_survives_conversion_to_yaml(image: bytes, tmp_path_factory: pytest.TempPathFactory) -> None:
     file = file_of(PLAN, image)
     assert through_yaml(file, tmp_path_factory.mktemp("any")).pack() == file.pack()
 
@@ -80,28 +80,28 @@ def test_any_image_comes_back(image: bytes, tmp_path_factory: pytest.TempPathFac
     ),
     offset=st.integers(0, PLAN.size - 1),
 )
-def test_rows_and_parts_of_tables_come_back(
+def test_rows_and_parts_of_tables_survive_conversion_to_yaml(
     used: dict[int, dict[str, object]], offset: int, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     file = file_of(PLAN, PLAN.pack(used)[offset:], offset)
     assert through_yaml(file, tmp_path_factory.mktemp("rows")).pack() == file.pack()
 
 
-def test_every_header_field_comes_back(tmp_path: Path) -> None:
+def test_header_fields_survive_conversion_to_yaml(tmp_path: Path) -> None:
     header = FileHeader("d", SUBTYPE_TBL_IMG, spacecraft_id=7, processor_id=8, application_id=9, time_seconds=10)
     header = dataclasses.replace(header, time_subseconds=0xFFFFFFFF)
     file = TableContents(header, TableHeader("APP.Plan", 4, 8, 0x1234), b"abcd", b"behind", PLAN)
     assert through_yaml(file, tmp_path) == file
 
 
-def test_empty_rows_are_left_out_and_the_next_one_has_its_number() -> None:
+def test_empty_rows_are_omitted_and_the_next_row_has_its_number() -> None:
     values = document(file_of(PLAN, PLAN.pack({1: {"MsgId": 1}, 2: {"MsgId": 2}, 6: {"Bytes": [0, 5]}})))
     assert [row.get("row") for row in values["rows"]] == [1, None, 6]
     assert values["rows"][2]["Bytes"] == [0, 5]
     assert values["rows"][0]["Points"] == []
 
 
-def test_a_field_called_row_is_a_field(tmp_path: Path) -> None:
+def test_field_named_row_is_a_field(tmp_path: Path) -> None:
     file = file_of(LINES, LINES.pack([{"row": 9}, {}, {"row": 1, "Value": 2}]))
     assert document(file)["rows"] == [{"row": 9, "Value": 0}, {}, {"row": 1, "Value": 2}]
     assert through_yaml(file, tmp_path).pack() == file.pack()
@@ -118,7 +118,7 @@ def test_message_ids_are_in_hexadecimal() -> None:
     assert "- {MsgId: 0x1882, Name: '', Flag: false, Points: [], Bytes: []}" in text
 
 
-def test_a_marked_file_is_marked_again(tmp_path: Path) -> None:
+def test_mark_of_a_changed_file_is_renewed(tmp_path: Path) -> None:
     file = file_of(PLAN, PLAN.pack([{"MsgId": 1}])).marked()
     assert document(file)["mark"] is True
     path = tmp_path / "table.yaml"
@@ -128,7 +128,7 @@ def test_a_marked_file_is_marked_again(tmp_path: Path) -> None:
     assert changed.table.reserved != file.table.reserved
 
 
-def test_a_layout_in_the_file(tmp_path: Path) -> None:
+def test_layout_may_be_in_the_file(tmp_path: Path) -> None:
     path = tmp_path / "own.yaml"
     path.write_text(
         """
@@ -217,7 +217,7 @@ def test_misspelt_keys_of_a_table_are_not_missing_too(tmp_path: Path) -> None:
         ("table: APP.Plan\noffset: 500", 1, "table", "has no data"),
     ],
 )
-def test_errors_say_where(text: str, line: int, field: str | None, words: str, tmp_path: Path) -> None:
+def test_errors_have_their_line_and_field(text: str, line: int, field: str | None, words: str, tmp_path: Path) -> None:
     path = tmp_path / "bad.yaml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match=words) as caught:

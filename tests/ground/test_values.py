@@ -53,7 +53,7 @@ def read(*words: str) -> dict[str, object]:
         ("Names[1]=ab", "Names[1]", "ab"),
     ],
 )
-def test_a_value_lands_in_its_field_and_nowhere_else(word: str, path: str, value: object) -> None:
+def test_value_is_written_to_its_field_only(word: str, path: str, value: object) -> None:
     changed = {name: each for name, each in read(word).items() if each != read()[name]}
     assert changed == ({path: value} if value else {})
     assert read(word)[path] == value
@@ -66,7 +66,7 @@ def test_arrays_are_written_with_commas() -> None:
     assert (values["Names[0]"], values["Names[1]"]) == ("ab", "cd")
 
 
-def test_the_packet_is_the_commands_own() -> None:
+def test_packet_has_the_header_of_its_command() -> None:
     assert packet_of(COMMAND, ["Count=1", "Inner.Id=2"]) == COMMAND.packet(Count=1, Inner={"Id": 2})
 
 
@@ -88,7 +88,7 @@ def test_the_packet_is_the_commands_own() -> None:
         ("Inner.Name=muchtoolong", "Inner.Name: must have at most 8 bytes, not 11: 'muchtoolong'"),
     ],
 )
-def test_a_mistake_names_the_field_and_what_to_write(word: str, said: str) -> None:
+def test_mistake_names_the_field_and_the_valid_values(word: str, said: str) -> None:
     with pytest.raises(UsageError) as error:
         packet_of(COMMAND, [word])
     assert str(error.value).startswith(said)
@@ -100,12 +100,12 @@ def test_all_wrong_fields_are_raised_together() -> None:
     assert [each.field for each in error.value.each] == ["Cuont", "Ratio", "Masks", None]
 
 
-def test_a_field_is_given_once() -> None:
+def test_field_given_twice_is_refused() -> None:
     with pytest.raises(UsageError, match="Count: is given twice"):
         packet_of(COMMAND, ["Count=1", "Count=2"])
 
 
-def test_a_command_without_payload_says_so() -> None:
+def test_command_without_fields_refuses_a_field() -> None:
     with pytest.raises(UsageError, match="X: APP_NOOP has no fields"):
         packet_of(Command("APP_NOOP", 0x1882, 0), ["X=1"])
 
@@ -116,7 +116,7 @@ def test_numbers_of_any_kind() -> None:
         number_of("hold")
 
 
-def test_a_line_shows_what_can_be_typed() -> None:
+def test_line_of_values_can_be_typed() -> None:
     words = ["Count=3", "Ratio=0.5", "Masks=1,2,3", "Inner.Name=a b", "Points[0].Id=4"]
     line = line_of(COMMAND.read(packet_of(COMMAND, words)))
     assert line == (

@@ -146,7 +146,7 @@ def _filled(layout: Layout) -> bytes:
     return bytes(payload)
 
 
-def test_messages_of_ros_are_read_as_far_as_xtce_can_say_them(export: Export) -> None:
+def test_ros_messages_are_decoded_as_far_as_xtce_can_describe_them(export: Export) -> None:
     values: dict[str, Any] = {}
     for topic in export.dictionary.telemetry.values():
         if isinstance(topic, Topic) and topic.msg_id in export.packets and topic.name != "/joints":
@@ -159,7 +159,7 @@ def test_messages_of_ros_are_read_as_far_as_xtce_can_say_them(export: Export) ->
     assert len(values["numbers_rest"]) == 24  # data_offset, the count, two numbers
 
 
-def test_what_follows_an_array_of_texts_behind_a_text_is_left_out(export: Export) -> None:
+def test_fields_after_two_variable_texts_are_omitted(export: Export) -> None:
     packet = export.packets[export.dictionary.telemetry["/joints"].msg_id]
     with pytest.warns(UserWarning, match="Number of bits parsed"):
         values = export.definition.parse_bytes(packet)
@@ -180,7 +180,7 @@ def test_names_are_unique_and_allowed(export: Export) -> None:
         assert not [name for name in names if re.search(r"[./:\[\]\s]", name)]
 
 
-def test_names_that_become_alike_stay_apart() -> None:
+def test_names_that_collide_after_conversion_stay_distinct() -> None:
     found = Dictionary()
     found.add([Telemetry("APP_TLM", 0x0890, Layout("L", [("A", "u8[2]"), ("A_1", "u8")]))])
     root = ElementTree.fromstring(xtce_of("m", found))
@@ -203,7 +203,7 @@ def test_a_topic_of_whole_packets_is_bytes(tmp_path: Path) -> None:
     assert values["cfe_hk_combined_pkt1_data"] == b"any bytes"
 
 
-def test_a_topic_among_the_commands_is_no_telemetry(tmp_path: Path) -> None:
+def test_topic_with_a_command_id_is_not_telemetry(tmp_path: Path) -> None:
     """Its APID is a telemetry packet's, so the two could not be distinguished."""
     declared = Telemetry("APP_TLM", 0x0890, Layout("L", [("A", "u8")]))
     topics = [Topic("/goal", 0x1890, "std_msgs/Int32"), Topic("/plain", 0x0090, "std_msgs/Int32")]
@@ -232,7 +232,7 @@ def entries_of(export: Export, command: Command) -> Iterator[ElementTree.Element
     yield from container
 
 
-def test_a_command_put_together_from_the_document_is_ours(export: Export) -> None:
+def test_command_built_from_the_document_equals_ours(export: Export) -> None:
     """A ground system would send it, with a different byte in every argument; it may leave the checksum zero."""
     for command in export.dictionary.commands.values():
         payload = _filled(command.payload)

@@ -21,7 +21,7 @@ FLIGHT = "tests.ground.yamcs_flight"
 
 
 @pytest.mark.skipif(shutil.which("yamcs") is None, reason="yamcs-cli is not installed")
-def test_the_loop_of_the_page(tmp_path: Path) -> None:
+def test_loop_of_the_page_works_with_yamcs(tmp_path: Path) -> None:
     run_in_own_network(FLIGHT, "loop", cwd=tmp_path)
 
 

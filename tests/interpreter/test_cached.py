@@ -22,7 +22,7 @@ class Sensor:
     value = CachedProperty(read)
 
 
-def test_it_is_made_once_for_each_object() -> None:
+def test_value_is_computed_once_for_each_object() -> None:
     first, second = Sensor(), Sensor()
     assert (first.value, first.value, second.value, first.reads) == (1, 1, 1, 1)
     assert Sensor.value.__doc__ == Sensor.read.__doc__
@@ -30,7 +30,7 @@ def test_it_is_made_once_for_each_object() -> None:
         CachedProperty(len).__get__(first)
 
 
-def test_it_takes_no_lock() -> None:
+def test_value_is_computed_without_a_lock() -> None:
     """One object's value may need another's, which another thread computes."""
 
     class Link:

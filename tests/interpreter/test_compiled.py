@@ -29,31 +29,31 @@ def build(root: Path) -> None:
     (root / f"{compiled.library_name(root)}__mypyc{SUFFIX}").touch()
 
 
-def test_sources_alone_are_interpreted(root: Path) -> None:
+def test_checkout_without_a_build_is_interpreted(root: Path) -> None:
     assert compiled.state() == "kernel and bus interpreted"
 
 
-def test_what_was_compiled_is_told(root: Path) -> None:
+def test_compiled_modules_are_reported(root: Path) -> None:
     build(root)
     assert compiled.state() == "kernel and bus compiled"
 
 
 @pytest.mark.parametrize("module", compiled.MODULES)
-def test_a_source_that_was_changed_since_is_told(root: Path, module: str) -> None:
+def test_changed_source_is_reported_as_not_matching_the_build(root: Path, module: str) -> None:
     build(root)
     with (root / module).open("a") as file:
         file.write("# more\n")
     assert compiled.state().startswith("the compiled kernel and bus do not match the sources here; build them again")
 
 
-def test_parts_of_a_build_are_told(root: Path) -> None:
+def test_incomplete_build_is_reported(root: Path) -> None:
     build(root)
     for path in root.glob("cfepy_*"):
         path.unlink()
     assert compiled.state().startswith("the compiled kernel and bus do not match")
 
 
-def test_what_mypyc_is_told_of_a_class_leaves_it_as_it_is() -> None:
+def test_mypyc_attr_returns_the_class_unchanged() -> None:
     class Plain:
         pass
 

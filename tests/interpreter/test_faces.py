@@ -42,13 +42,13 @@ def _later(tree: ast.Module) -> list[str]:
     return [name for value in ast.literal_eval(calls[0].args[1]).values() for name in value]
 
 
-def test_a_name_that_is_not_there() -> None:
+def test_unknown_name_is_an_attribute_error() -> None:
     package = importlib.import_module("cfepy.extra.reports")
     with pytest.raises(AttributeError, match=r"cfepy\.extra\.reports.*'Pages'"):
         package.Pages  # noqa: B018
 
 
-def test_nothing_is_loaded_before_it_is_used() -> None:
+def test_modules_are_loaded_on_first_use() -> None:
     code = "import sys, cfepy.extra.reports; print([name for name in sys.modules if 'cfepy.extra.reports.' in name])"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

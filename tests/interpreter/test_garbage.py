@@ -19,7 +19,7 @@ def collecting() -> Iterator[None]:
     gc.enable()
 
 
-def test_it_comes_back_with_the_outermost() -> None:
+def test_garbage_collection_is_enabled_again_by_the_outermost_block() -> None:
     with no_collection:
         with no_collection:
             assert not gc.isenabled()
@@ -27,14 +27,14 @@ def test_it_comes_back_with_the_outermost() -> None:
     assert gc.isenabled()
 
 
-def test_it_stays_off_when_it_was() -> None:
+def test_garbage_collection_stays_disabled_if_it_was() -> None:
     gc.disable()
     with no_collection:
         pass
     assert not gc.isenabled()
 
 
-def test_a_thread_that_ends_first_does_not_bring_it_back_into_another() -> None:
+def test_ending_thread_does_not_enable_garbage_collection_for_another() -> None:
     inside, leave = threading.Event(), threading.Event()
 
     def other() -> None:
@@ -52,7 +52,7 @@ def test_a_thread_that_ends_first_does_not_bring_it_back_into_another() -> None:
     assert gc.isenabled()
 
 
-def test_a_forked_process_does_not_wait_for_threads_that_stayed_behind() -> None:
+def test_forked_process_does_not_wait_for_threads_of_its_parent() -> None:
     inside, leave = threading.Event(), threading.Event()
 
     def other() -> None:

@@ -22,16 +22,16 @@ from tests.mission.flights import write_mission
         ("no-such-program", OSError(), False),
     ],
 )
-def test_absent_program_is_told_from_one_that_cannot_be_started(program: str, error: OSError, absent: bool) -> None:
+def test_absent_program_is_distinguished_from_one_that_cannot_start(program: str, error: OSError, absent: bool) -> None:
     assert host_system.is_absent(program, error) is absent
 
 
-def test_modules_of_cpython_may_have_builtins_of_their_own() -> None:
+def test_modules_of_cpython_may_have_separate_builtins() -> None:
     assert host_system.has_own_builtins()
 
 
 @pytest.mark.parametrize("line", ["node.py, __main__, NODE", "app, main, APP"])
-def test_without_them_nodes_and_own_applications_do_not_fly(
+def test_nodes_and_own_applications_are_refused_without_required_features(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, line: str
 ) -> None:
     monkeypatch.setattr(host_system, "has_own_builtins", lambda: False)

@@ -29,17 +29,17 @@ LIBRARIES = PACKAGE.parent / "ros_libraries"
         ("/home/me/cfepy/arm.py", True, True),
     ],
 )
-def test_what_is_shown_and_what_is_the_missions_own(file: Path | str, shown: bool, own: bool) -> None:
+def test_files_are_classified_as_shown_and_as_own_code(file: Path | str, shown: bool, own: bool) -> None:
     assert (is_shown(str(file)), is_own_code(str(file))) == (shown, own)
     assert is_library(str(file)) == (shown and not own)
 
 
-def test_the_standard_library_is_told_from_what_is_installed() -> None:
+def test_standard_library_is_distinguished_from_installed_packages() -> None:
     assert is_standard(os.__file__)
     assert not is_standard(str(Path(sysconfig.get_paths()["purelib"]) / "numpy" / "__init__.py"))
 
 
-def test_names_of_compiled_modules_are_made_whole() -> None:
+def test_names_of_compiled_modules_become_full_paths() -> None:
     assert source_file("cfepy/rtos/kernel.py") == str(PACKAGE / "rtos" / "kernel.py")
     for other in ("/home/me/arm.py", "arm.py", "<string>", str(PACKAGE / "trace.py")):
         assert source_file(other) == other

@@ -23,7 +23,7 @@ class Circle:
         ast.parse("x = [1, 2]")
 
 
-def test_a_finalizer_that_parses_is_not_in_the_way() -> None:
+def test_finalizer_that_parses_does_not_interfere() -> None:
     before = gc.get_threshold()
     gc.set_threshold(5)
     try:
@@ -42,14 +42,14 @@ def test_the_name_of_the_file_and_the_mode() -> None:
 
 
 @pytest.mark.parametrize("text", ["x" + ".a" * 20_000, "x" + "()" * 20_000, "-" * 20_000 + "1", "not " * 20_000 + "x"])
-def test_a_source_that_is_nested_too_deeply_is_a_syntax_error(text: str) -> None:
+def test_source_nested_too_deeply_is_a_syntax_error(text: str) -> None:
     for parse in (parsed, parsed_input):
         with pytest.raises(TooDeepError, match="is nested too deeply"):
             parse(text)
 
 
 @pytest.mark.slow
-def test_a_source_that_is_looked_into_is_held_to_its_limits() -> None:
+def test_limits_apply_to_parsed_input() -> None:
     attributes = PYTHON_DEPTH - 5
     assert parsed_input(f"x{'.a' * attributes}").body
     with pytest.raises(TooDeepError, match=r"more than 50 levels") as caught:

@@ -18,7 +18,7 @@ def trace_of(text: str) -> str:
     return found[1]
 
 
-def test_open_ports_alone_do_not_change_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+def test_open_ports_do_not_change_the_run(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "lab", *FAST, "--port", "1234=0"]) == 0
     paced = capsys.readouterr().out
     assert re.search(r"^UDP port 1234 is open at 127\.0\.0\.1:\d+$", paced, re.MULTILINE)
@@ -28,7 +28,7 @@ def test_open_ports_alone_do_not_change_the_run(capsys: pytest.CaptureFixture[st
     assert trace_of(paced) == trace_of(free)
 
 
-def test_a_taken_port_ends_the_run_with_a_clear_error(capsys: pytest.CaptureFixture[str]) -> None:
+def test_taken_port_ends_the_run_with_an_error(capsys: pytest.CaptureFixture[str]) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind(("127.0.0.1", 0))
         port = other.getsockname()[1]
@@ -36,13 +36,13 @@ def test_a_taken_port_ends_the_run_with_a_clear_error(capsys: pytest.CaptureFixt
     assert f"cfepy: UDP port {port} of 127.0.0.1 cannot be opened" in capsys.readouterr().err
 
 
-def test_ports_need_realtime(capsys: pytest.CaptureFixture[str]) -> None:
+def test_ports_require_realtime(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "lab", "--port", "1234=0"]) == 2
     assert "--port" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize("ports", ["1234", "0=1", "1234=70000", "a=b", "1234=-1"])
-def test_ports_that_make_no_sense(ports: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_ports_are_refused(ports: str, capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as ended:
         main(["run", "lab", *FAST, "--port", ports])
     assert ended.value.code == 2

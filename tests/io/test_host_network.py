@@ -104,7 +104,7 @@ def session(folder: Path, script: str, ci_port: int = 0, ports: Mapping[int, int
             yield Session(mission, told, records, ground, bridge)
 
 
-def test_a_noop_over_udp_yields_its_event_and_telemetry(tmp_path: Path) -> None:
+def test_noop_over_udp_causes_its_event_and_telemetry(tmp_path: Path) -> None:
     with session(tmp_path, LAB) as lab:
         lab.run_while(lambda: not lab.console_has("Awaiting enable command"))
         lab.command(to_lab.OUTPUT_ENABLE.packet(dest_IP=LOOPBACK))
@@ -154,7 +154,7 @@ def has_no_event(craft: Session, events: list[bytes]) -> bool:
     return not events
 
 
-def test_each_arrival_is_noted_with_its_instant(tmp_path: Path) -> None:
+def test_each_arrival_is_recorded_with_its_time(tmp_path: Path) -> None:
     with session(tmp_path, LAB) as lab:
         lab.run_while(lambda: lab.bridge.host_port(1234) is None)
         lab.command(bytes.fromhex("1884c000000100a2"))
@@ -192,7 +192,7 @@ def test_streams_both_ways_with_back_pressure(tmp_path: Path) -> None:
         assert bytes(received) == sent.upper()
 
 
-def test_only_this_computer_is_reached(tmp_path: Path) -> None:
+def test_datagrams_to_other_computers_are_dropped(tmp_path: Path) -> None:
     with session(tmp_path, "CFE_APP, apps, Stranger, STRANGER, 60, 16384, 0x0, 0;\n!\n") as stranger:
         received: list[bytes] = []
 
@@ -206,7 +206,7 @@ def test_only_this_computer_is_reached(tmp_path: Path) -> None:
         assert stranger.told == ["datagrams for 10.0.0.7 are dropped, because only 127.0.0.1 is connected"]
 
 
-def test_a_port_that_is_taken(tmp_path: Path) -> None:
+def test_taken_port_is_reported(tmp_path: Path) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         other.bind((LOOPBACK, 0))
         port = other.getsockname()[1]
@@ -214,7 +214,7 @@ def test_a_port_that_is_taken(tmp_path: Path) -> None:
             lab.run_while(lambda: True)
 
 
-def test_a_reset_does_not_give_the_port_away(tmp_path: Path) -> None:
+def test_reset_keeps_the_port_open(tmp_path: Path) -> None:
     with session(tmp_path, LAB) as lab:
         lab.run_while(lambda: lab.bridge.host_port(1234) is None)
         port = lab.bridge.host_port(1234)

@@ -85,7 +85,7 @@ def test_a_node_connects_with_a_program(tmp_path: Path) -> None:
             run.run_while(lambda: not run.console_has("[Errno 111] Connection refused"))
 
 
-def test_a_node_asks_a_program_and_gets_its_answer(tmp_path: Path) -> None:
+def test_node_receives_the_answer_of_a_program(tmp_path: Path) -> None:
     write_node(
         tmp_path,
         """
@@ -127,7 +127,7 @@ def test_a_node_commands_the_computer_over_ci_lab(tmp_path: Path) -> None:
         run.run_while(lambda: not run.console_has("CI: NOOP command"))
 
 
-def test_in_virtual_time_sockets_are_refused(tmp_path: Path) -> None:
+def test_sockets_are_refused_in_virtual_time(tmp_path: Path) -> None:
     write_node(tmp_path, "import socket\nsocket.socket()\n")
     (tmp_path / "startup.scr").write_text(NODE, encoding="utf-8")
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:

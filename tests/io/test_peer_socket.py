@@ -54,7 +54,7 @@ def ends() -> Iterator[Ends]:
 
 
 @pytest.mark.parametrize("is_paused", [False, True])
-def test_what_waits_goes_out_whether_it_is_paused_or_not(ends: Ends, is_paused: bool) -> None:
+def test_waiting_data_is_sent_also_while_paused(ends: Ends, is_paused: bool) -> None:
     if is_paused:
         ends.near.pause()
     for _ in range(COUNT):
@@ -65,7 +65,7 @@ def test_what_waits_goes_out_whether_it_is_paused_or_not(ends: Ends, is_paused: 
     assert not ends.near.is_open
 
 
-def test_a_pause_while_something_waits(ends: Ends) -> None:
+def test_pause_keeps_waiting_data(ends: Ends) -> None:
     for _ in range(COUNT):
         ends.near.send(MESSAGE)
     ends.near.pause()
@@ -75,7 +75,7 @@ def test_a_pause_while_something_waits(ends: Ends) -> None:
     assert ends.read_all() == COUNT * len(MESSAGE)
 
 
-def test_nothing_is_read_in_a_pause_and_everything_after_it(ends: Ends) -> None:
+def test_data_that_arrives_in_a_pause_is_read_after_it(ends: Ends) -> None:
     ends.near.pause()
     ends.far.sendall(b"later")
     assert ends.selector.select(0) == []
@@ -85,7 +85,7 @@ def test_nothing_is_read_in_a_pause_and_everything_after_it(ends: Ends) -> None:
     assert ends.came == [b"later"]
 
 
-def test_what_there_is_no_room_for_goes_out_when_asked(ends: Ends) -> None:
+def test_data_beyond_the_buffer_is_sent_by_flush(ends: Ends) -> None:
     """As a run does that has no time to look at the selector."""
     sent = 0
     while not ends.near.is_full:
@@ -98,7 +98,7 @@ def test_what_there_is_no_room_for_goes_out_when_asked(ends: Ends) -> None:
     assert not ends.near.is_full
 
 
-def test_a_closed_one_takes_nothing(ends: Ends) -> None:
+def test_closed_socket_sends_nothing(ends: Ends) -> None:
     for _ in range(COUNT):
         ends.near.send(MESSAGE)
     ends.near.close()

@@ -10,7 +10,7 @@ from cfepy.io import TypedLines
 LONG_S = 60.0
 
 
-def test_lines_come_in_order_and_then_no_more() -> None:
+def test_lines_are_read_in_order_until_the_end() -> None:
     lines = TypedLines(io.StringIO("one\r\ntwo\nthree"))
     assert [lines.next(LONG_S) for _ in range(3)] == ["one", "two", "three"]
     assert not lines.at_end
@@ -19,7 +19,7 @@ def test_lines_come_in_order_and_then_no_more() -> None:
     assert lines.next(LONG_S) is None
 
 
-def test_nobody_has_typed_yet() -> None:
+def test_next_returns_none_before_a_line_is_typed() -> None:
     reading, writing = os.pipe()
     with os.fdopen(reading) as stream, os.fdopen(writing, "w") as typist:
         lines = TypedLines(stream)
@@ -32,7 +32,7 @@ def test_nobody_has_typed_yet() -> None:
         assert lines.next(LONG_S) is None
 
 
-def test_a_stream_that_cannot_be_read() -> None:
+def test_unreadable_stream_is_at_its_end() -> None:
     with open(os.devnull, "w", encoding="utf-8") as stream:
         lines = TypedLines(stream)
         assert lines.next(LONG_S) is None

@@ -8,7 +8,7 @@ from cfepy.io.udp import UdpListener, own_address, send
 from cfepy.status import UsageError
 
 
-def test_a_datagram_goes_there_and_arrives() -> None:
+def test_datagrams_arrive_in_order() -> None:
     with UdpListener("127.0.0.1", 0) as listener:
         send("127.0.0.1", listener.port, b"one")
         send("127.0.0.1", listener.port, b"two")
@@ -18,13 +18,13 @@ def test_a_datagram_goes_there_and_arrives() -> None:
             UdpListener("127.0.0.1", listener.port)
 
 
-def test_a_host_at_hand_tells_that_nobody_listens() -> None:
+def test_send_reports_that_no_program_listens_on_the_local_host() -> None:
     with UdpListener("127.0.0.1", 0) as listener:
         assert send("127.0.0.1", listener.port, b"one")
     assert not send("127.0.0.1", listener.port, b"two")
 
 
-def test_hosts_that_are_not_there() -> None:
+def test_unknown_hosts_are_reported() -> None:
     assert own_address("127.0.0.1") == "127.0.0.1"
     for call in (own_address, lambda host: send(host, 1, b"")):
         with pytest.raises(UsageError, match=r"no\.such\.host\.invalid"):

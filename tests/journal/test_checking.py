@@ -43,7 +43,7 @@ BATCHES = pytest.mark.parametrize("batches", [(), (3, 3, 3), (1,) * 11, (4, 5), 
 
 
 @BATCHES
-def test_the_same_records_agree_to_the_last_checkpoint(batches: tuple[int, ...]) -> None:
+def test_equal_records_agree_to_the_last_checkpoint(batches: tuple[int, ...]) -> None:
     checker = checked(RECORDS, batches)
     assert checker.difference is None
     assert checker.agreed == checkpoint(12)
@@ -51,7 +51,7 @@ def test_the_same_records_agree_to_the_last_checkpoint(batches: tuple[int, ...])
 
 @BATCHES
 @pytest.mark.parametrize("wrong", range(12))
-def test_one_other_record_is_told_between_its_checkpoints(wrong: int, batches: tuple[int, ...]) -> None:
+def test_different_record_is_reported_between_its_checkpoints(wrong: int, batches: tuple[int, ...]) -> None:
     checker = checked([*RECORDS[:wrong], b"\xff", *RECORDS[wrong + 1 :]], batches)
     least = wrong // 3 * 3
     assert checker.difference is not None

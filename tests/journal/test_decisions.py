@@ -35,7 +35,7 @@ SCHEDULES = pytest.mark.parametrize("text", ["random:5", "pct:3:3:15", "at:2=1,7
 
 
 @SCHEDULES
-def test_a_run_whose_journal_ends_goes_on_as_it_did(text: str) -> None:
+def test_run_continues_with_its_own_decisions_after_the_end_of_the_journal(text: str) -> None:
     choices = fly(own(text))
     assert len(choices) > 10
     assert any(choices)
@@ -70,7 +70,7 @@ class Taking(Policy):
 
 @SCHEDULES
 @pytest.mark.parametrize("every", [1, 2, 5, 100])
-def test_gaps_and_answers_are_the_whole_run_however_often_they_are_taken(text: str, every: int) -> None:
+def test_recorded_parts_add_up_to_all_decisions(text: str, every: int) -> None:
     taking = Taking(own(text), every)
     choices = fly(taking)
     taking.take()

@@ -43,7 +43,7 @@ def rewritten(path: Path, change: Callable[[str, dict[str, Any]], None]) -> Path
     return path.with_suffix(".other")
 
 
-def test_what_is_in_it(tmp_path: Path) -> None:
+def test_journal_has_plan_files_decisions_and_digests(tmp_path: Path) -> None:
     flown = record(plan_for(paths(tmp_path), 1, seed=4, schedule="random:3"), tmp_path.with_suffix(".cfepy"))
     journal = read_journal(tmp_path.with_suffix(".cfepy"))
     assert journal.plan.seed == 4
@@ -62,7 +62,7 @@ def test_what_is_in_it(tmp_path: Path) -> None:
     assert 0 < len(journal.decisions) < journal.decided
 
 
-def test_files_can_be_left_out(tmp_path: Path) -> None:
+def test_journal_without_files_replays_from_the_host(tmp_path: Path) -> None:
     folder = tmp_path / "mission"
     folder.mkdir()
     plan = plan_for(race(folder), 1)
@@ -78,7 +78,7 @@ def test_files_can_be_left_out(tmp_path: Path) -> None:
     assert other.difference is not None
 
 
-def test_one_that_is_cut_off_anywhere_is_replayed_as_far_as_it_goes(run: Path) -> None:
+def test_truncated_journal_is_replayed_up_to_its_end(run: Path) -> None:
     whole = run.read_bytes()
     journal = read_journal(run)
     first_frame = len(MARK) + 8 + int.from_bytes(whole[len(MARK) : len(MARK) + 4], "little")
@@ -96,7 +96,7 @@ def test_one_that_is_cut_off_anywhere_is_replayed_as_far_as_it_goes(run: Path) -
         assert not verdict.whole
 
 
-def test_one_that_was_killed_while_nodes_shut_down_ends_where_its_time_is_over(run: Path) -> None:
+def test_journal_cut_during_shutdown_ends_at_its_time_limit(run: Path) -> None:
     whole = run.read_bytes()
     end_ns = read_journal(run).known_until_ns
     run.write_bytes(whole[:-40])
@@ -109,7 +109,7 @@ def test_one_that_was_killed_while_nodes_shut_down_ends_where_its_time_is_over(r
         assert replayed.flown.results.virtual_s == 1
 
 
-def test_without_a_time_that_is_where_every_run_ends(tmp_path: Path) -> None:
+def test_truncated_journal_without_a_time_limit_ends_at_the_default_limit(tmp_path: Path) -> None:
     path = tmp_path / "run.cfepy"
     record(plan_for(race(tmp_path)), path)
     path.write_bytes(path.read_bytes()[:-40])
@@ -118,7 +118,7 @@ def test_without_a_time_that_is_where_every_run_ends(tmp_path: Path) -> None:
     assert replay(cut, until_ns=30 * NS_PER_S).flown.results.virtual_s == 10
 
 
-def test_a_damaged_one_is_told_with_its_place(run: Path) -> None:
+def test_damaged_journal_is_reported_with_its_place(run: Path) -> None:
     data = bytearray(run.read_bytes())
     data[len(data) // 2] ^= 1
     run.write_bytes(data)
@@ -126,7 +126,7 @@ def test_a_damaged_one_is_told_with_its_place(run: Path) -> None:
         read_journal(run)
 
 
-def test_a_length_that_no_frame_has_is_damage_and_not_a_cut_off_end(
+def test_impossible_frame_length_is_damage_and_not_a_truncation(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     writer = FrameWriter(tmp_path / "frames")
@@ -143,7 +143,7 @@ def test_a_length_that_no_frame_has_is_damage_and_not_a_cut_off_end(
             list(read_frames(tmp_path / "cut"))
 
 
-def test_other_files_and_other_formats_are_told(run: Path, tmp_path: Path) -> None:
+def test_other_files_and_other_formats_are_refused(run: Path, tmp_path: Path) -> None:
     (tmp_path / "text").write_text("CFE_APP, x", encoding="utf-8")
     with pytest.raises(JournalError, match="is not a journal"):
         read_journal(tmp_path / "text")
@@ -164,7 +164,7 @@ def test_other_files_and_other_formats_are_told(run: Path, tmp_path: Path) -> No
         read_journal(rewritten(run, without))
 
 
-def test_another_seed_is_another_run_and_it_is_told_where(run: Path) -> None:
+def test_changed_seed_is_reported_with_the_first_difference(run: Path) -> None:
     def change(kind: str, body: dict[str, Any]) -> None:
         if kind == "header":
             body["plan"]["seed"] = 77
@@ -176,7 +176,7 @@ def test_another_seed_is_another_run_and_it_is_told_where(run: Path) -> None:
     assert difference.after.records < difference.before.records
 
 
-def test_other_numbers_alone_are_another_run_too(run: Path) -> None:
+def test_changed_results_alone_are_reported(run: Path) -> None:
     def change(kind: str, body: dict[str, Any]) -> None:
         if kind == "end":
             body["results"] = "0" * 32
@@ -187,7 +187,7 @@ def test_other_numbers_alone_are_another_run_too(run: Path) -> None:
     assert not verdict.same
 
 
-def test_what_a_later_version_adds_does_not_matter(run: Path) -> None:
+def test_unknown_fields_of_later_versions_are_ignored(run: Path) -> None:
     def change(kind: str, body: dict[str, Any]) -> None:
         if kind == "header":
             body["surprise"] = 1
@@ -211,7 +211,7 @@ class Killer(Attachment):
 
 
 @pytest.mark.slow
-def test_a_killed_process_leaves_a_journal(tmp_path: Path) -> None:
+def test_killed_process_leaves_a_journal(tmp_path: Path) -> None:
     code = (
         "import sys\nfrom cfepy.journal import record\nfrom tests.journal.replays import plan_for\n"
         "from tests.journal.test_file import Killer\n"
@@ -225,7 +225,7 @@ def test_a_killed_process_leaves_a_journal(tmp_path: Path) -> None:
     assert 1_000_000_000 < journal.known_until_ns < 2_000_000_000
 
 
-def test_what_comes_in_is_in_the_file_before_the_run_goes_on(tmp_path: Path) -> None:
+def test_input_is_written_before_the_run_continues(tmp_path: Path) -> None:
     plan = plan_for("lab", 3)
     with (
         JournalRecorder(tmp_path / "run.cfepy", plan) as recorder,
@@ -240,12 +240,12 @@ def test_what_comes_in_is_in_the_file_before_the_run_goes_on(tmp_path: Path) -> 
     assert (pause.until_ns, [event.values[-1] for event in pause.events]) == (2_000_000_000, [b"first", b"second"])
 
 
-def test_a_journal_that_cannot_be_written_is_told_before_the_run(tmp_path: Path) -> None:
+def test_journal_that_cannot_be_written_is_reported_before_the_run(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be written"):
         record(plan_for("lab", 1), tmp_path / "nowhere" / "run.cfepy")
 
 
-def test_secrets_are_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_secrets_are_not_recorded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("AWS_SECRET_ACCESS_KEY", "do not tell")
     monkeypatch.setenv("ROBOT", "r2")
     paths(tmp_path)
@@ -256,14 +256,14 @@ def test_secrets_are_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -
     assert b"do not tell" not in tmp_path.with_suffix(".cfepy").read_bytes()
 
 
-def test_a_run_that_fails_to_begin_writes_no_results(tmp_path: Path) -> None:
+def test_run_that_does_not_start_writes_no_results(tmp_path: Path) -> None:
     with pytest.raises(UsageError):
         record(plan_for("no such mission", 1), tmp_path / "run.cfepy")
     with pytest.raises(JournalError, match="truncated"):
         read_journal(tmp_path / "run.cfepy")
 
 
-def test_digests_of_results_leave_the_wall_clock_out(tmp_path: Path) -> None:
+def test_digest_of_results_excludes_the_wall_clock(tmp_path: Path) -> None:
     from cfepy.journal.journal import digest_of
 
     plan = plan_for(race(tmp_path), 1)

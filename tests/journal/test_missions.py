@@ -20,13 +20,13 @@ SCHEDULES = ("fifo", "pct:2:3:300", "random:1:hold=200us", "at:5=1,9=1")
 @pytest.mark.parametrize(
     "mission", [pytest.param(each, marks=[pytest.mark.slow] * (each == "capture")) for each in SHIPPED]
 )
-def test_shipped_missions(mission: str, tmp_path: Path) -> None:
+def test_shipped_missions_are_replayed(mission: str, tmp_path: Path) -> None:
     assert_replays(plan_for(mission, 0.8), tmp_path)
 
 
 @pytest.mark.parametrize("mission", SMALL)
 @pytest.mark.parametrize("schedule", ["fifo", "random:9"])
-def test_missions_in_which_something_happens(mission: str, schedule: str, tmp_path: Path) -> None:
+def test_small_missions_with_many_events_are_replayed(mission: str, schedule: str, tmp_path: Path) -> None:
     (tmp_path / "mission").mkdir()
     assert_replays(plan_for(SMALL[mission](tmp_path / "mission"), 4, schedule=schedule, seed=5), tmp_path)
 
@@ -36,7 +36,7 @@ def test_schedules_on_a_board_where_calls_take_time(schedule: str, tmp_path: Pat
     assert_replays(plan_for("capture", 0.65, schedule=schedule, board="rx64m"), tmp_path)
 
 
-def test_a_script_is_done_again(tmp_path: Path) -> None:
+def test_script_is_replayed(tmp_path: Path) -> None:
     script = tmp_path / "noop.txt"
     script.write_text("at 1  send CFE_ES_NOOP\n      expect event CFE_ES 3 within 0.5\n", encoding="utf-8")
     outcome = assert_replays(plan_for("lab", script=str(script)), tmp_path).outcome
@@ -45,7 +45,7 @@ def test_a_script_is_done_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_faults_happen_again(tmp_path: Path) -> None:
+def test_faults_are_replayed(tmp_path: Path) -> None:
     faults = tmp_path / "faults.yaml"
     faults.write_text(
         "faults:\n  - {drop: /joint_states, probability: 0.2}\n  - {crash: MAIN_CTRL, at: 0.9}\n", encoding="utf-8"
@@ -55,7 +55,7 @@ def test_faults_happen_again(tmp_path: Path) -> None:
     assert flown.results.problems == []  # a crash that a fault plan asks for is none
 
 
-def test_the_seed_counts(tmp_path: Path) -> None:
+def test_seed_is_replayed(tmp_path: Path) -> None:
     mission = SMALL["race"](tmp_path)
     one, other = (record(plan_for(mission, 2, seed=seed), tmp_path / f"{seed}.cfepy") for seed in (1, 2))
     assert one.trace != other.trace

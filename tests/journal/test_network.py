@@ -89,7 +89,7 @@ def session(folder: Path, schedule: str = "fifo", board: str = "linux", port: in
 
 
 @pytest.mark.parametrize(("schedule", "board"), [("fifo", "linux"), ("random:3", "rx64m"), ("pct:1:3:500", "linux")])
-def test_datagrams_and_connections_come_again(tmp_path: Path, schedule: str, board: str) -> None:
+def test_datagrams_and_connections_are_replayed(tmp_path: Path, schedule: str, board: str) -> None:
     with (
         socket.create_server((LOOPBACK, 0)) as server,
         session(tmp_path, schedule, board, server.getsockname()[1]) as run,
@@ -113,7 +113,7 @@ def test_datagrams_and_connections_come_again(tmp_path: Path, schedule: str, boa
     assert_same_again(journal, journal.end.trace)
 
 
-def test_a_replay_can_end_between_two_inputs(tmp_path: Path) -> None:
+def test_replay_can_end_between_two_inputs(tmp_path: Path) -> None:
     with session(tmp_path) as run:
         run.run_while(lambda: run.bridge.host_port(1234) is None)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ground:
@@ -201,7 +201,7 @@ def broken_off(folder: Path, plan: RunPlan, at_ns: int, paced: float | None = No
     [(3, None, 1_400_000_000), (None, FAST, 1_400_000_000), (None, FAST, 12_000_000_000)],
     ids=["alone", "joined", "joined for longer than a run that has no time takes alone"],
 )
-def test_a_run_that_was_broken_off_is_replayed_up_to_there(
+def test_interrupted_run_is_replayed_up_to_its_end(
     tmp_path: Path, seconds: float | None, paced: float | None, at_ns: int
 ) -> None:
     again = replay(broken_off(tmp_path, plan_for(str(tmp_path), seconds), at_ns, paced))

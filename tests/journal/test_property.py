@@ -32,7 +32,7 @@ schedules = st.one_of(
     board=st.sampled_from(["linux", "workstation", "rx64m"]),
     schedule=schedules,
 )
-def test_a_journal_gives_the_run_again(mission: str, seconds: float, seed: int, board: str, schedule: str) -> None:
+def test_journal_reproduces_the_run(mission: str, seconds: float, seed: int, board: str, schedule: str) -> None:
     with TemporaryDirectory() as name:
         folder = Path(name, "mission")
         folder.mkdir()

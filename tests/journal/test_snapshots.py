@@ -75,14 +75,14 @@ def assert_same(journal: Journal, trace: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["node", "app"])
-def test_a_computer_without_them_gives_the_run_again(kind: str, place: Path, tmp_path: Path) -> None:
+def test_run_is_reproduced_on_a_computer_without_the_files(kind: str, place: Path, tmp_path: Path) -> None:
     journal, trace = recorded(kind, place, tmp_path)
     shutil.rmtree(place)
     assert_same(journal, trace)
 
 
 @pytest.mark.parametrize("kind", ["node", "app"])
-def test_a_computer_with_others_gives_the_run_again(kind: str, place: Path, tmp_path: Path) -> None:
+def test_run_is_reproduced_on_a_computer_with_other_files(kind: str, place: Path, tmp_path: Path) -> None:
     journal, trace = recorded(kind, place, tmp_path)
     (place / "gone").write_text("now there", encoding="utf-8")
     (place / "settings").write_text("others", encoding="utf-8")
@@ -96,7 +96,7 @@ def test_a_computer_with_others_gives_the_run_again(kind: str, place: Path, tmp_
     assert_same(journal, trace)
 
 
-def test_it_is_in_the_journal(place: Path, tmp_path: Path) -> None:
+def test_file_facts_are_in_the_journal(place: Path, tmp_path: Path) -> None:
     looks = recorded("node", place, tmp_path)[0].looks
     assert looks[f"{place}/there"] == PathLook(f"{place}/there", REGULAR, 10, 0o640, 1000 * 10**9)
     assert looks[f"{place}/gone"] == PathLook(f"{place}/gone", ABSENT)
@@ -106,7 +106,7 @@ def test_it_is_in_the_journal(place: Path, tmp_path: Path) -> None:
     assert not any(path.startswith(os.path.dirname(os.__file__) + "/") for path in looks)
 
 
-def test_a_link_does_not_lead_out(tmp_path: Path) -> None:
+def test_link_does_not_lead_outside(tmp_path: Path) -> None:
     outside = tmp_path / "outside"
     outside.mkdir()
     root = tmp_path / "root"
@@ -121,7 +121,7 @@ def test_a_link_does_not_lead_out(tmp_path: Path) -> None:
         put_in_place(root, [PathLook("/way/in", REGULAR)])
 
 
-def test_a_large_file_takes_no_room(tmp_path: Path) -> None:
+def test_large_file_takes_no_disk_space(tmp_path: Path) -> None:
     put_in_place(tmp_path, [PathLook("/large", REGULAR, 1 << 35, 0o644, 5)])
     found = (tmp_path / "large").stat()
     assert (found.st_size, found.st_mtime_ns) == (1 << 35, 5)

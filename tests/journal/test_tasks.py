@@ -13,7 +13,7 @@ from cfepy.journal import read_journal, record, replay
 from tests.journal.replays import plan_for
 
 
-def test_a_run_on_greenlets_is_replayed_on_threads_where_there_are_none(
+def test_run_on_greenlets_is_replayed_on_threads_when_greenlet_is_missing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     journal = tmp_path / "run.cfepy"
@@ -28,7 +28,7 @@ def test_a_run_on_greenlets_is_replayed_on_threads_where_there_are_none(
     assert "pip install 'cfepy[fast]'" in capsys.readouterr().err
 
 
-def test_a_run_that_had_threads_by_itself_is_the_same_on_greenlets(tmp_path: Path) -> None:
+def test_run_on_automatic_threads_is_the_same_on_greenlets(tmp_path: Path) -> None:
     """Some runs need threads, such as one in a separate thread or under coverage. The reason makes no difference."""
     with ThreadPoolExecutor(1) as pool:
         flown = pool.submit(record, plan_for("lab", 0.1), tmp_path / "run.cfepy").result()

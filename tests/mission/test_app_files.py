@@ -90,7 +90,7 @@ def unchanged(folder: Path) -> bool:
     }
 
 
-def test_what_an_application_writes_goes_with_the_run(mission: str, folder: Path) -> None:
+def test_files_written_by_an_application_are_private_to_the_run(mission: str, folder: Path) -> None:
     runs = [fly(plan(mission, tasks)) for tasks in ("thread", "greenlet", "thread")]
     lines = runs[0].mission.console.lines
     assert not runs[0].results.problems
@@ -102,7 +102,7 @@ def test_what_an_application_writes_goes_with_the_run(mission: str, folder: Path
     assert unchanged(folder)
 
 
-def test_its_journal_has_what_it_read(mission: str, folder: Path, tmp_path: Path) -> None:
+def test_journal_has_the_files_that_were_read(mission: str, folder: Path, tmp_path: Path) -> None:
     flown = record(plan(mission), tmp_path / "run.cfepy")
     assert str(folder / "starts") in read_journal(tmp_path / "run.cfepy").files
     (folder / "starts").write_text("another computer", encoding="utf-8")
@@ -110,7 +110,9 @@ def test_its_journal_has_what_it_read(mission: str, folder: Path, tmp_path: Path
     assert_same_again(read_journal(tmp_path / "run.cfepy"), flown.trace)
 
 
-def test_it_can_be_kept(mission: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_written_files_can_be_saved(
+    mission: str, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.delenv("TMPDIR", raising=False)
     out = tmp_path / "out"
     assert main(["run", mission, "--for", "1", "--quiet", "--save-files", str(out)]) == 0
@@ -120,7 +122,7 @@ def test_it_can_be_kept(mission: str, folder: Path, tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.slow
-def test_nothing_of_it_is_past_the_simulated_computer(
+def test_file_access_is_not_reported_as_nondeterminism(
     mission: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["run", mission, "--for", "1", "--check-determinism", "2"]) == 0
@@ -137,7 +139,7 @@ def flown_with(tmp_path: Path, startup: str, **sources: str) -> list[str]:
 ONE = "CFE_APP, app, Main, APP, 100, 16384, 0x0, 0;\n!"
 
 
-def test_apps_and_nodes_have_one_set_of_files(folder: Path, tmp_path: Path) -> None:
+def test_apps_and_nodes_share_one_set_of_files(folder: Path, tmp_path: Path) -> None:
     note = tmp_path / "note"
     writer = f'def Main(cfe):\n    with open("{note}", "w") as file:\n        file.write("from the app")\n'
     reader = f'import time\ntime.sleep(0.5)\nprint(open("{note}").read())\n'
@@ -147,7 +149,7 @@ def test_apps_and_nodes_have_one_set_of_files(folder: Path, tmp_path: Path) -> N
     assert not note.exists()
 
 
-def test_parts_of_a_package_have_them_too(folder: Path, tmp_path: Path) -> None:
+def test_modules_of_a_package_use_the_files_of_the_run(folder: Path, tmp_path: Path) -> None:
     package = tmp_path / "other" / "app"
     (package / "inner").mkdir(parents=True)
     (package / "__init__.py").write_text(
@@ -168,7 +170,7 @@ def Main(cfe):
     assert (folder / "starts").read_text(encoding="utf-8") == "xx"
 
 
-def test_a_missing_part_is_told_as_python_does(folder: Path, tmp_path: Path) -> None:
+def test_missing_module_is_reported_as_by_python(folder: Path, tmp_path: Path) -> None:
     package = tmp_path / "other" / "app"
     package.mkdir(parents=True)
     (package / "__init__.py").write_text("from . import words\n", encoding="utf-8")
@@ -176,14 +178,14 @@ def test_a_missing_part_is_told_as_python_does(folder: Path, tmp_path: Path) -> 
     assert any("ImportError: cannot import name 'words' from 'cfepy_app_" in line for line in lines)
 
 
-def test_a_missing_file_is_told_with_the_line_that_asked(folder: Path, tmp_path: Path) -> None:
+def test_missing_file_is_reported_with_its_line(folder: Path, tmp_path: Path) -> None:
     lines = flown_with(tmp_path, ONE, app="def Main(cfe):\n    open('nothing')\n")
     text = "\n".join(lines)
     assert "FileNotFoundError: [Errno 2] No such file or directory: 'nothing'" in text
     assert "cfepy/nodes" not in text
 
 
-def test_all_else_is_the_hosts(folder: Path, tmp_path: Path) -> None:
+def test_other_modules_use_the_real_functions(folder: Path, tmp_path: Path) -> None:
     source = """
     import importlib, os, pathlib, sys, threading, logging, numpy, json, io
     import importlib.resources
@@ -207,12 +209,12 @@ def test_all_else_is_the_hosts(folder: Path, tmp_path: Path) -> None:
     assert "all well" in lines
 
 
-def test_without_files_none_of_it_is_made(tmp_path: Path) -> None:
+def test_run_without_file_access_has_no_run_files(tmp_path: Path) -> None:
     flown = fly(RunPlan((write_mission(tmp_path, ONE, app="def Main(cfe):\n    pass\n"),), seconds=1.0))
     assert flown.mission.run_files is None
 
 
-def test_a_second_processor_finds_what_the_first_one_wrote(folder: Path, tmp_path: Path) -> None:
+def test_second_processor_finds_files_of_the_first(folder: Path, tmp_path: Path) -> None:
     source = """
     import os
     def Main(cfe):

@@ -44,7 +44,7 @@ def text_of(mission: Mission) -> str:
     return "\n".join(mission.console.lines)
 
 
-def test_an_app_that_dies_is_restarted_with_fresh_variables(tmp_path: Path) -> None:
+def test_app_that_dies_is_restarted_with_fresh_variables(tmp_path: Path) -> None:
     folder = write_mission(tmp_path, APP.format("crash", "CRASH", 0) + "!", crash=CRASHING)
     mission = fly(folder, 20)
     text = text_of(mission)
@@ -57,7 +57,7 @@ def test_an_app_that_dies_is_restarted_with_fresh_variables(tmp_path: Path) -> N
     assert not mission.record.resets
 
 
-def test_the_traceback_is_the_apps_own(tmp_path: Path) -> None:
+def test_traceback_shows_only_lines_of_the_app(tmp_path: Path) -> None:
     folder = write_mission(tmp_path, APP.format("crash", "CRASH", 0) + "!", crash=CRASHING)
     lines = fly(folder, 2).console.lines
     begin = lines.index("Traceback (most recent call last):")
@@ -78,7 +78,7 @@ def test_exception_action_1_resets_the_processor(tmp_path: Path) -> None:
     assert "CFE_PSP: Exiting cFE with PROCESSOR Reset status." in mission.console.lines
 
 
-def test_an_app_that_returns_has_exited(tmp_path: Path) -> None:
+def test_app_that_returns_has_exited(tmp_path: Path) -> None:
     source = """
         def short_main(cfe):
             cfe.evs.register()
@@ -151,7 +151,7 @@ def held(mission: Mission) -> dict[str, int]:
     }
 
 
-def test_a_mission_can_be_closed_while_an_app_refuses_to_die(tmp_path: Path) -> None:
+def test_mission_is_closed_while_an_app_refuses_to_end(tmp_path: Path) -> None:
     source = """
         def stubborn_main(cfe):
             while True:
@@ -165,7 +165,7 @@ def test_a_mission_can_be_closed_while_an_app_refuses_to_die(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("name", ["a_talker_without_suffix", "a_script_with_a_long_name.py"])
-def test_nodes_may_be_called_what_ros_scripts_are_called(tmp_path: Path, name: str) -> None:
+def test_node_scripts_may_have_any_file_name(tmp_path: Path, name: str) -> None:
     (tmp_path / name).write_text(
         "#!/usr/bin/env python\nprint(__name__, __file__.rpartition('/')[2])\n", encoding="utf-8"
     )
@@ -175,7 +175,7 @@ def test_nodes_may_be_called_what_ros_scripts_are_called(tmp_path: Path, name: s
         assert "Could not load file" not in text_of(mission)
 
 
-def test_a_script_without_suffix_is_not_the_one_with_suffix_beside_it(tmp_path: Path) -> None:
+def test_script_without_suffix_is_preferred_to_one_with_suffix(tmp_path: Path) -> None:
     (tmp_path / "talker").write_text("print('the one that is meant')\n", encoding="utf-8")
     (tmp_path / "talker.py").write_text("print('another one')\n", encoding="utf-8")
     with fly(write_mission(tmp_path, "CFE_APP, talker, __main__, TALKER, 60, 16384, 0, 0;\n!"), 1) as mission:
@@ -209,7 +209,7 @@ NOBODYS = """
 
 
 @pytest.mark.parametrize("action", [0, 1])
-def test_an_exception_in_a_task_of_nobody_resets_the_processor(tmp_path: Path, action: int) -> None:
+def test_exception_in_a_task_without_an_application_resets_the_processor(tmp_path: Path, action: int) -> None:
     folder = write_mission(tmp_path, APP.format("maker", "MAKER", action) + "!", maker=NOBODYS)
     mission = fly(folder, 20)
     first = mission.record.resets[0]

@@ -45,7 +45,7 @@ def test_an_application_loads_code(tmp_path: Path) -> None:
     assert "refused: OS_ERROR" in lines
 
 
-def test_an_application_that_hangs_is_ended_by_the_watchdog(tmp_path: Path) -> None:
+def test_hanging_application_is_ended_by_the_watchdog(tmp_path: Path) -> None:
     lines = flight(
         tmp_path,
         """
@@ -65,7 +65,7 @@ def test_an_application_that_hangs_is_ended_by_the_watchdog(tmp_path: Path) -> N
     assert "CFE_PSP: Reset SubType: 4" in lines
 
 
-def test_eeprom_and_ram_disk_outlive_a_processor_reset(tmp_path: Path) -> None:
+def test_eeprom_and_ram_disk_survive_a_processor_reset(tmp_path: Path) -> None:
     lines = flight(
         tmp_path,
         """
@@ -91,7 +91,7 @@ def test_eeprom_and_ram_disk_outlive_a_processor_reset(tmp_path: Path) -> None:
     ]
 
 
-def test_what_the_board_stored_of_an_exception_outlives_the_reset(tmp_path: Path) -> None:
+def test_stored_exception_context_survives_the_reset(tmp_path: Path) -> None:
     console = Console(quiet=True)
     app = """
     def MAIN(cfe):

@@ -110,7 +110,7 @@ def wrong_table() -> bytes:
     return build(TableImage("TO_LAB_APP.TO_LAB_Subs", bytes(256)))
 
 
-def test_boot_console_is_nasas(tmp_path: Path) -> None:
+def test_boot_console_matches_nasas(tmp_path: Path) -> None:
     last = "Exit Application SCH_LAB Completed."
     assert ours(flight(tmp_path, STARTUP), last) == golden("console_boot.log", last)
 
@@ -120,7 +120,7 @@ def startup_texts(lines: list[str]) -> list[str]:
     return [line.partition(" ")[2] for line in lines if any(word in line for word in wanted)]
 
 
-def test_bad_startup_lines_say_what_nasas_say(tmp_path: Path) -> None:
+def test_bad_startup_lines_are_reported_as_by_nasas_cfe(tmp_path: Path) -> None:
     theirs = startup_texts(golden("console_bad_startup.log", "Invalid ES Startup file entry: 1"))
     found = startup_texts(flight(tmp_path, BAD_STARTUP))
     # TO_LAB of the recording, and its two malformed entries, which tests/es rebuilds byte for byte
@@ -129,6 +129,6 @@ def test_bad_startup_lines_say_what_nasas_say(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ending", ["", "CFE_APP, sample_app, SAMPLE_APP_Main, LATE, 50, 16384, 0x0, 0"])
-def test_an_entry_without_its_semicolon_is_lost(tmp_path: Path, ending: str) -> None:
+def test_entry_without_its_semicolon_is_ignored(tmp_path: Path, ending: str) -> None:
     lines = flight(tmp_path, STARTUP.replace("!", ending))
     assert not any("LATE" in line for line in lines)

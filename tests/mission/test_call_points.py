@@ -36,7 +36,7 @@ def main(cfe):
 
 
 @pytest.mark.parametrize("policy", ["random:{}", "pct:{}:2:60"])
-def test_what_comes_right_after_letting_go_is_found(tmp_path: Path, policy: str) -> None:
+def test_preemption_right_after_a_release_is_found(tmp_path: Path, policy: str) -> None:
     (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY, encoding="utf-8")
     (tmp_path / "startup.scr").write_text(
         "CFE_APP, counting, main, COUNTING, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8"
@@ -47,7 +47,7 @@ def test_what_comes_right_after_letting_go_is_found(tmp_path: Path, policy: str)
     assert not fly(RunPlan((str(tmp_path),), seconds=0.8)).results.problems
 
 
-def test_there_are_such_calls() -> None:
+def test_calls_that_release_are_functions_of_services() -> None:
     known = {name for service in (Osal, SoftwareBus, TableServices) for name in dir(service)}
     assert known >= GIVING
 
@@ -76,7 +76,7 @@ with lock:
 """
 
 
-def test_an_observer_is_told_of_calls_of_services_and_of_locks(tmp_path: Path) -> None:
+def test_observer_is_notified_of_calls_to_services_and_locks(tmp_path: Path) -> None:
     (tmp_path / "counting.py").write_text(LETS_GO_TOO_EARLY, encoding="utf-8")
     (tmp_path / "locking.py").write_text(LOCKS, encoding="utf-8")
     lines = (

@@ -51,7 +51,7 @@ def test_boot(tmp_path: Path, version: str) -> None:
         assert (values["CFERevision"], values["OSALRevision"]) == (int(version[-1]), 0)
 
 
-def test_the_default_is_7_0_1(tmp_path: Path) -> None:
+def test_default_release_is_7_0_1(tmp_path: Path) -> None:
     assert read_mission(write_mission(tmp_path, "!")).cfe_version == "7.0.1"
 
 

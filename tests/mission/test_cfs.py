@@ -26,9 +26,7 @@ def test_every_table_has_a_definition() -> None:
 
 
 @pytest.mark.parametrize("definition", DEFINITIONS, ids=lambda path: path.name)
-def test_tables_are_what_their_definitions_say(
-    definition: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_tables_match_their_definitions(definition: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     shutil.copytree(FOLDER, tmp_path / "cfs")
     made = tmp_path / "cfs" / f"{definition.stem}.tbl"
     made.unlink()
@@ -43,7 +41,7 @@ def test_tables_are_what_their_definitions_say(
 @pytest.mark.slow
 @pytest.mark.skipif(not (Path(BUILT) / "cf/lc.so").exists(), reason="CFEPY_REAL_CFE names no folder with LC's code")
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_the_scenario_comes_about(tasks: str, tmp_path: Path) -> None:
+def test_scenario_succeeds(tasks: str, tmp_path: Path) -> None:
     shutil.copytree(FOLDER, tmp_path / "cfs")
     for name in NAMES:
         shutil.copy(Path(BUILT) / "cf" / f"{name}.so", tmp_path / "cfs")
@@ -54,7 +52,7 @@ def test_the_scenario_comes_about(tasks: str, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(not (Path(BUILT) / "cf/cf.so").exists(), reason="CFEPY_REAL_CFE names no folder with CF's code")
-def test_files_come_down_and_go_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_files_are_downlinked_and_uplinked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("cfdppy", reason="cfdp-py is not installed")
     shutil.copytree(FOLDER, tmp_path / "cfs")
     for name in NAMES:

@@ -50,7 +50,9 @@ PRINTED = """
 
 
 @pytest.mark.parametrize(("yaml", "times"), [("", (0, 0, 20)), ("{work: 5 ms, ~reset: 1 ms}", (5, 1, 20))])
-def test_callbacks_handlers_and_nodes_take_their_time(tmp_path: Path, yaml: str, times: tuple[int, ...]) -> None:
+def test_callbacks_handlers_and_nodes_take_their_compute_time(
+    tmp_path: Path, yaml: str, times: tuple[int, ...]
+) -> None:
     folder = missions.write(tmp_path, {"SLOW": PRINTED})
     (folder / "mission.yaml").write_text(f"nodes: {{SLOW: {{compute: {yaml or '{}'}}}}}\n", encoding="utf-8")
     run = cfepy.run(str(folder), seconds=1)
@@ -59,7 +61,7 @@ def test_callbacks_handlers_and_nodes_take_their_time(tmp_path: Path, yaml: str,
     assert printed == [f"message {message}", f"request {request}", f"compute {compute}"]
 
 
-def test_an_application_takes_its_time(tmp_path: Path) -> None:
+def test_application_takes_its_compute_time(tmp_path: Path) -> None:
     (tmp_path / "work.py").write_text(APP, encoding="utf-8")
     (tmp_path / "startup.scr").write_text("CFE_APP, work, Work, WORK, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     with cfepy.boot(str(tmp_path)) as flight:
@@ -67,7 +69,7 @@ def test_an_application_takes_its_time(tmp_path: Path) -> None:
         flight.expect_event("WORK", 1, text="30000 us", within=0)
 
 
-def test_a_time_that_cannot_be(tmp_path: Path) -> None:
+def test_invalid_compute_time_is_refused(tmp_path: Path) -> None:
     folder = missions.write(tmp_path, {"SLOW": "import cfepy\ncfepy.compute(-1)\n"})
     (folder / "mission.yaml").write_text("nodes: {SLOW: {compute: {work: soon}}}\n", encoding="utf-8")
     with pytest.raises(cfepy.UsageError, match=r"mission.yaml:1: nodes.SLOW.compute.work: "):
@@ -76,7 +78,7 @@ def test_a_time_that_cannot_be(tmp_path: Path) -> None:
     assert any("invalid time -1 s" in line for line in cfepy.run(str(folder), seconds=1).console)
 
 
-def test_on_the_host_nothing_happens() -> None:
+def test_compute_does_nothing_on_the_host() -> None:
     cfepy.compute(1000)
     with pytest.raises(ValueError, match="expected 0 or more"):
         cfepy.compute(-1)

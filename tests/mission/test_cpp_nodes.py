@@ -27,7 +27,7 @@ def read(folder: Path, text: str) -> CppNodesConfig:
     return read_sections(str(folder / "mission.yaml")).cpp_nodes
 
 
-def test_what_is_said(tmp_path: Path) -> None:
+def test_cpp_nodes_section_is_read(tmp_path: Path) -> None:
     said = read(tmp_path, SECTION)
     assert (said.profile, said.arena_bytes, said.text, said.array) == ("strict", 65536, 20, 30)
     assert said.capacities == {
@@ -60,13 +60,13 @@ def test_what_is_said(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_errors_say_where(tmp_path: Path, old: str, new: str, error: str) -> None:
+def test_errors_of_the_section_have_their_line(tmp_path: Path, old: str, new: str, error: str) -> None:
     with pytest.raises(UsageError) as caught:
         read(tmp_path, SECTION.replace(old, new))
     assert str(caught.value).startswith(f"{tmp_path}/mission.yaml:{error}")
 
 
-def test_the_library_has_the_same_arena_where_nothing_is_said() -> None:
+def test_library_has_the_same_default_arena() -> None:
     assert f"#define ROSCFE_ARENA_BYTES {ARENA_BYTES}\n" in (library_folder() / "src/heap.cpp").read_text(
         encoding="utf-8"
     )

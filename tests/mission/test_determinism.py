@@ -43,12 +43,12 @@ def digest(folder: str, tasks: str, slices: list[float]) -> str:
 
 
 @pytest.mark.parametrize("seconds", [2, pytest.param(25, marks=pytest.mark.slow)])
-def test_both_contexts_and_any_slicing_give_one_trace(folder: str, seconds: int) -> None:
+def test_threads_greenlets_and_slices_give_one_trace(folder: str, seconds: int) -> None:
     slices = [[seconds], [seconds / 2] * 2, [0.1] * (seconds * 10), [seconds * 0.4, 0.0, seconds * 0.6]]
     assert len({digest(folder, tasks, cut) for tasks in ("thread", "greenlet") for cut in slices}) == 1
 
 
-def test_two_missions_side_by_side_do_not_meet(folder: str) -> None:
+def test_two_missions_side_by_side_are_independent(folder: str) -> None:
     alone = digest(folder, "thread", [6.0])
     with (
         Mission(folder, console=Console(quiet=True)) as first,
@@ -67,14 +67,14 @@ def digest_in_process(mission: str, tasks: str, seconds: float, hash_seed: str) 
 
 
 @pytest.mark.parametrize("seeds", [["4242"], pytest.param(["0", "1", "77"], marks=pytest.mark.slow)], ids=len)
-def test_hash_seeds_do_not_matter(folder: str, seeds: list[str]) -> None:
+def test_hash_seed_does_not_change_the_trace(folder: str, seeds: list[str]) -> None:
     assert (
         len({digest_in_process(folder, "thread", 5, seed) for seed in seeds} | {digest(folder, "thread", [5.0])}) == 1
     )
 
 
 @pytest.mark.slow
-def test_hash_seeds_do_not_matter_to_nodes() -> None:
+def test_hash_seed_does_not_change_the_trace_of_nodes() -> None:
     digests = {digest_in_process("capture", tasks, 1.2, seed) for tasks, seed in (("thread", "7"), ("greenlet", "99"))}
     assert len(digests) == 1
 
@@ -89,7 +89,7 @@ def eventful(hash_seed: int, *arguments: object) -> subprocess.Popen[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("mission", "schedule"), [("lab", []), ("sched", [7]), ("capture", [7])])
-def test_resets_and_a_ground_link_change_nothing(mission: str, schedule: list[int]) -> None:
+def test_resets_and_a_ground_link_do_not_change_determinism(mission: str, schedule: list[int]) -> None:
     flights = [
         eventful(0, mission, "thread", 1, *schedule),
         eventful(1, mission, "greenlet", 1, *schedule),

@@ -29,7 +29,7 @@ def check(folder: str, runs: int, *options: str) -> int:
     return main(["run", folder, "--for", "26", "--check-determinism", str(runs), *options])
 
 
-def test_all_nodes_come_to_their_end(folder: str) -> None:
+def test_all_nodes_end(folder: str) -> None:
     with Mission(folder, console=Console(quiet=True)) as mission:
         mission.run_for(26)
         mission.shut_down_nodes()

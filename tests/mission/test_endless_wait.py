@@ -229,7 +229,7 @@ def in_app(folder: Path, source: str) -> EndlessWaits:
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_worker_that_gets_no_sentinel_while_the_main_program_joins_it(tmp_path: Path, tasks: str) -> None:
+def test_worker_without_a_sentinel_waits_forever_when_it_is_joined(tmp_path: Path, tasks: str) -> None:
     found = in_node(tmp_path, SENTINEL, tasks)
     (wait,) = found.alone
     assert (wait.app, wait.task, wait.place, found.circles) == ("PAIR", "PAIR.pair.2.2", "pair.py:12", [])
@@ -239,17 +239,17 @@ def test_a_worker_that_gets_no_sentinel_while_the_main_program_joins_it(tmp_path
     )
 
 
-def test_a_main_program_that_waits_after_it_was_told(tmp_path: Path) -> None:
+def test_wait_after_the_last_notify_is_endless(tmp_path: Path) -> None:
     (wait,) = in_node(tmp_path, TOO_LATE).alone
     assert (wait.task, wait.what, wait.place) == ("PAIR", "the end of Condition.wait()", "pair.py:20")
 
 
 @pytest.mark.parametrize("source", BY_RIGHT, ids=NAMES)
-def test_a_wait_that_somebody_may_end_is_none(source: str, tmp_path: Path) -> None:
+def test_wait_that_another_task_may_end_is_not_reported(source: str, tmp_path: Path) -> None:
     assert in_node(tmp_path, source) == ([], [])
 
 
-def test_a_service_that_needs_what_its_caller_holds(tmp_path: Path) -> None:
+def test_service_that_needs_a_lock_of_its_caller_is_a_deadlock(tmp_path: Path) -> None:
     (circle,) = in_node(tmp_path, SERVICE).circles
     assert [(wait.task, wait.what, wait.holder) for wait in circle] == [
         ("PAIR", "an answer of service /a", "PAIR.a.3"),
@@ -257,21 +257,21 @@ def test_a_service_that_needs_what_its_caller_holds(tmp_path: Path) -> None:
     ]
 
 
-def test_a_reader_that_wants_to_write(tmp_path: Path) -> None:
+def test_reader_that_wants_to_write_waits_forever(tmp_path: Path) -> None:
     ((wait,),) = in_app(tmp_path, RW_LOCK).circles
     assert (wait.task, wait.what, wait.place, wait.holder) == ("RW", "writers of lock LOCK", "rw.py:5", "RW")
 
 
-def test_a_reader_that_reads_again_behind_a_writer(tmp_path: Path) -> None:
+def test_reader_that_reads_again_behind_a_writer_is_a_deadlock(tmp_path: Path) -> None:
     (circle,) = in_app(tmp_path, BEHIND_A_WRITER).circles
     assert [(wait.task, wait.holder) for wait in circle] == [("RW", "WRITER"), ("WRITER", "RW")]
 
 
-def test_a_semaphore_that_nobody_can_give(tmp_path: Path) -> None:
+def test_wait_for_a_semaphore_without_a_giver_is_endless(tmp_path: Path) -> None:
     (wait,) = in_app(tmp_path, SEMAPHORE).alone
     assert (wait.task, wait.what, wait.place) == ("RW", "semaphore DONE", "rw.py:3")
 
 
 @pytest.mark.parametrize("source", [GIVEN_BY_TIMER, GIVEN_BY_OTHER], ids=["timer", "other"])
-def test_a_semaphore_that_somebody_may_give(source: str, tmp_path: Path) -> None:
+def test_wait_for_a_semaphore_with_a_giver_is_not_reported(source: str, tmp_path: Path) -> None:
     assert in_app(tmp_path, source) == ([], [])

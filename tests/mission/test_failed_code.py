@@ -34,29 +34,29 @@ def group_of(text: str) -> str:
     return Failure(FailureKind.RAISED, error.who, error.text, cause=error.cause).group
 
 
-def test_the_place_is_the_innermost_line_that_is_no_library() -> None:
+def test_place_of_an_error_is_the_innermost_line_outside_libraries() -> None:
     (error,) = read(ONE)
     assert (error.who, error.text, error.at_ns) == ("arm", "ValueError: no (arm.py:12)", 5)
     assert error.detail.splitlines()[0] == "Traceback (most recent call last):"
 
 
-def test_an_exception_is_told_by_type_and_line() -> None:
+def test_error_is_grouped_by_type_and_line() -> None:
     group = group_of(ONE)
     assert group_of(ONE.replace(": no", ": not left")) == group
     assert group_of(ONE.replace("ValueError", "KeyError")) != group
     assert group_of(ONE.replace("line 12", "line 13")) != group
 
 
-def test_rospy_is_a_library_too() -> None:
+def test_rospy_counts_as_a_library() -> None:
     text = ONE.replace("ValueError: no", f'  File "{rospy_shim.__file__}", line 7, in call\n    raise\nValueError: no')
     assert [error.text for error in read(text)] == ["ValueError: no (arm.py:12)"]
 
 
-def test_of_a_chain_the_last_counts() -> None:
+def test_last_error_of_a_chain_counts() -> None:
     assert [error.text for error in read(CHAIN)] == ["KeyError: 'x' (arm.py:14)"]
 
 
-def test_lines_of_two_nodes_may_be_mixed() -> None:
+def test_mixed_lines_of_two_nodes_are_separated() -> None:
     reader = TracebackReader()
     for line in ONE.strip().splitlines():
         for node in ("one", "two"):
@@ -64,9 +64,9 @@ def test_lines_of_two_nodes_may_be_mixed() -> None:
     assert [error.who for error in reader.found] == ["one", "two"]
 
 
-def test_other_lines_are_no_tracebacks() -> None:
+def test_other_lines_are_not_tracebacks() -> None:
     assert read("all is well\nValueError: no") == []
 
 
-def test_ctrl_c_that_ends_a_node_is_no_error() -> None:
+def test_ctrl_c_that_ends_a_node_is_not_an_error() -> None:
     assert read(ONE.replace("ValueError: no", "KeyboardInterrupt")) == []

@@ -58,7 +58,7 @@ def full() -> Iterator[Mission]:
 
 
 @pytest.mark.parametrize("command", HEADER_FAILED, ids=lambda command: command.name)
-def test_there_is_no_room_for_the_header(full: Mission, command: Command) -> None:
+def test_missing_space_for_the_header_is_reported(full: Mission, command: Command) -> None:
     field, event = HEADER_FAILED[command]
     assert event in send(full, command, **{field: FILE})
 

@@ -29,7 +29,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> Session:
     return fly(tmp_path_factory.mktemp("session"))
 
 
-def test_all_files_are_there(session: Session) -> None:
+def test_all_files_are_written(session: Session) -> None:
     assert set(FILES) <= set(session.files)
 
 

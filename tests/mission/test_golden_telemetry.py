@@ -70,14 +70,14 @@ def differing(declared: dict[str, Telemetry], pair: Pair) -> set[str]:
     return found | {f"byte {at}" for at in offsets}
 
 
-def test_every_packet_is_the_recorded_one(session: Session, declared: dict[str, Telemetry]) -> None:
+def test_telemetry_packets_equal_the_recorded_ones(session: Session, declared: dict[str, Telemetry]) -> None:
     compared = pairs(session)
     assert len(compared) == 30
     wrong = {pair.name: differing(declared, pair) - set(MASKED.get(pair.name, ())) for pair in compared}
     assert {name: sorted(fields) for name, fields in wrong.items() if fields} == {}
 
 
-def test_nothing_is_masked_without_need(session: Session, declared: dict[str, Telemetry]) -> None:
+def test_each_masked_field_differs(session: Session, declared: dict[str, Telemetry]) -> None:
     needed: dict[str, set[str]] = {}
     for pair in pairs(session):
         needed.setdefault(pair.name, set()).update(differing(declared, pair))
@@ -86,7 +86,7 @@ def test_nothing_is_masked_without_need(session: Session, declared: dict[str, Te
     } == {}
 
 
-def test_every_event_is_the_recorded_one(session: Session) -> None:
+def test_events_equal_the_recorded_ones(session: Session) -> None:
     recorded = [bytes.fromhex(row["hex"]) for row in recorded_telemetry() if row["mid"] in EVENTS]
     ours = [packet for packet in session.telemetry if msg.get_msg_id(packet) in EVENTS]
     compared = list(comparable(recorded))

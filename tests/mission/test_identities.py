@@ -43,7 +43,7 @@ def booted(folder: Path, mission_file: str = "", **ids: int) -> Mission:
     return mission
 
 
-def test_the_psp_prints_what_it_was_given_as_the_real_one(tmp_path: Path) -> None:
+def test_psp_prints_given_ids_as_nasas_psp(tmp_path: Path) -> None:
     with booted(tmp_path, spacecraft_id=67, processor_id=2) as mission:
         assert "\n".join(mission.console.lines).startswith(REAL_LINES)
         psp, os = mission.cfe.psp, mission.cfe.os
@@ -51,7 +51,7 @@ def test_the_psp_prints_what_it_was_given_as_the_real_one(tmp_path: Path) -> Non
         assert os.bsp_get_argv() == ("core-cpu1", "--cpuid", "2", "--scid", "67")
 
 
-def test_events_carry_them_and_ci_lab_listens_at_a_port_of_its_own(tmp_path: Path) -> None:
+def test_events_have_the_given_ids_and_ci_lab_its_own_port(tmp_path: Path) -> None:
     with booted(tmp_path, spacecraft_id=67, processor_id=3) as mission, GroundLink(mission) as ground:
         assert any(line.endswith("CI_LAB listening on UDP port: 1236") for line in mission.console.lines)
         assert any(" 67/3/CI_LAB 3: " in line for line in mission.console.lines)
@@ -62,12 +62,12 @@ def test_events_carry_them_and_ci_lab_listens_at_a_port_of_its_own(tmp_path: Pat
         assert (source["SpacecraftID"], source["ProcessorID"]) == (67, 3)
 
 
-def test_a_port_of_ci_lab_has_16_bits(tmp_path: Path) -> None:
+def test_port_of_ci_lab_has_16_bits(tmp_path: Path) -> None:
     with booted(tmp_path, processor_id=70_000) as mission:
         assert any(line.endswith(f"CI_LAB listening on UDP port: {71_233 - 65_536}") for line in mission.console.lines)
 
 
-def test_a_mission_file_says_what_it_was_built_with(tmp_path: Path) -> None:
+def test_mission_file_sets_the_default_ids(tmp_path: Path) -> None:
     limits = "limits: {spacecraft_id: 70, processor_id: 2, processor_name: cpu2}"
     with booted(tmp_path, limits, processor_id=4) as mission:
         lines = mission.console.lines
@@ -79,7 +79,7 @@ def test_a_mission_file_says_what_it_was_built_with(tmp_path: Path) -> None:
         ]
 
 
-def test_an_id_is_no_capacity_that_a_board_could_limit(tmp_path: Path) -> None:
+def test_id_is_not_limited_by_a_board(tmp_path: Path) -> None:
     (tmp_path / "numbered.yaml").write_text(
         "name: numbered\nlimits: {spacecraft_id: 5, processor_id: 7}\n", encoding="utf-8"
     )
@@ -88,7 +88,7 @@ def test_an_id_is_no_capacity_that_a_board_could_limit(tmp_path: Path) -> None:
         assert (mission.config.spacecraft_id, mission.config.processor_id) == (0xFFFF_FFFF, 0)
 
 
-def test_they_stay_over_a_reset(tmp_path: Path) -> None:
+def test_given_ids_survive_a_reset(tmp_path: Path) -> None:
     with booted(tmp_path, spacecraft_id=67) as mission:
         before = len(mission.console.lines)
         mission.cfe.sb.transmit_msg(RESTART.packet(RestartType=1), is_origination=False)
@@ -97,7 +97,7 @@ def test_they_stay_over_a_reset(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_plan_says_them_and_a_journal_keeps_them(tmp_path: Path) -> None:
+def test_given_ids_are_part_of_the_plan_and_the_journal(tmp_path: Path) -> None:
     plan = RunPlan(("lab",), seconds=1, spacecraft_id=67, processor_id=2)
     assert plan.command_line() == "cfepy run --for 1 --processor-id 2 --spacecraft-id 67 lab"
     flown = assert_replays(plan, tmp_path)
@@ -110,7 +110,7 @@ def test_an_id_has_32_bits(number: object) -> None:
         cfepy.boot("lab", spacecraft_id=number)  # type: ignore[arg-type]  # it is to be refused
 
 
-def test_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_given_ids_are_options_of_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "lab", "--for", "1", "--spacecraft-id", "0x43"]) == 0
     assert re.search(r"^EVS Port1 \S+ 67/1/TO_LAB 1: ", capsys.readouterr().out, re.MULTILINE)
     assert main(["run", "lab", "--spacecraft-id", "-1"]) == 2
@@ -120,7 +120,7 @@ def test_the_command_line(capsys: pytest.CaptureFixture[str]) -> None:
     assert "--processor-id: invalid number 'two'; expected a whole number such as 67 or 0x43" in capsys.readouterr().err
 
 
-def test_two_spacecraft_in_one_process_are_two_runs() -> None:
+def test_two_spacecraft_in_one_process_are_independent() -> None:
     """Each with a clock and a network of its own, and the trace that it has alone."""
     with cfepy.boot("lab", spacecraft_id=66) as first, cfepy.boot("lab", spacecraft_id=67) as second:
         for _ in range(4):

@@ -49,7 +49,7 @@ def fly(folder: Path) -> list[str]:
     return [line for line in console.lines if line.startswith("[")]
 
 
-def test_nodes_of_a_launch_file_run_beside_the_missions_own(folder: Path) -> None:
+def test_nodes_of_a_launch_file_run_with_the_nodes_of_the_mission(folder: Path) -> None:
     (folder / "mission.yaml").write_text(
         "launch: [{file: pack/nodes.launch, args: {who: somebody}}]\n", encoding="utf-8"
     )
@@ -60,7 +60,7 @@ def test_nodes_of_a_launch_file_run_beside_the_missions_own(folder: Path) -> Non
     ]
 
 
-def test_the_mission_file_has_the_last_word(folder: Path) -> None:
+def test_mission_file_overrides_the_launch_file(folder: Path) -> None:
     (folder / "mission.yaml").write_text(
         "launch: [pack/nodes.launch]\nparams: {shared: mine, only: {too: 2}}\n", encoding="utf-8"
     )
@@ -94,7 +94,7 @@ def test_errors_have_a_place(folder: Path, text: str, said: str) -> None:
     assert found.text in str(raised.value)
 
 
-def test_a_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
+def test_mission_in_memory_has_room_for_its_nodes(tmp_path: Path) -> None:
     script = tmp_path / "idle.py"
     script.write_text("import rospy\nrospy.init_node('idle', anonymous=True)\nrospy.spin()\n", encoding="utf-8")
     nodes = {f"N{number}": NodeConfig(f"N{number}", script=script) for number in range(40)}

@@ -58,7 +58,7 @@ def fly(seconds: float = SECONDS, tasks: str = "thread") -> Mission:
 
 @pytest.mark.parametrize("flights", [2, pytest.param(FLIGHTS, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_missions_do_not_pile_up(tasks: str, flights: int) -> None:
+def test_missions_do_not_accumulate(tasks: str, flights: int) -> None:
     for _ in range(flights):
         fly(tasks=tasks)
     found = parts()
@@ -67,7 +67,7 @@ def test_missions_do_not_pile_up(tasks: str, flights: int) -> None:
     assert found["Universe"] <= 4  # each flight makes four of them
 
 
-def test_garbage_is_looked_for_as_seldom_as_a_suite_wants() -> None:
+def test_garbage_is_collected_after_every_nth_mission() -> None:
     collect_every(3)
     try:
         looks = gc.get_stats()[-1]["collections"]
@@ -78,7 +78,7 @@ def test_garbage_is_looked_for_as_seldom_as_a_suite_wants() -> None:
         collect_every(1)
 
 
-def test_garbage_that_no_collection_has_looked_for_is_not_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_uncollected_garbage_is_not_frozen(monkeypatch: pytest.MonkeyPatch) -> None:
     fly(0.1)
     gc.collect()
     of_one_run = len(gc.get_objects())
@@ -96,7 +96,7 @@ def test_garbage_that_no_collection_has_looked_for_is_not_frozen(monkeypatch: py
 
 
 @pytest.mark.slow
-def test_those_that_were_watched_do_not_pile_up() -> None:
+def test_observed_missions_do_not_accumulate() -> None:
     """Their kernels and buses have classes of their own."""
     for seed in range(FLIGHTS):
         Trial(RunPlan(("capture",), seconds=SECONDS)).run(Schedule(seed=seed))
@@ -105,7 +105,7 @@ def test_those_that_were_watched_do_not_pile_up() -> None:
     assert found["WrappingKernel"] <= 1
 
 
-def test_a_mission_that_is_over_can_be_looked_at() -> None:
+def test_finished_mission_can_be_inspected() -> None:
     first = fly()
     fly(0.1)  # at its end garbage is looked for
     assert first.booted is not None
@@ -116,7 +116,7 @@ def test_a_mission_that_is_over_can_be_looked_at() -> None:
     assert first.ros.topics()
 
 
-def test_who_has_turned_the_collector_off_keeps_it_off() -> None:
+def test_disabled_garbage_collector_stays_disabled() -> None:
     gc.disable()
     try:
         looks = gc.get_stats()[-1]["collections"]
@@ -128,7 +128,7 @@ def test_who_has_turned_the_collector_off_keeps_it_off() -> None:
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_one_that_nobody_closed_ends_when_nobody_has_it(tasks: str) -> None:
+def test_unclosed_mission_ends_when_it_is_deleted(tasks: str) -> None:
     mission = Mission(read_mission("capture"), console=Console(quiet=True), tasks=tasks)
     mission.run_for(SECONDS)
     kernel, watch = mission.kernel, mission.stall_watch
@@ -139,13 +139,13 @@ def test_one_that_nobody_closed_ends_when_nobody_has_it(tasks: str) -> None:
     assert not watch.is_on
 
 
-def test_a_closed_one_does_not_go_on() -> None:
+def test_closed_mission_refuses_to_run() -> None:
     mission = fly(0.1)
     with pytest.raises(RuntimeError, match="this mission is closed"):
         mission.run_for(0.1)
 
 
-def test_python_ends_with_one_open() -> None:
+def test_python_ends_with_an_open_mission() -> None:
     code = f"from cfepy.mission import Mission\nmission = Mission('capture')\nmission.run_for({SECONDS})"
     ended = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)
     assert (ended.returncode, ended.stderr) == (0, "")

@@ -71,7 +71,7 @@ LINUX = {
 
 
 @pytest.mark.parametrize("board", [None, "rx64m"])
-def test_all_of_everything(tmp_path: Path, board: str | None) -> None:
+def test_application_that_exhausts_every_resource_gets_nasas_statuses(tmp_path: Path, board: str | None) -> None:
     folder = write_mission(tmp_path, STARTUP, taker=TAKER)
     with Mission(folder, console=Console(quiet=True), board=board) as mission:
         mission.run_for(3)

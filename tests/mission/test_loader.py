@@ -78,7 +78,7 @@ def loader(tmp_path: Path, files: FileSystem, console: Console) -> ModuleLoader:
     return ModuleLoader(console, [CompiledApps(files), built_in, nodes, *python])
 
 
-def test_the_first_finder_that_knows_gives_the_code(loader: ModuleLoader, files: FileSystem) -> None:
+def test_first_finder_with_the_module_loads_it(loader: ModuleLoader, files: FileSystem) -> None:
     assert loader.load("/cf/hk.so", "Main", "HK")() == ("python", HANDLE)
     assert loader.load("/cf/hk.so", NODE_SYMBOL, "HK")() == "hk.py as HK"
     assert loader.load("/cf/own.so", "any", "OWN")() == "built in"
@@ -87,7 +87,7 @@ def test_the_first_finder_that_knows_gives_the_code(loader: ModuleLoader, files:
     loader.forget()
 
 
-def test_libraries_of_any_kind_give_their_symbols(loader: ModuleLoader, files: FileSystem) -> None:
+def test_libraries_of_any_kind_have_symbols(loader: ModuleLoader, files: FileSystem) -> None:
     files.write_file("/cf/sum.so", b"\x7fELF...")
     assert loader.library_symbol("add") is None
     assert loader.load_library("/cf/sum.so", "Fails")(-1) == -1
@@ -99,7 +99,7 @@ def test_libraries_of_any_kind_give_their_symbols(loader: ModuleLoader, files: F
     loader.forget()
 
 
-def test_what_no_finder_knows_is_told(loader: ModuleLoader, console: Console) -> None:
+def test_unknown_module_is_reported(loader: ModuleLoader, console: Console) -> None:
     for load in (lambda: loader.load("/cf/x.so", "Main", "X"), lambda: loader.load_module("/cf/own.so", "module M")):
         with pytest.raises(OsalError) as caught:
             load()
@@ -109,7 +109,7 @@ def test_what_no_finder_knows_is_told(loader: ModuleLoader, console: Console) ->
     assert not loader.exists("nowhere/x.so")
 
 
-def test_code_that_was_removed_is_asked_of_no_other_finder(files: FileSystem, console: Console) -> None:
+def test_removed_code_is_not_loaded_by_another_finder(files: FileSystem, console: Console) -> None:
     removed, other = Removed(files), CompiledApps(files)
     files.write_file("/ram/a.so", b"\x7fELF...")
     loader = ModuleLoader(console, [removed, other])

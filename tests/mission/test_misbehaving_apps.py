@@ -35,14 +35,14 @@ def error_of(mission: Mission) -> str | None:
 
 
 @pytest.mark.parametrize("statement", ["import sys; sys.exit(3)", "raise GeneratorExit", "1 / 0"])
-def test_a_module_that_cannot_be_executed_is_a_line_of_the_startup_script(tmp_path: Path, statement: str) -> None:
+def test_module_that_cannot_be_executed_fails_its_startup_line(tmp_path: Path, statement: str) -> None:
     mission = fly(tmp_path, f"{statement}\ndef Main(cfe): pass")
     assert mission.booted is not None
     assert "CFE_ES_LoadModule: Could not load file:" in text_of(mission)
 
 
 @pytest.mark.parametrize("statement", ["raise ValueError('spring')", "import sys; sys.exit(4)"])
-def test_a_library_whose_init_fails_is_not_loaded(tmp_path: Path, statement: str) -> None:
+def test_library_with_a_failed_init_is_not_loaded(tmp_path: Path, statement: str) -> None:
     mission = fly(tmp_path, f"def Init(cfe):\n    {statement}", LIBRARY)
     assert mission.booted is not None
     assert "CFE_ES_LoadLibrary: Load Shared Library Init Error = 0xffffffff" in text_of(mission)
@@ -58,34 +58,34 @@ def test_a_library_whose_init_fails_is_not_loaded(tmp_path: Path, statement: str
         ("def Main(cfe, more):\n    pass", "write `def Main(cfe):`"),
     ],
 )
-def test_an_entry_point_that_would_not_run_is_refused(tmp_path: Path, source: str, said: str) -> None:
+def test_invalid_entry_point_is_refused(tmp_path: Path, source: str, said: str) -> None:
     mission = fly(tmp_path, source)
     assert said in text_of(mission)
     assert "APP" not in mission.cfe.es.history
 
 
-def test_any_exception_is_the_death_of_its_app_alone(tmp_path: Path) -> None:
+def test_any_exception_ends_only_its_app(tmp_path: Path) -> None:
     mission = fly(tmp_path, f"class Own(BaseException): pass\ndef Main(cfe):\n{READY}    raise Own('mine')\n")
     assert not mission.record.resets
     assert error_of(mission) == "Own: mine"  # also after the restart, and however that one ends
 
 
 @pytest.mark.parametrize("body", ["raise KeyError", "return 5"])
-def test_an_exception_without_a_text_is_told_all_the_same(tmp_path: Path, body: str) -> None:
+def test_exception_without_a_text_is_reported(tmp_path: Path, body: str) -> None:
     source = f"class Own(Exception):\n    def __str__(self): {body}\n\ndef Main(cfe):\n{READY}    raise Own\n"
     mission = fly(tmp_path, source)
     assert "app_0_1.Own: <exception str() failed>" in text_of(mission)
     assert error_of(mission) == "Own: its text is not available"
 
 
-def test_text_that_utf8_cannot_hold(tmp_path: Path) -> None:
+def test_text_outside_utf8_is_kept_in_the_error(tmp_path: Path) -> None:
     mission = fly(
         tmp_path, f"def Main(cfe):\n{READY}    cfe.es.write_to_sys_log('\\ud800')\n    raise OSError('\\ud800')"
     )
     assert error_of(mission) == "OSError: \ud800"
 
 
-def test_a_module_keeps_its_name_in_every_run_and_is_forgotten(tmp_path: Path) -> None:
+def test_module_keeps_its_name_in_every_run_and_is_removed(tmp_path: Path) -> None:
     source = f"def Main(cfe):\n    cfe.os.printf(__name__)\n{READY}    raise ValueError\n"
     before = set(sys.modules)
     runs = [fly(tmp_path, source, seconds=5) for _ in range(2)]
@@ -103,14 +103,14 @@ def test_restarts_leave_no_modules_behind(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_the_end_of_a_runaway_recursion_is_the_same_everywhere(tmp_path: Path, tasks: str) -> None:
+def test_runaway_recursion_ends_with_the_same_traceback_on_threads_and_greenlets(tmp_path: Path, tasks: str) -> None:
     if tasks == "greenlet":
         pytest.importorskip("greenlet")
     mission = fly(tmp_path, f"def deeper(): deeper()\ndef Main(cfe):\n{READY}    deeper()\n", tasks=tasks)
     assert "[Previous line repeated 47 more times]" in text_of(mission)
 
 
-def test_a_traceback_shows_no_frames_of_cfepy_in_its_chain(tmp_path: Path) -> None:
+def test_traceback_hides_frames_of_cfepy_in_its_chain(tmp_path: Path) -> None:
     source = f"""
 def Main(cfe):
 {READY}
@@ -137,7 +137,7 @@ def test_the_clock_stays_a_whole_number(tmp_path: Path, time: str) -> None:
 
 
 @pytest.mark.parametrize("statement", ["raise ValueError('tick')", "import sys; sys.exit()"])
-def test_a_timer_whose_callback_fails_stops(tmp_path: Path, statement: str) -> None:
+def test_timer_with_a_failed_callback_stops(tmp_path: Path, statement: str) -> None:
     source = f"""
 def Main(cfe):
     def tick(timer_id):
@@ -153,7 +153,7 @@ def Main(cfe):
 
 
 @pytest.mark.parametrize("in_timer", [False, True])
-def test_all_who_die_at_one_instant_are_restarted(tmp_path: Path, in_timer: bool) -> None:
+def test_apps_that_die_at_the_same_time_are_all_restarted(tmp_path: Path, in_timer: bool) -> None:
     fail = "    1 / 0\n"
     if in_timer:
         fail = (
@@ -176,7 +176,7 @@ FAILING_HANDLERS = {
 
 
 @pytest.mark.parametrize("kind", FAILING_HANDLERS)
-def test_handlers_that_fail_keep_nobody_from_the_end(tmp_path: Path, kind: str) -> None:
+def test_failed_handlers_do_not_prevent_the_end(tmp_path: Path, kind: str) -> None:
     source = (
         "def Main(cfe):\n" + READY.replace("700", "1") + FAILING_HANDLERS[kind] + "    cfe.os.task_delay(100_000)\n"
     )
@@ -189,7 +189,7 @@ def test_handlers_that_fail_keep_nobody_from_the_end(tmp_path: Path, kind: str) 
         assert len(mission.record.resets) == 1
 
 
-def test_a_delete_handler_that_fails_is_its_applications(tmp_path: Path) -> None:
+def test_failed_delete_handler_is_an_error_of_its_application(tmp_path: Path) -> None:
     source = (
         "def Main(cfe):\n" + READY.replace("700", "1") + FAILING_HANDLERS["delete"] + "    cfe.os.task_delay(100_000)\n"
     )

@@ -45,7 +45,7 @@ def read(folder: Path, text: str, mistakes: Mistakes) -> MissionSections:
     return read_mission_file(folder / "mission.yaml", mistakes)
 
 
-def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
+def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> None:
     mistakes = Mistakes()
     said = read(tmp_path, WRONG, mistakes)
     fields = "name board bord limits.sb_max_pipes limits.nodes nodes.A.namespace nodes.A.args nodes.A.keys[0] topics.b "
@@ -118,7 +118,7 @@ def test_a_wrong_value_is_shown_as_in_yaml(tmp_path: Path, text: str, said: str)
     assert [error.text for error in mistakes.errors] == [said]
 
 
-def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
+def test_section_that_is_not_a_mapping_is_refused(tmp_path: Path) -> None:
     for text in ("[1]", "a: {", "nodes: 3", "topics: 3", "limits: 3", "launch: 3"):
         mistakes = Mistakes()
         read(tmp_path, text, mistakes)
@@ -126,7 +126,7 @@ def test_what_is_no_mapping_at_all(tmp_path: Path) -> None:
     assert read(tmp_path, "", Mistakes()) == MissionSections()
 
 
-def test_demands_are_kept_as_they_stand(tmp_path: Path) -> None:
+def test_demands_are_kept_unparsed(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("!", encoding="utf-8")
     text = "invariants: {a: 1}\nresults: {b: 2}\ndeadlines: {c: 3}\ninversions: 4\n"
     (tmp_path / "mission.yaml").write_text(text, encoding="utf-8")

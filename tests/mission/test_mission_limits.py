@@ -18,16 +18,16 @@ from tests.mission.flights import write_mission
 LINUX, RX64M = load_profile("linux"), load_profile("rx64m")
 
 
-def test_without_limits_a_mission_has_nasas_numbers() -> None:
+def test_mission_without_limits_has_nasas_numbers() -> None:
     assert MissionLimits().config(LINUX, has_nodes=False) == PlatformConfig()
     assert MissionLimits().config(RX64M, has_nodes=True) == RX64M.config()
 
 
-def test_nodes_bring_room_for_parameters_and_images_where_ram_is_unlimited() -> None:
+def test_nodes_add_memory_for_parameters_and_images_where_ram_is_unlimited() -> None:
     assert MissionLimits().config(LINUX, has_nodes=True) == PlatformConfig().with_limits(ROS_ROOM)
 
 
-def test_room_for_many_nodes_takes_none_from_images() -> None:
+def test_memory_for_many_nodes_does_not_reduce_memory_for_images() -> None:
     config = MissionLimits(nodes=50).config(LINUX, has_nodes=True)
     assert config.sb_buf_memory_bytes == ROS_ROOM["sb_buf_memory_bytes"]
 
@@ -37,7 +37,7 @@ def test_a_mission_raises_and_lowers() -> None:
     assert (config.os_max_tasks, config.sb_max_pipes, config.os_max_queues) == (300, 10, 64)
 
 
-def test_a_board_is_the_most_that_there_is() -> None:
+def test_limit_above_the_board_is_refused() -> None:
     assert MissionLimits({"os_max_tasks": 20}).config(RX64M, has_nodes=True).os_max_tasks == 20
     with pytest.raises(
         UsageError, match=r"limits.os_max_tasks: must be at most 32 on the board rx64m, not 33; lower it"
@@ -56,7 +56,7 @@ def test_any_number_of_nodes_has_room(nodes: int) -> None:
 
 
 @pytest.mark.slow
-def test_fifty_nodes_fly_with_one_line_in_the_mission_file(tmp_path: Path) -> None:
+def test_fifty_nodes_fly_with_one_limit(tmp_path: Path) -> None:
     startup = "".join(f"CFE_APP, n, __main__, N{number}, 100, 4096, 0, 0;\n" for number in range(50))
     node = """
         import os, rospy
@@ -74,7 +74,7 @@ def test_fifty_nodes_fly_with_one_line_in_the_mission_file(tmp_path: Path) -> No
         assert len(flight.ros.graph.topics["/all"].subscriptions) == 50
 
 
-def test_check_says_which_line_asks_for_too_much_and_which_limit_to_raise(tmp_path: Path) -> None:
+def test_check_reports_the_line_beyond_a_limit_and_the_limit_to_raise(tmp_path: Path) -> None:
     startup = "".join(f"CFE_APP, n, __main__, N{number}, 100, 4096, 0, 0;\n" for number in range(27)) + "!\n"
     mission = write_mission(tmp_path, startup, n="import rospy\n")
     assert [(found.line, found.text) for found in check_mission(mission)] == [
@@ -92,7 +92,7 @@ def test_check_says_which_line_asks_for_too_much_and_which_limit_to_raise(tmp_pa
     )
 
 
-def test_a_wrong_limit_stops_a_run_with_file_and_line(tmp_path: Path) -> None:
+def test_invalid_limit_stops_a_run_with_file_and_line(tmp_path: Path) -> None:
     mission = write_mission(tmp_path, "!\n", mission_yaml="board: rx64m\nlimits:\n  sb_max_pipes: 99\n")
     with pytest.raises(
         UsageError, match=r"mission.yaml:3: limits.sb_max_pipes: must be at most 32 on the board rx64m, not 99"
@@ -100,7 +100,7 @@ def test_a_wrong_limit_stops_a_run_with_file_and_line(tmp_path: Path) -> None:
         Mission(read_mission(mission), console=Console(quiet=True))
 
 
-def test_a_mission_that_says_nothing_gets_a_pcs_queues_but_on_a_board_that_has_its_own() -> None:
+def test_mission_without_queue_limits_gets_long_queues_except_on_a_board_with_own_limits() -> None:
     nobody_said = MissionLimits(nodes=10, yields=True)
     assert nobody_said.config(LINUX, has_nodes=True).os_queue_max_depth == 10_000
     assert nobody_said.config(RX64M, has_nodes=True).os_queue_max_depth == RX64M.config().os_queue_max_depth

@@ -57,6 +57,6 @@ def test_ctrl_c_shuts_a_node_down(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("keys", ["[-1]", "[true]", "[[]]", "[null]"])
-def test_what_cannot_be_typed(tmp_path: Path, keys: str) -> None:
+def test_keys_other_than_texts_are_refused(tmp_path: Path, keys: str) -> None:
     with pytest.raises(UsageError, match=r"mission.yaml:2: nodes.TELEOP.keys.*must be a text to type"):
         read_mission(mission_with(tmp_path, keys))

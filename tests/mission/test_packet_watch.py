@@ -34,11 +34,11 @@ def fly(folder: Path, seen: list[Seen] | None) -> str:
         return flight.trace.digest()
 
 
-def test_a_watched_run_has_the_same_trace(tmp_path: Path) -> None:
+def test_watched_run_has_the_same_trace(tmp_path: Path) -> None:
     assert fly(tmp_path, []) == fly(tmp_path, None)
 
 
-def test_packets_look_as_their_subscribers_get_them(tmp_path: Path) -> None:
+def test_watched_packets_equal_received_ones_in_header_and_checksum(tmp_path: Path) -> None:
     seen: list[Seen] = []
     fly(tmp_path, seen)
     own = [each for each in seen if each.sender == "OWN" and each.msg_id == 0x0890]
@@ -49,7 +49,7 @@ def test_packets_look_as_their_subscribers_get_them(tmp_path: Path) -> None:
     assert validate_checksum(command.packet)
 
 
-def test_they_are_the_same_bytes(tmp_path: Path) -> None:
+def test_watched_packets_have_the_same_bytes(tmp_path: Path) -> None:
     seen: list[Seen] = []
     got: list[bytes] = []
     watch = PacketWatch(seen.append, lambda msg_id: msg_id in (0x0890, 0x1892))
@@ -63,7 +63,7 @@ def test_they_are_the_same_bytes(tmp_path: Path) -> None:
     assert [each.packet for each in seen] == got
 
 
-def test_packets_without_a_subscriber_are_seen_too(tmp_path: Path) -> None:
+def test_packets_without_a_subscriber_are_seen(tmp_path: Path) -> None:
     seen: list[Seen] = []
     fly(tmp_path, seen)
     assert len([each for each in seen if each.msg_id == 0x0891]) == len(

@@ -21,14 +21,14 @@ def mission_with(folder: Path, text: str, **files: str) -> str:
     return write_mission(folder, STARTUP, n="import rospy\n", mission_yaml=text)
 
 
-def test_later_files_win_and_the_mission_file_wins_over_all(tmp_path: Path) -> None:
+def test_later_files_override_earlier_ones_and_the_mission_file_overrides_all(tmp_path: Path) -> None:
     text = "params_from: [one.yaml, {file: two.yaml, namespace: /arm}]\nparams: {arm: {top: 3}}\n"
     mission = mission_with(tmp_path, text, one="arm: {rate: 1, top: 1}\nname: r2\n", two="rate: 2\ngains: [1, 2.5]\n")
     own = {"arm": {"rate": 2, "top": 3, "gains": [1, 2.5]}, "name": "r2"}
     assert read_mission(mission).ros.params == {**ROSCORE_PARAMS, **own}
 
 
-def test_one_file_needs_no_list_and_nodes_have_files_too(tmp_path: Path) -> None:
+def test_single_file_needs_no_list_and_nodes_may_have_files(tmp_path: Path) -> None:
     text = "params_from: one.yaml\nnodes: {N: {params_from: [one.yaml], params: {b: 2}}}\n"
     ros = read_mission(mission_with(tmp_path, text, one="a: {x: !!binary aGk=}\n")).ros
     assert (ros.params, ros.nodes["N"].params) == ({**ROSCORE_PARAMS, "a": {"x": b"hi"}}, {"a": {"x": b"hi"}, "b": 2})
@@ -59,7 +59,7 @@ def test_one_file_needs_no_list_and_nodes_have_files_too(tmp_path: Path) -> None
         ),
     ],
 )
-def test_errors_say_file_and_line(tmp_path: Path, text: str, content: str, error: str) -> None:
+def test_errors_have_file_and_line(tmp_path: Path, text: str, content: str, error: str) -> None:
     mission = mission_with(tmp_path, text, one=content)
     with pytest.raises(UsageError, match=error):
         read_mission(mission)

@@ -35,7 +35,7 @@ def test_source_is_found_with_and_without_its_suffix(written: str) -> None:
         (b"\xff\x00", "SyntaxError" if sys.version_info >= (3, 11, 4) else "ValueError"),
     ],
 )
-def test_a_traceback_shows_its_lines(tmp_path: Path, source: bytes, said: str) -> None:
+def test_traceback_shows_lines_of_virtual_source(tmp_path: Path, source: bytes, said: str) -> None:
     with Mission(write_mission(tmp_path, "!"), console=Console(quiet=True)) as mission:
         mission.run_for(2)
         mission.files.write_file("/ram/late.py", source)
@@ -71,25 +71,25 @@ def restart(mission: Mission) -> None:
     mission.run_for(8)
 
 
-def test_what_was_written_over_a_file_of_the_mission_is_what_starts_next(patched: Mission) -> None:
+def test_overwritten_file_of_the_mission_is_used_by_the_next_start(patched: Mission) -> None:
     patched.files.write_file("/cf/late.py", NEW)
     restart(patched)
     assert [line for line in patched.console.lines if line.startswith("the ")] == ["the old code", "the new code"]
 
 
-def test_a_file_that_was_removed_starts_no_more(patched: Mission) -> None:
+def test_removed_file_cannot_be_started(patched: Mission) -> None:
     patched.files.remove("/cf/late.py")
     restart(patched)
     assert any("Cannot Restart Application LATE, File /cf/late.so does not exist" in x for x in patched.console.lines)
 
 
-def test_a_file_that_nobody_changed_is_the_hosts(patched: Mission) -> None:
+def test_unchanged_file_is_read_from_the_host(patched: Mission) -> None:
     patched.files.read_file("/cf/late.py")
     restart(patched)
     assert [line for line in patched.console.lines if line.startswith("the ")] == ["the old code"] * 2
 
 
-def test_an_app_that_was_edited_within_a_second_is_what_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_app_edited_within_a_second_is_reloaded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "dont_write_bytecode", False)
     monkeypatch.setattr(sys, "pycache_prefix", None)
     said = []

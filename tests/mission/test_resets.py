@@ -55,7 +55,7 @@ def command_reset(mission: Mission, reset_type: int) -> None:
     mission.run_for(3)
 
 
-def test_a_processor_reset_loses_ram_and_keeps_reserved_memory(tmp_path: Path) -> None:
+def test_processor_reset_loses_ram_and_keeps_reserved_memory(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
         mission.run_for(3)
         first = mission.processor
@@ -79,7 +79,7 @@ def test_a_power_on_reset_loses_everything(tmp_path: Path) -> None:
         assert not mission.files.exists("/ram/kept.txt")
 
 
-def test_the_ram_disk_outlives_a_processor_reset(tmp_path: Path) -> None:
+def test_ram_disk_survives_a_processor_reset(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
         mission.run_for(3)
         mission.files.write_file("/ram/kept.txt", b"?")
@@ -96,7 +96,7 @@ def test_a_reset_by_the_host_between_two_pieces_of_a_run(tmp_path: Path) -> None
         assert len(starts(mission)) == 2
 
 
-def test_the_report_counts_over_resets(tmp_path: Path) -> None:
+def test_report_counts_across_resets(tmp_path: Path) -> None:
     with make(tmp_path) as mission:
         mission.run_for(3)
         before = mission.record.traffic(mission.cfe.sb, ())[0x0808].sent
@@ -122,7 +122,7 @@ def test_finally_blocks_of_apps_run_before_the_next_boot(tmp_path: Path) -> None
         assert len(mission.record.resets) == 1
 
 
-def test_a_mission_that_resets_itself_at_every_boot_still_comes_to_an_end(tmp_path: Path) -> None:
+def test_mission_that_resets_at_every_boot_ends_at_its_time_limit(tmp_path: Path) -> None:
     with make(tmp_path, keeper="def keeper_main(cfe):\n    cfe.psp.restart(1)\n") as mission:
         mission.run_for(10)
         assert mission.kernel.now == 10_000_000_000
@@ -130,7 +130,7 @@ def test_a_mission_that_resets_itself_at_every_boot_still_comes_to_an_end(tmp_pa
 
 
 @pytest.mark.parametrize("pieces", [1, 7])
-def test_one_trace_on_both_contexts_and_in_any_number_of_pieces(tmp_path: Path, pieces: int) -> None:
+def test_trace_is_the_same_on_both_contexts_and_in_any_number_of_pieces(tmp_path: Path, pieces: int) -> None:
     digests = []
     for tasks in ("thread", "greenlet"):
         with make(tmp_path, tasks) as mission:
@@ -230,7 +230,7 @@ LEFTOVERS = """
     """
 
 
-def test_what_is_made_while_all_ends_does_not_outlive_the_reset(tmp_path: Path) -> None:
+def test_objects_made_during_shutdown_do_not_survive_the_reset(tmp_path: Path) -> None:
     with make(tmp_path, keeper=LEFTOVERS) as mission:
         mission.run_for(2)
         mission.processor.psp.restart(RST_TYPE_PROCESSOR, "the test wants it")
@@ -238,7 +238,7 @@ def test_what_is_made_while_all_ends_does_not_outlive_the_reset(tmp_path: Path) 
         assert not mission.network.datagrams.bound
 
 
-def test_a_reset_that_is_under_way_is_not_changed_by_another(tmp_path: Path) -> None:
+def test_pending_reset_is_not_changed_by_another(tmp_path: Path) -> None:
     source = """
     def keeper_main(cfe):
         try:

@@ -37,7 +37,7 @@ class PressedInTheBus(PacketWatch):
     ("packet", "seconds"),
     [(50, 0.8), *(pytest.param(packet, 3, marks=pytest.mark.slow) for packet in (1, 300, 800))],
 )
-def test_a_flight_goes_on_after_it(tasks: str, packet: int, seconds: float) -> None:
+def test_flight_continues_after_ctrl_c(tasks: str, packet: int, seconds: float) -> None:
     with cfepy.boot("capture", tasks=tasks) as usual:
         usual.run_until(seconds)
     with cfepy.boot("capture", tasks=tasks, attachments=[PressedInTheBus(packet)]) as flight:
@@ -67,7 +67,7 @@ class LongPiece(PressedInTheBus):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_flight_goes_on_after_it_however_busy_the_computer_is(tasks: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_flight_continues_after_ctrl_c_on_a_busy_computer(tasks: str, monkeypatch: pytest.MonkeyPatch) -> None:
     with cfepy.boot("capture", tasks=tasks) as usual:
         usual.run_until(2)
     piece = LongPiece(300, Clocks(monkeypatch, used=0.0, ready=1.0))
@@ -79,13 +79,13 @@ def test_a_flight_goes_on_after_it_however_busy_the_computer_is(tasks: str, monk
 
 
 @TASKS
-def test_a_run_ends_with_it(tasks: str) -> None:
+def test_run_ends_with_ctrl_c(tasks: str) -> None:
     with pytest.raises(KeyboardInterrupt):
         cfepy.run("capture", seconds=1e6, tasks=tasks, attachments=[PressedInTheBus(40)])
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
-def test_it_comes_when_all_is_done() -> None:
+def test_ctrl_c_is_raised_at_the_end_of_the_block() -> None:
     done = []
 
     def act() -> None:
@@ -98,7 +98,7 @@ def test_it_comes_when_all_is_done() -> None:
     assert done == [True]
 
 
-def test_the_second_one_does_not_wait() -> None:
+def test_second_ctrl_c_is_raised_at_once() -> None:
     done = []
 
     def act() -> None:
@@ -113,7 +113,7 @@ def test_the_second_one_does_not_wait() -> None:
     assert done == [1]
 
 
-def test_an_error_goes_before_it() -> None:
+def test_error_has_precedence_over_ctrl_c() -> None:
     def act() -> None:
         with HeldBack():
             press()
@@ -123,7 +123,7 @@ def test_an_error_goes_before_it() -> None:
         act()
 
 
-def test_the_outermost_holds_it_back() -> None:
+def test_outermost_block_raises_ctrl_c() -> None:
     done = []
 
     def act() -> None:
@@ -137,7 +137,7 @@ def test_the_outermost_holds_it_back() -> None:
     assert done == [(True, False, True, False)]
 
 
-def test_what_the_program_answers_itself_is_left_to_it() -> None:
+def test_signal_handler_of_the_program_is_not_replaced() -> None:
     heard = []
     before = signal.signal(signal.SIGINT, lambda *_: heard.append("here"))
     try:
@@ -148,7 +148,7 @@ def test_what_the_program_answers_itself_is_left_to_it() -> None:
     assert (heard, signals.asked, signals.is_first) == (["here"], False, False)
 
 
-def test_pieces_go_after_what_they_take() -> None:
+def test_length_of_pieces_follows_their_duration() -> None:
     length = PieceLength()
     length.took(FIRST_PIECE_NS, SHORT_NS - 1)
     assert length.ns == 2 * FIRST_PIECE_NS

@@ -50,13 +50,13 @@ def fly(
 
 
 @pytest.mark.parametrize("mission", ["capture", "sched", "rx64m_pubsub"])
-def test_exploring_without_a_deviation_is_the_run_that_everybody_has(mission: str) -> None:
+def test_exploring_without_a_deviation_gives_the_default_run(mission: str) -> None:
     assert fly(mission, Schedule("at"))[0] == fly(mission, None)[0]
 
 
 @pytest.mark.parametrize("mission", ["capture", "rx64m_pubsub"])
 @pytest.mark.parametrize("text", ["random:1", "pct:2:3", "random:3:any", "random:4:hold=500us", "pct:5:2:any:hold=1ms"])
-def test_a_schedule_can_be_given_again_on_the_other_context(mission: str, text: str) -> None:
+def test_schedule_is_reproduced_on_the_other_context(mission: str, text: str) -> None:
     schedule = Schedule.parse(text)
     digest, recorded = fly(mission, schedule)
     again, replayed = fly(mission, schedule.at(recorded.deviations), "thread")
@@ -66,7 +66,7 @@ def test_a_schedule_can_be_given_again_on_the_other_context(mission: str, text: 
 
 
 @pytest.mark.parametrize("kind", ["Lock", "RLock"])
-def test_locks_of_a_node_in_opposite_order_are_a_deadlock(tmp_path: Path, kind: str) -> None:
+def test_locks_taken_in_opposite_order_are_a_deadlock(tmp_path: Path, kind: str) -> None:
     startup = "CFE_APP, locked.py, __main__, LOCKED, 100, 65536, 0x0, 0;\n!\n"
     mission = write_mission(tmp_path, startup, locked=LOCKED.replace("{kind}", kind))
 

@@ -11,20 +11,20 @@ from cfepy.status import UsageError
 PUBSUB = read_mission("rx64m_pubsub")
 
 
-def test_a_private_parameter_is_the_nodes() -> None:
+def test_private_parameter_belongs_to_its_node() -> None:
     spec = with_settings(PUBSUB, [("/left/rate", "50"), ("/left/limits/low", "[1, 2.5]")])
     assert spec.ros.nodes["LEFT"].params == {"rate": 50, "limits": {"low": [1, 2.5]}}
     assert spec.ros.nodes["RIGHT"].params == {"rate": 100}
     assert spec.notes == ()
 
 
-def test_another_one_is_the_masters() -> None:
+def test_global_parameter_belongs_to_the_master() -> None:
     spec = with_settings(PUBSUB, [("/use_sim_time", "true")])
     assert spec.ros.params["use_sim_time"] is True
     assert spec.ros.nodes == PUBSUB.ros.nodes
 
 
-def test_a_name_that_may_be_nobodys_is_told() -> None:
+def test_parameter_of_an_unknown_node_is_noted() -> None:
     (note,) = with_settings(PUBSUB, [("/lft/rate", "50")]).notes
     assert note == "--set /lft/rate: unknown node /lft; did you mean /left?"
 
@@ -32,12 +32,12 @@ def test_a_name_that_may_be_nobodys_is_told() -> None:
 @pytest.mark.parametrize(
     ("name", "value"), [("rate", "1"), ("/", "1"), ("/a//b", "1"), ("/a", "2020-01-01"), ("/a", "[")]
 )
-def test_what_is_no_parameter(name: str, value: str) -> None:
+def test_invalid_parameter_is_refused(name: str, value: str) -> None:
     with pytest.raises(UsageError, match=r"^--set: "):
         with_settings(PUBSUB, [(name, value)])
 
 
-def test_a_plan_has_them_and_says_them() -> None:
+def test_settings_are_part_of_the_plan_and_its_command_line() -> None:
     plan = RunPlan(("rx64m_pubsub",), settings=(("/left/rate", "50"),))
     assert plan.command_line() == "cfepy run --set /left/rate=50 rx64m_pubsub"
     assert RunPlan.from_dict(plan.to_dict()) == plan

@@ -68,13 +68,13 @@ def loop(params: dict[str, Any], **wrong: Any) -> tuple[Any, Any, Any]:
     return arm, law, leg
 
 
-def test_the_arm_reaches_its_goal(params: dict[str, Any]) -> None:
+def test_arm_reaches_its_goal(params: dict[str, Any]) -> None:
     arm, law, leg = loop(params)
     assert fly_leg(arm, law, leg, 4.0) < 2e-5
     assert max(map(abs, arm.velocity)) < 1e-3
 
 
-def test_a_wrong_model_is_corrected(params: dict[str, Any]) -> None:
+def test_wrong_model_is_corrected(params: dict[str, Any]) -> None:
     arm, law, leg = loop(params, inertia=[6.0, 5.0, 3.0, 2.0, 0.9, 0.7, 0.3], viscous_friction=5.0)
     assert fly_leg(arm, law, leg, 5.0) < 1e-3
 

@@ -29,7 +29,7 @@ def reset_at_random(mission: Mission, random: Random, count: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_nodes_come_back_after_any_reset(tasks: str) -> None:
+def test_nodes_restart_after_any_reset(tasks: str) -> None:
     drain()
     threads, random = threading.active_count(), Random(5)
     with Mission("capture", console=Console(quiet=True), tasks=tasks) as mission:
@@ -65,7 +65,7 @@ HOOKED = """
     """
 
 
-def test_a_reset_is_a_crash_to_a_node(tmp_path: Path) -> None:
+def test_reset_is_a_crash_of_a_node(tmp_path: Path) -> None:
     startup = "CFE_APP, hooked.py, __main__, HOOKED, 100, 65536, 0x0, 0;\n!"
     folder = write_mission(tmp_path, startup, hooked=HOOKED)
     with Mission(folder, console=Console(quiet=True)) as mission:
@@ -79,7 +79,7 @@ def test_a_reset_is_a_crash_to_a_node(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_hundred_resets_leave_no_node_behind() -> None:
+def test_hundred_resets_leave_no_node_behind() -> None:
     random = Random(6)
     with Mission("capture", console=Console(quiet=True)) as mission:
         mission.run_for(2)

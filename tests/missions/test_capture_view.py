@@ -48,7 +48,7 @@ def hands(run: cfepy.Run) -> Iterator[tuple[int, Any]]:
         yield message.transforms[0].header.stamp.to_nsec(), place[:3, 3]
 
 
-def test_the_hand_is_where_main_control_says(run: cfepy.Run) -> None:
+def test_position_of_the_hand_equals_the_report_of_main_control(run: cfepy.Run) -> None:
     told = {each.header.stamp.to_nsec(): each.pose.position for each in run.messages("/hand_pose")}
     found = [(place, told[at]) for at, place in hands(run) if at in told]
     assert len(found) > 20

@@ -24,37 +24,37 @@ def results_of(mission: str, schedule: Schedule | None = None, faults: str | Non
     return flown.results
 
 
-def test_as_it_flew_it_works_by_default() -> None:
+def test_original_mission_works_by_default() -> None:
     results = results_of("pathfinder")
     assert (results.problems, results.resets, results.inversions) == ([], [], [])
 
 
-def test_one_held_up_task_resets_the_processor() -> None:
+def test_delayed_task_resets_the_processor() -> None:
     results = results_of("pathfinder", LATE)
     assert "the watchdog was not served for 150 ms" in {reset.reason for reset in results.resets}
     assert [(each.victim, each.text) for each in results.inversions] == [("BC_DIST", INVERSION)]
 
 
-def test_more_data_than_was_tested_do_so_without_any_schedule() -> None:
+def test_more_data_resets_the_processor_under_the_default_schedule() -> None:
     results = results_of("pathfinder", faults=MORE_DATA)
     assert [reset.at_s for reset in results.resets] == [5.31]
     assert results.inversions[0].holder == "ASI_MET"
 
 
-def test_a_run_that_ends_while_it_boots_again_has_lost_no_library() -> None:
+def test_run_that_ends_during_a_reboot_reports_no_missing_library() -> None:
     results = fly(RunPlan(("pathfinder",), seconds=5.4, faults=MORE_DATA)).results
     assert [reset.at_s for reset in results.resets] == [5.31]
     assert results.script_problems == []
 
 
 @pytest.mark.parametrize(("schedule", "faults"), [(LATE, None), (None, MORE_DATA)])
-def test_mended_it_survives_both(schedule: Schedule | None, faults: str | None) -> None:
+def test_mended_mission_survives_delay_and_more_data(schedule: Schedule | None, faults: str | None) -> None:
     results = results_of("pathfinder/mended.scr", schedule, faults)
     assert (results.problems, results.resets, results.inversions) == ([], [], [])
 
 
 @pytest.mark.slow
-def test_exploration_finds_it_with_defaults_and_says_why() -> None:
+def test_exploration_finds_the_reset_with_defaults_and_its_cause() -> None:
     report = Expedition(RunPlan(("pathfinder",)), seeds=15, jobs=1).run()
     (told,) = report.findings
     assert told.finding.failure.kind == "processor reset"

@@ -21,7 +21,7 @@ COMBINED, SAMPLE_HK = 0x089C, 0x0883
 
 
 @pytest.mark.parametrize("table", ["sch_def_msgtbl", "sch_def_schtbl"])
-def test_table_files_are_what_their_definitions_say(table: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_table_files_match_their_definitions(table: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.syspath_prepend(str(FOLDER))
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     for name in ("sch_def_msgtbl", "sch_def_schtbl"):
@@ -29,7 +29,7 @@ def test_table_files_are_what_their_definitions_say(table: str, monkeypatch: pyt
     assert (FOLDER / f"{table}.tbl").read_bytes() == build(importlib.import_module(table).image())
 
 
-def test_its_tables_are_good(capsys: pytest.CaptureFixture[str]) -> None:
+def test_shipped_tables_are_valid(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["tbl", "verify", *(str(path) for path in sorted(FOLDER.glob("*.tbl")))]) == 0
     assert capsys.readouterr().out.count(", good\n") == 2
 
@@ -47,7 +47,7 @@ def test_housekeeping_is_collected_slot_by_slot() -> None:
     assert all(any(each.packet[16:]) for each in seen if each.msg_id == COMBINED)
 
 
-def test_a_group_is_silenced_from_the_ground() -> None:
+def test_group_is_disabled_from_the_ground() -> None:
     seen: list[Seen] = []
     watch = PacketWatch(seen.append, lambda msg_id: msg_id == SAMPLE_HK)
     with Mission("sched", console=Console(quiet=True), attachments=[watch]) as mission:

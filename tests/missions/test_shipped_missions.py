@@ -75,12 +75,12 @@ def test_hk_carries_the_nodes_housekeeping_to_a_node() -> None:
 
 
 @pytest.mark.parametrize("name", shipped_missions())
-def test_both_contexts_fly_the_same_trace(name: str) -> None:
+def test_threads_and_greenlets_give_one_trace(name: str) -> None:
     digests = {fly(name, 3, tasks=tasks)[0].trace.digest() for tasks in ("thread", "greenlet")}
     assert len(digests) == 1
 
 
-def test_a_seed_changes_nothing_where_nothing_is_random() -> None:
+def test_seed_does_not_change_a_mission_without_randomness() -> None:
     assert fly("rx64m_pubsub", 2, seed=1)[0].trace.digest() == fly("rx64m_pubsub", 2, seed=2)[0].trace.digest()
 
 
@@ -94,7 +94,7 @@ def module(path: Path) -> ModuleType:
 
 
 @pytest.mark.parametrize("table", ["hk_cpy_tbl", "sch_lab_table"])
-def test_table_files_are_what_their_definitions_say(table: str) -> None:
+def test_table_files_match_their_definitions(table: str) -> None:
     definition = MISSIONS / "capture" / f"{table}.py"
     assert definition.with_suffix(".tbl").read_bytes() == build(module(definition).image())
 
@@ -127,7 +127,7 @@ def with_rate(folder: Path, rate: int) -> str:
     return str(copy)
 
 
-def test_100_hz_on_the_rx64m_lose_nothing() -> None:
+def test_100_hz_on_the_rx64m_lose_no_message() -> None:
     flight, lines = fly("rx64m_pubsub", 10)
     assert flight.board.name == "rx64m"
     for name in BOTH_WAYS:
@@ -153,18 +153,18 @@ def test_more_than_100_hz_is_held_back_and_reported(tmp_path: Path, rate: int) -
     assert any("0 lost, 0 out of order" in line for line in lines)
 
 
-def test_the_same_on_linux_is_not_held_back(tmp_path: Path) -> None:
+def test_same_rate_on_linux_is_not_delayed(tmp_path: Path) -> None:
     flight, _ = fly(with_rate(tmp_path, 200), 5, board="linux")
     assert topic(flight, "/left_to_right")[0] == pytest.approx(200 * 4.4, abs=20)
 
 
-def test_everything_on_the_rx64m_happens_at_ticks() -> None:
+def test_all_events_on_the_rx64m_happen_at_ticks() -> None:
     flight, _ = fly("rx64m_pubsub", 2)
     assert flight.booted is not None
     assert flight.booted % 10_000_000 < 100_000  # the work of one tick after the tick
 
 
-def test_over_the_boards_memory_the_report_says_who_uses_what(tmp_path: Path) -> None:
+def test_memory_report_names_the_users_when_the_board_is_full(tmp_path: Path) -> None:
     folder = Path(with_rate(tmp_path, 100))
     script = (folder / "startup.scr").read_text(encoding="utf-8")
     (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"), encoding="utf-8")
@@ -184,7 +184,7 @@ def test_work_costs_virtual_time_on_the_board() -> None:
         assert 0 < flight.cfe.es.history[name].cpu_ns / flight.kernel.now < 0.05
 
 
-def test_an_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = Path(with_rate(tmp_path, 100))
     script = (folder / "startup.scr").read_text(encoding="utf-8")
     (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"), encoding="utf-8")
@@ -194,7 +194,7 @@ def test_an_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: 
     assert "RIGHT could not be started" in captured.err
 
 
-def test_lab_is_nasas_sample_mission() -> None:
+def test_lab_matches_nasas_sample_mission() -> None:
     with Mission("lab", console=Console(quiet=True)) as flight, GroundLink(flight) as ground:
         flight.run_for(2)
         ground.send(to_lab.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1"))
@@ -211,7 +211,7 @@ def test_lab_is_nasas_sample_mission() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", shipped_missions())
-def test_the_dictionary_has_all_telemetry_that_is_sent(name: str) -> None:
+def test_dictionary_has_all_sent_telemetry(name: str) -> None:
     """No packet of theirs is opaque."""
     seen: dict[int, Seen] = {}
     spec = read_mission(name)

@@ -85,7 +85,7 @@ def first(result: DeadlineResult, flown: Flown) -> float:
 # -- the mission file --------------------------------------------------------------------------------------------------
 
 
-def test_they_are_read_with_their_units(tmp_path: Path) -> None:
+def test_deadlines_are_read_with_their_units(tmp_path: Path) -> None:
     text = """\
     deadlines:
       apps:
@@ -121,7 +121,7 @@ def test_they_are_read_with_their_units(tmp_path: Path) -> None:
         ("apps: 3", "must be a mapping"),
     ],
 )
-def test_what_cannot_be_is_an_error_with_its_place(tmp_path: Path, entry: str, says: str) -> None:
+def test_invalid_deadline_is_reported_with_its_line(tmp_path: Path, entry: str, says: str) -> None:
     path = mission(tmp_path, f"deadlines:\n  {entry}\n")
     with pytest.raises(UsageError) as caught:
         demands_of(read_mission(path))
@@ -132,7 +132,7 @@ def test_what_cannot_be_is_an_error_with_its_place(tmp_path: Path, entry: str, s
     assert finding.text in str(caught.value)
 
 
-def test_check_finds_applications_that_are_not_there(tmp_path: Path) -> None:
+def test_check_reports_unknown_applications(tmp_path: Path) -> None:
     text = "deadlines:\n  apps:\n    WORKR: {response: 1 ms}\n    CFE_ES: {response: 1 ms}\n"
     (finding,) = check_mission(mission(tmp_path, text))
     assert finding.line == 3
@@ -142,7 +142,7 @@ def test_check_finds_applications_that_are_not_there(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("time", "text"), [(0, "0 ns"), (999, "999 ns"), (2_500, "2.5 us"), (10_000_000, "10 ms"), (1_500_000_000, "1.5 s")]
 )
-def test_times_are_told_as_people_write_them(time: int, text: str) -> None:
+def test_times_are_shown_with_a_suitable_unit(time: int, text: str) -> None:
     assert time_text(time) == text
 
 
@@ -153,13 +153,13 @@ def test_times_are_told_as_people_write_them(time: int, text: str) -> None:
     ("kind", "kept", "missed"),
     [("latency", 10, 11), ("at_least_every", 10, 11), ("at_most_every", 10, 9), ("period", 12, 13), ("period", 8, 7)],
 )
-def test_a_limit_that_is_just_kept_is_kept(kind: str, kept: int, missed: int) -> None:
+def test_time_equal_to_the_limit_is_not_an_overrun(kind: str, kept: int, missed: int) -> None:
     check = Check("WORKER", kind, 10, 2)
     assert check.measure(kept)
     assert not check.measure(missed)
 
 
-def test_a_period_that_jumps_once_is_missed_once(tmp_path: Path) -> None:
+def test_single_jump_of_a_period_is_one_overrun(tmp_path: Path) -> None:
     flown = fly(tmp_path, "deadlines: {apps: {WORKER: {period: 100 ms, jitter: 5 ms}}}\n")
     result = only(flown)
     assert result.overruns == 1
@@ -168,7 +168,7 @@ def test_a_period_that_jumps_once_is_missed_once(tmp_path: Path) -> None:
     assert first(result, flown) == pytest.approx(0.53, abs=0.11)
 
 
-def test_a_period_within_its_jitter_is_kept(tmp_path: Path) -> None:
+def test_period_within_its_jitter_has_no_overrun(tmp_path: Path) -> None:
     result = only(fly(tmp_path, "deadlines: {apps: {WORKER: {period: 100 ms, jitter: 70 ms}}}\n"))
     assert result.overruns == 0
     assert result.problem is None
@@ -176,7 +176,7 @@ def test_a_period_within_its_jitter_is_kept(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("limit", "overruns"), [("2 ms", True), ("4 ms", False)])
-def test_a_response_is_the_time_from_one_wait_to_the_next(tmp_path: Path, limit: str, overruns: bool) -> None:
+def test_response_is_the_time_from_one_wait_to_the_next(tmp_path: Path, limit: str, overruns: bool) -> None:
     text = f"deadlines: {{apps: {{WORKER: {{response: {limit}}}}}}}\n"
     result = only(fly(tmp_path, text, WORKER + SENDER, worker=READER % (3_000_000, 1), sender=BURSTS % 100))
     assert result.checked > 40
@@ -184,7 +184,7 @@ def test_a_response_is_the_time_from_one_wait_to_the_next(tmp_path: Path, limit:
     assert bool(result.overruns) == overruns
 
 
-def test_who_is_woken_and_must_wait_for_the_processor_is_late(tmp_path: Path) -> None:
+def test_response_includes_the_wait_for_the_processor(tmp_path: Path) -> None:
     """The response begins when the message comes, not when the task gets the processor."""
     hog = """\
     def HOG_AppMain(cfe):
@@ -200,7 +200,7 @@ def test_who_is_woken_and_must_wait_for_the_processor_is_late(tmp_path: Path) ->
     assert 0.02 < worst(result) <= 0.041
 
 
-def test_what_happens_before_operational_is_not_measured(tmp_path: Path) -> None:
+def test_time_before_operational_is_not_measured(tmp_path: Path) -> None:
     slow_start = "def WORKER_AppMain(cfe):\n    cfe.os.task_delay(10)\n    cfe.es.kernel.charge(500_000_000)\n" + (
         "    cfe.os.task_delay(10)\n    cfe.es.wait_for_startup_sync(1000)\n"
         "    while cfe.es.run_loop():\n        cfe.os.task_delay(10)\n"
@@ -210,7 +210,7 @@ def test_what_happens_before_operational_is_not_measured(tmp_path: Path) -> None
     assert result.overruns == 0
 
 
-def test_who_waits_for_a_mutex_is_still_at_work(tmp_path: Path) -> None:
+def test_response_includes_the_wait_for_a_mutex(tmp_path: Path) -> None:
     worker = """\
     def child(cfe, mutex):
         while True:
@@ -237,7 +237,7 @@ def test_who_waits_for_a_mutex_is_still_at_work(tmp_path: Path) -> None:
 # -- topics ------------------------------------------------------------------------------------------------------------
 
 
-def test_latency_is_from_sending_to_receiving(tmp_path: Path) -> None:
+def test_latency_is_the_time_from_sending_to_receiving(tmp_path: Path) -> None:
     text = 'deadlines: {topics: {"0x0A00": {latency: 60 ms}}}\n'
     flown = fly(tmp_path, text, WORKER + SENDER, worker=READER % (0, 150), sender=BURSTS % 100)
     result = only(flown)
@@ -245,7 +245,7 @@ def test_latency_is_from_sending_to_receiving(tmp_path: Path) -> None:
     assert worst(result) > 0.06
 
 
-def test_a_message_that_comes_too_late_is_told_when_it_is_due(tmp_path: Path) -> None:
+def test_late_message_is_an_overrun_at_its_due_time(tmp_path: Path) -> None:
     text = 'deadlines: {topics: {"0x0A00": {at_least_every: 250 ms}}}\n'
     sender = BURSTS % "100 if cfe.time.get_met()[0] % 2 else 600"
     flown = fly(tmp_path, text, WORKER + SENDER, worker=READER % (0, 1), sender=sender, seconds=5.0)
@@ -254,14 +254,14 @@ def test_a_message_that_comes_too_late_is_told_when_it_is_due(tmp_path: Path) ->
     assert worst(result) == pytest.approx(0.6)
 
 
-def test_a_message_that_never_comes_is_missed_once(tmp_path: Path) -> None:
+def test_missing_message_is_one_overrun(tmp_path: Path) -> None:
     flown = fly(tmp_path, "deadlines: {topics: {/nobody: {at_least_every: 1 s}}}\n")
     result = only(flown)
     assert (result.checked, result.overruns) == (1, 1)
     assert 1 <= first(result, flown) <= 1.2
 
 
-def test_a_message_that_comes_too_early_is_missed(tmp_path: Path) -> None:
+def test_early_message_is_an_overrun(tmp_path: Path) -> None:
     text = 'deadlines: {topics: {"0x0A00": {at_most_every: 5 Hz}}}\n'
     flown = fly(tmp_path, text, WORKER + SENDER, worker=READER % (0, 1), sender=BURSTS % 100)
     result = only(flown)
@@ -269,7 +269,7 @@ def test_a_message_that_comes_too_early_is_missed(tmp_path: Path) -> None:
     assert worst(result) == pytest.approx(0.1)
 
 
-def test_a_ros_topic_has_deadlines_by_name_and_the_shutdown_does_not_count(tmp_path: Path) -> None:
+def test_ros_topic_has_deadlines_by_name_until_the_shutdown(tmp_path: Path) -> None:
     talk = """\
     import rospy
     from std_msgs.msg import String
@@ -304,7 +304,7 @@ def test_a_ros_topic_has_deadlines_by_name_and_the_shutdown_does_not_count(tmp_p
 # -- reports -----------------------------------------------------------------------------------------------------------
 
 
-def test_a_line_for_each_and_a_problem_for_all(tmp_path: Path) -> None:
+def test_first_ten_overruns_have_a_line_and_all_have_one_problem(tmp_path: Path) -> None:
     text = 'deadlines: {topics: {"0x0A00": {at_most_every: 1 s}}}\n'
     path = mission(tmp_path, text, WORKER + SENDER, worker=READER % (0, 1), sender=BURSTS % 100)
     lines: list[str] = []
@@ -330,14 +330,14 @@ def test_every_overrun_is_in_the_trace_and_the_run_is_deterministic(tmp_path: Pa
     assert with_them[0] == with_them[1] == threads != fly(tmp_path, "name: plain\n").trace
 
 
-def test_deadlines_that_are_kept_leave_no_mark(tmp_path: Path) -> None:
+def test_met_deadlines_do_not_change_the_trace(tmp_path: Path) -> None:
     kept = fly(tmp_path, "name: same\ndeadlines: {apps: {WORKER: {period: 100 ms, jitter: 70 ms}}}\n")
     none = fly(tmp_path, "name: same\n")
     assert kept.trace == none.trace
     assert none.results.deadlines == []
 
 
-def test_after_a_reset_all_begin_anew(tmp_path: Path) -> None:
+def test_deadlines_start_again_after_a_reset(tmp_path: Path) -> None:
     worker = """\
     def WORKER_AppMain(cfe):
         cfe.es.wait_for_startup_sync(1000)

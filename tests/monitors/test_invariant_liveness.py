@@ -43,7 +43,7 @@ def violations(folder: Path, invariant: str, seconds: float = 2.0) -> list[str]:
         ("{topic: /beat, eventually: msg.data == 8, after: 3 s}", []),
     ],
 )
-def test_what_has_to_come(tmp_path: Path, invariant: str, told: list[str] | None) -> None:
+def test_missing_required_message_is_a_violation(tmp_path: Path, invariant: str, told: list[str] | None) -> None:
     found = violations(tmp_path, invariant)
     if told is None:
         assert found[0].endswith("no further message within 0.15 s (msg.data % 2)")
@@ -53,11 +53,11 @@ def test_what_has_to_come(tmp_path: Path, invariant: str, told: list[str] | None
             assert line.startswith(begin)
 
 
-def test_it_must_come_from_the_beginning_on(tmp_path: Path) -> None:
+def test_required_message_must_come_from_the_beginning(tmp_path: Path) -> None:
     assert violations(tmp_path, "{topic: /beat, again: 0.3 s}")[0].startswith("0.300000 s: no further message within")
 
 
 @pytest.mark.parametrize("wrong", ["{topic: /beat, again: 0}", "{topic: /beat, again: 1, eventually: msg.data}"])
-def test_what_cannot_be(tmp_path: Path, wrong: str) -> None:
+def test_invalid_required_message_is_refused(tmp_path: Path, wrong: str) -> None:
     with pytest.raises(cfepy.UsageError):
         violations(tmp_path, wrong)

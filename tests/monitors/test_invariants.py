@@ -95,7 +95,7 @@ def first(record: InvariantRecord) -> str:
     return record.first.text
 
 
-def test_an_expression_is_judged_with_every_message(folder: Path) -> None:
+def test_expression_is_judged_with_every_message(folder: Path) -> None:
     found = held(
         folder, '{small: {topic: /count, holds: "msg.data < 6"}, positive: {topic: /count, holds: "msg.data > 0"}}'
     )
@@ -105,27 +105,27 @@ def test_an_expression_is_judged_with_every_message(folder: Path) -> None:
     assert (found["positive"].judged, found["positive"].violated, found["positive"].first) == (5, 0, None)
 
 
-def test_it_can_look_at_the_message_before(folder: Path) -> None:
+def test_expression_can_use_the_previous_message(folder: Path) -> None:
     found = held(folder, 'no gap: {topic: /count, holds: "last is None or msg.data == last.data + 1"}')
     assert found["no gap"].violated == 1
     assert first(found["no gap"]).endswith("does not hold; last is data: 3, msg.data is 5, last.data is 3")
 
 
-def test_it_can_look_at_the_latest_message_of_another_topic(folder: Path) -> None:
+def test_expression_can_use_the_latest_message_of_another_topic(folder: Path) -> None:
     found = held(folder, """same: {topic: /answer, holds: "latest['/count'].data + msg.data == 0"}""")
     assert (found["same"].judged, found["same"].violated) == (4, 0)
     none = held(folder, """same: {topic: /count, when: "latest['/answer'] is not None", holds: "t > 0"}""")
     assert none["same"].judged == 4
 
 
-def test_when_and_after_say_which_messages_count(folder: Path) -> None:
+def test_when_and_after_select_the_judged_messages(folder: Path) -> None:
     found = held(
         folder, 'late: {topic: /count, when: "msg.data != 5", after: 700 ms, holds: "msg.data > 2 and count > 2"}'
     )
     assert (found["late"].judged, found["late"].violated) == (2, 0)
 
 
-def test_an_answer_has_to_come_in_time(folder: Path) -> None:
+def test_missing_answer_in_time_is_a_violation(folder: Path) -> None:
     text = """
         answered:
           topic: /count
@@ -139,12 +139,12 @@ def test_an_answer_has_to_come_in_time(folder: Path) -> None:
     assert found["answered"].first.detail == "/count: data: 3"
 
 
-def test_what_still_has_time_at_the_end_is_not_judged(folder: Path) -> None:
+def test_answer_still_in_time_at_the_end_is_not_judged(folder: Path) -> None:
     text = "answered: {topic: /count, within: 10 s, then: {topic: /answer}}"
     assert held(folder, text)["answered"].violated == 0
 
 
-def test_a_class_judges_with_a_memory_and_has_the_last_word(folder: Path) -> None:
+def test_class_judges_with_a_memory_and_a_final_verdict(folder: Path) -> None:
     found = held(folder, "total: {topic: /count, file: checks.py, function: Twice}")
     assert found["total"].violated == 3
     assert first(found["total"]).startswith("too much: 11 at 0.8")
@@ -154,7 +154,7 @@ def test_a_class_judges_with_a_memory_and_has_the_last_word(folder: Path) -> Non
     ("function", "text"),
     [("asserts", "3 is too much"), ("bare", "an assertion failed"), ("denies", "denies returned False")],
 )
-def test_a_function_says_no_in_three_ways(folder: Path, function: str, text: str) -> None:
+def test_function_rejects_by_assertion_or_false(folder: Path, function: str, text: str) -> None:
     found = held(folder, f"small: {{topic: /count, file: checks.py, function: {function}}}")["small"]
     assert found.violated == 3
     assert found.judged == 5
@@ -164,7 +164,7 @@ def test_a_function_says_no_in_three_ways(folder: Path, function: str, text: str
     assert ("Traceback" in found.first.detail) == (function != "denies")
 
 
-def test_a_function_that_fails_is_told_once_and_asked_no_more(folder: Path) -> None:
+def test_failed_function_is_reported_once_and_not_called_again(folder: Path) -> None:
     found = held(
         folder, "{bad: {topic: /count, file: checks.py, function: broken}, good: {file: checks.py, function: fine}}"
     )
@@ -174,7 +174,7 @@ def test_a_function_that_fails_is_told_once_and_asked_no_more(folder: Path) -> N
     assert found["good"].judged > 5
 
 
-def test_an_expression_that_fails_says_why(folder: Path) -> None:
+def test_failed_expression_is_reported_with_its_error(folder: Path) -> None:
     found = held(folder, 'typo: {topic: /count, holds: "msg.daat > 0"}')
     assert first(found["typo"]).startswith("could not be judged: AttributeError")
     assert "daat" in first(found["typo"])
@@ -192,7 +192,7 @@ def test_packets_are_named_as_in_the_dictionary(folder: Path) -> None:
     assert found["events"].violated == 0
 
 
-def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -> None:
+def test_invariants_that_hold_do_not_change_the_trace(folder: Path) -> None:
     def digest() -> str:
         with watched(folder) as mission:
             mission.run_for(1.0)
@@ -225,7 +225,7 @@ def test_the_run_is_that_without_invariants_as_long_as_they_hold(folder: Path) -
         ('{x: {topic: /count, holds: "True", whne: "True"}}', "unknown field; did you mean when?"),
     ],
 )
-def test_mistakes_are_told_with_their_place(folder: Path, text: str, error: str) -> None:
+def test_mistakes_are_reported_with_their_line(folder: Path, text: str, error: str) -> None:
     (folder / "mission.yaml").write_text(f"invariants:\n  {text}\n", encoding="utf-8")
     with pytest.raises(UsageError) as caught:
         demands_of(read_mission(str(folder)))
@@ -234,7 +234,7 @@ def test_mistakes_are_told_with_their_place(folder: Path, text: str, error: str)
     assert [finding for finding in check_mission(str(folder)) if error.split(": ")[-1] in finding.text]
 
 
-def test_a_processor_reset_begins_anew(tmp_path: Path) -> None:
+def test_invariants_start_again_after_a_processor_reset(tmp_path: Path) -> None:
     (tmp_path / "apps.py").write_text(
         textwrap.dedent("""
         def Resets(cfe):
@@ -285,7 +285,7 @@ def Asks(cfe):
 """
 
 
-def test_times_are_meant_to_the_nanosecond(tmp_path: Path) -> None:
+def test_times_are_exact_to_the_nanosecond(tmp_path: Path) -> None:
     (tmp_path / "asks.py").write_text(ASKS, encoding="utf-8")
     (tmp_path / "startup.scr").write_text("CFE_APP, asks, Asks, ASKS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     text = "never: {packet: 0x0890, holds: 'False'}"

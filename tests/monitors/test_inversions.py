@@ -77,7 +77,7 @@ def inversions(
         ("count_sem", "count_sem_create(LOCK, 1)", "take(lock)"),
     ],
 )
-def test_a_semaphore_that_is_used_as_a_lock(tmp_path: Path, kind: str, create: str, take: str) -> None:
+def test_semaphore_used_as_a_lock_has_inversions(tmp_path: Path, kind: str, create: str, take: str) -> None:
     (found,) = inversions(tmp_path, kind, create, take)
     assert (found.victim, found.holder, found.others) == ("URGENT", "IDLE", (("MEDIUM", 80, 15_000_000),))
     assert found.waited_ns == 17_000_000  # IDLE has 2 ms of its own work left, which is not an inversion
@@ -87,14 +87,14 @@ def test_a_semaphore_that_is_used_as_a_lock(tmp_path: Path, kind: str, create: s
     )
 
 
-def test_a_mutex_inherits(tmp_path: Path) -> None:
+def test_mutex_inherits_priority(tmp_path: Path) -> None:
     assert inversions(tmp_path, "mut_sem", "mut_sem_create(LOCK)") == []
 
 
-def test_a_semaphore_that_nobody_gave_back_is_no_lock(tmp_path: Path) -> None:
+def test_semaphore_that_is_never_given_back_is_not_a_lock(tmp_path: Path) -> None:
     assert inversions(tmp_path, is_lock=False) == []
 
 
-def test_shorter_ones_are_not_kept(tmp_path: Path) -> None:
+def test_shorter_inversions_are_not_kept(tmp_path: Path) -> None:
     assert len(inversions(tmp_path, shortest_ns=15_000_000)) == 1
     assert inversions(tmp_path, shortest_ns=15_000_001) == []

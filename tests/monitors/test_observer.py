@@ -117,7 +117,7 @@ def flight_of(mission: str, *observers: Observer, schedule: str = "fifo") -> Flo
     return fly(RunPlan((mission,), seconds=2.0, schedule=Schedule.parse(schedule)), attachments=observers)
 
 
-def test_every_packet_is_found_among_those_that_were_sent(mission: str) -> None:
+def test_received_packets_are_matched_with_sent_ones(mission: str) -> None:
     seen = Seen()
     flight_of(mission, seen)
     told = [int(line.split()[1]) for line in seen.lines if line.startswith("took ")]
@@ -126,7 +126,7 @@ def test_every_packet_is_found_among_those_that_were_sent(mission: str) -> None:
     assert seen.unknown == 0
 
 
-def test_what_is_lost_is_told_with_the_reason(mission: str) -> None:
+def test_lost_packet_is_reported_with_the_reason(mission: str) -> None:
     seen = Seen()
     flight_of(mission, seen)
     assert seen.drops == [MESSAGE_LIMIT] * 2 + [PIPE_FULL] * 2 + [OLDEST] * 3
@@ -135,13 +135,13 @@ def test_what_is_lost_is_told_with_the_reason(mission: str) -> None:
 
 
 @pytest.mark.parametrize("schedule", ["fifo", "random:2", "random:2:any"])
-def test_several_may_look_on_and_nothing_changes(mission: str, schedule: str) -> None:
+def test_several_observers_do_not_change_the_run(mission: str, schedule: str) -> None:
     one, other = Seen(), Seen()
     assert flight_of(mission, one, other, schedule=schedule).trace == flight_of(mission, schedule=schedule).trace
     assert one.taken == other.taken != []
 
 
-def test_console_and_notes_are_told_apart(mission: str) -> None:
+def test_console_lines_and_notes_are_distinguished(mission: str) -> None:
     class Noting(Seen):
         def conclude(self) -> None:
             self.mission.trace.note("only in the trace")

@@ -38,7 +38,7 @@ def mission(folder: Path, text: str) -> MissionSpec:
     return read_mission(str(folder))
 
 
-def test_what_is_demanded_and_who_judges_it(tmp_path: Path) -> None:
+def test_demands_and_their_judges_are_read(tmp_path: Path) -> None:
     spec = mission(tmp_path, GOOD)
     demands = demands_of(spec)
     assert [each.name for each in demands.invariants] == ["a"]
@@ -47,14 +47,14 @@ def test_what_is_demanded_and_who_judges_it(tmp_path: Path) -> None:
     assert [type(each) for each in judges_of(spec)] == [InvariantWatch, DeadlineMonitor]
 
 
-def test_nothing_is_demanded(tmp_path: Path) -> None:
+def test_empty_mission_file_has_no_demands(tmp_path: Path) -> None:
     for text in ("", "results: {/a: last}", "invariants: {}\ndeadlines: {}\n"):
         spec = mission(tmp_path, text)
         assert judges_of(spec) == []
     assert demands_of(mission(tmp_path, "")) == Demands()
 
 
-def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
+def test_check_reports_all_mistakes_and_keeps_valid_demands(tmp_path: Path) -> None:
     mistakes = Mistakes()
     demands = read_demands(mission(tmp_path, WRONG).demands, mistakes)
     fields = "invariants.a invariants.b.topic results./a deadlines.nodes deadlines.topics"
@@ -65,7 +65,7 @@ def test_a_check_has_all_mistakes_and_what_is_good(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("section", ["invariants: {a: {topic: /a}}", "results: {/a: most}", "deadlines: {apps: 3}"])
-def test_a_mistake_ends_a_run_before_it_boots(tmp_path: Path, section: str) -> None:
+def test_mistake_ends_a_run_before_it_boots(tmp_path: Path, section: str) -> None:
     spec = mission(tmp_path, section)
     with pytest.raises(UsageError) as caught:
         judges_of(spec)

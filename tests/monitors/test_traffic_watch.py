@@ -6,7 +6,7 @@ from cfepy.monitors.traffic_watch import Arrivals
 from cfepy.units import NS_PER_S
 
 
-def test_messages_that_stop_before_the_end_have_a_lower_rate() -> None:
+def test_rate_falls_when_messages_stop_before_the_end() -> None:
     found = Arrivals()
     for each in range(11):
         found.add(0, each * NS_PER_S // 10)

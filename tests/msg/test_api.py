@@ -46,5 +46,5 @@ def test_function_exists(name: str) -> None:
     assert snake(name) in msg.__all__
 
 
-def test_there_are_37() -> None:
+def test_message_api_has_37_functions() -> None:
     assert 2 * len(GET_AND_SET) + len(OTHERS) == 37

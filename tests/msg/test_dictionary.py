@@ -38,7 +38,7 @@ def test_declared_commands_are_dispatched_by_code_and_length() -> None:
     assert len(seen) == 2
 
 
-def test_a_handler_may_take_packets_of_any_length() -> None:
+def test_handler_may_accept_packets_of_any_length() -> None:
     table = CommandTable((NOOP, len))
     for declared in (SET, SEND_HK):
         table.handle(declared, len, any_length=True)

@@ -19,7 +19,7 @@ def table() -> tuple[CommandTable, list[bytes]]:
     return commands, seen
 
 
-def test_good_packets_reach_their_handler() -> None:
+def test_valid_packets_reach_their_handler() -> None:
     commands, seen = table()
     noop = bytes(msg.command(0x1806, 0))
     assert commands.dispatch(noop) == (dispatch.DONE, 0x1806, 0, 8, 8, None)
@@ -30,7 +30,7 @@ def test_good_packets_reach_their_handler() -> None:
     assert len(seen) == 3
 
 
-def test_bad_packets_are_told_apart() -> None:
+def test_invalid_packets_are_distinguished() -> None:
     commands, seen = table()
     assert commands.dispatch(bytes(msg.command(0x1807, 5))) == (dispatch.BAD_MSG_ID, 0x1807, 5, 8, 0, None)
     assert commands.dispatch(bytes(msg.command(0x1806, 99))) == (dispatch.BAD_CODE, 0x1806, 99, 8, 0, None)
@@ -39,7 +39,7 @@ def test_bad_packets_are_told_apart() -> None:
     assert seen == []
 
 
-def test_one_handler_each() -> None:
+def test_second_handler_is_refused() -> None:
     commands, _ = table()
     with pytest.raises(CfeError, match="already has a handler"):
         commands.add(0x1806, 0, 8, print)
@@ -49,7 +49,7 @@ def test_one_handler_each() -> None:
         commands.add_message(0x1806, 8, print)
 
 
-def test_the_function_code_of_a_packet_that_ends_with_it() -> None:
+def test_function_code_is_read_from_a_packet_of_7_bytes() -> None:
     """A length field of 0 leaves 7 bytes. NASA's code reads the function code nevertheless."""
     codes: list[bytes] = []
     table = CommandTable()
@@ -60,7 +60,7 @@ def test_the_function_code_of_a_packet_that_ends_with_it() -> None:
     assert msg.get_fcn_code(packet) == 1
 
 
-def test_a_message_without_codes_tells_the_code_that_is_in_it() -> None:
+def test_message_without_codes_reports_its_function_code() -> None:
     """As the events of NASA's services about its length do."""
     table = CommandTable()
     table.add_message(0x180C, 8, print)

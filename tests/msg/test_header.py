@@ -40,7 +40,7 @@ def test_init_refuses(msg_id: int, size: int) -> None:
         (msg.set_msg_id, 0),
     ],
 )
-def test_setters_refuse_and_change_nothing(setter: Callable[[bytearray, int], None], bad: int) -> None:
+def test_setters_refuse_invalid_values_and_change_nothing(setter: Callable[[bytearray, int], None], bad: int) -> None:
     packet = msg.init(0x1806, 8)
     before = bytes(packet)
     with pytest.raises(CfeError, match="CFE_SB_BAD_ARGUMENT"):
@@ -82,13 +82,13 @@ def test_wrong_kind() -> None:
         assert caught.value.status == status.CFE_MSG_WRONG_MSG_TYPE
 
 
-def test_a_short_packet_of_the_wrong_kind_is_of_the_wrong_kind_first() -> None:
+def test_wrong_kind_has_precedence_over_a_short_packet() -> None:
     with pytest.raises(CfeError) as caught:
         msg.get_msg_time(msg.command(0x1806, 0))
     assert caught.value.status == status.CFE_MSG_WRONG_MSG_TYPE
 
 
-def test_checksum_covers_the_size_of_the_header_only() -> None:
+def test_checksum_covers_only_the_size_of_the_header() -> None:
     packet = msg.command(0x1806, 3, b"\x01\x02")
     padded = packet + b"\xff\x01"
     assert msg.validate_checksum(padded)
@@ -106,7 +106,7 @@ def test_long_and_short_packets_have_the_same_checksum_rule() -> None:
         assert msg.validate_checksum(packet)
 
 
-def test_origination_leaves_other_packets_alone() -> None:
+def test_origination_does_not_change_other_packets() -> None:
     bare = msg.init(0x0006, 16)
     before = bytes(bare)
     msg.origination_action(bare, 1 << 40)
@@ -129,7 +129,7 @@ def test_set_user_data_length() -> None:
         msg.set_user_data_length(packet, 32761)
 
 
-def test_extended_fields_do_not_exist() -> None:
+def test_extended_fields_are_refused() -> None:
     packet = msg.init(0x1806, 8)
     for getter in (msg.get_eds_version, msg.get_endian, msg.get_playback_flag, msg.get_subsystem, msg.get_system):
         with pytest.raises(CfeError) as caught:

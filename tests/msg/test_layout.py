@@ -56,17 +56,17 @@ HK_PAYLOADS = [name for name in c_structs() if name.endswith("_Payload_t")]
 
 
 @pytest.mark.parametrize("name", HK_PAYLOADS)
-def test_every_payload_is_placed_as_c_places_it(name: str) -> None:
+def test_payloads_have_the_layout_of_c(name: str) -> None:
     assert_same(from_c(name), name)
 
 
-def test_the_payloads_of_all_services_are_among_them() -> None:
+def test_payloads_include_all_services() -> None:
     assert {f"CFE_{service}_HousekeepingTlm_Payload_t" for service in ("ES", "EVS", "SB", "TBL", "TIME")} <= set(
         HK_PAYLOADS
     )
 
 
-def test_real_housekeeping_survives_a_round_trip() -> None:
+def test_housekeeping_survives_a_round_trip() -> None:
     names = {0x0800: "ES", 0x0803: "SB", 0x0805: "TIME"}
     seen = 0
     for golden in golden_telemetry():
@@ -111,7 +111,7 @@ def test_a_mapping_and_keywords_go_together() -> None:
         ({"Nope": 1}, "Nope: unknown field of T; expected Id, Name, At or Real"),
     ],
 )
-def test_bad_values_name_their_field(values: dict[str, Any], text: str) -> None:
+def test_invalid_values_name_their_field(values: dict[str, Any], text: str) -> None:
     layout = Layout("T", [("Id", "u8"), ("Name", "char[4]"), ("At", (TIME, 2)), ("Real", "f32")])
     with pytest.raises(UsageError, match=text):
         layout.pack(values)
@@ -123,7 +123,7 @@ def test_a_short_buffer() -> None:
 
 
 @pytest.mark.parametrize("kind", ["u7", "u8[", "", "char[x]"])
-def test_bad_types(kind: str) -> None:
+def test_invalid_types_are_refused(kind: str) -> None:
     with pytest.raises(UsageError, match="invalid type"):
         Layout("T", [("Field", kind)])
 
@@ -133,7 +133,7 @@ def test_a_field_twice() -> None:
         Layout("T", [("A", "u8"), ("A", "u8")])
 
 
-def test_cells_are_every_number_and_text_where_it_lies() -> None:
+def test_cells_have_every_number_and_text_with_its_place() -> None:
     inner = Layout("Inner", [("Id", "u8"), ("Name", "char[3]")])
     outer = Layout(
         "Outer", [("A", "u8"), ("B", "u32"), ("In", (inner, 2)), ("Grid", "u16[2][2]"), ("Names", "char[2][2]")]

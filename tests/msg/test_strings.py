@@ -26,7 +26,7 @@ def test_get_falls_back() -> None:
     assert msg.message_string_get(b"\0", 20) == ""
 
 
-def test_bad_sizes() -> None:
+def test_invalid_sizes_are_refused() -> None:
     with pytest.raises(CfeError, match="CFE_SB_BAD_ARGUMENT"):
         msg.message_string_set("x", -1)
     with pytest.raises(CfeError, match="CFE_SB_BAD_ARGUMENT"):

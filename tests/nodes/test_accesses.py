@@ -81,11 +81,11 @@ def touches(body: str) -> list[str]:
         ("import math; math.pi", ""),
     ],
 )
-def test_what_is_told(body: str, told: str) -> None:
+def test_accesses_are_recorded(body: str, told: str) -> None:
     assert touches(body) == (told.split(", ") if told else [])
 
 
-def test_the_same_object_has_the_same_number_by_whatever_way() -> None:
+def test_object_has_one_number_for_all_its_names() -> None:
     seen = flown(f"{PRELUDE}    mine = arm.l; mine.append(1); arm.l.pop()\nchange()\n", QUIET)[1]
     numbers = {each.thing for each in seen if each.key == "*"}
     assert len(numbers) == 1

@@ -52,12 +52,12 @@ def Main(cfe):
         ("", ""),
     ],
 )
-def test_addresses_of_objects_are_left_out(text: str, plain: str) -> None:
+def test_addresses_of_objects_are_removed(text: str, plain: str) -> None:
     assert without_addresses(text) == plain
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_they_are_in_nothing_that_a_run_shows(tasks: str, tmp_path: Path) -> None:
+def test_output_of_a_run_has_no_addresses(tasks: str, tmp_path: Path) -> None:
     (tmp_path / "node.py").write_text(NODE, encoding="utf-8")
     (tmp_path / "app.py").write_text(APP, encoding="utf-8")
     line = "CFE_APP, {}, {}, {}, 90, 16384, 0, 0;\n"

@@ -41,7 +41,7 @@ with Kernel(context=sys.argv[2], trace=Trace()) as kernel:
 """
 
 
-def test_same_trace_for_every_hash_seed_and_context(tmp_path):
+def test_trace_is_the_same_for_every_hash_seed_and_context(tmp_path):
     script = tmp_path / "node.py"
     script.write_text(NODE, encoding="utf-8")
     root = str(Path(__file__).parents[2])

@@ -58,7 +58,7 @@ def test_failed_imports(run, package, body, error):
     assert any(line.startswith(error) for line in run(body).lines)
 
 
-def test_what_to_do_about_a_module_that_is_nowhere(run):
+def test_missing_module_is_reported_with_advice(run):
     program = run("""
         try:
             import nothing
@@ -70,7 +70,7 @@ def test_what_to_do_about_a_module_that_is_nowhere(run):
     assert program.lines[-1].startswith("(put its source near the node or on ROS_PACKAGE_PATH, or install it")
 
 
-def test_an_import_that_fails_leaves_nothing_behind(run, tmp_path):
+def test_failed_import_leaves_no_module(run, tmp_path):
     (tmp_path / "bad.py").write_text("1 / 0\n", encoding="utf-8")
     program = run("""
         import sys
@@ -99,13 +99,13 @@ def test_search_paths_given_and_added(run, tmp_path):
     assert program.lines == ["True True"]
 
 
-def test_a_module_beside_the_script_goes_before_a_library(run, tmp_path):
+def test_module_next_to_the_script_is_preferred_to_a_library(run, tmp_path):
     (tmp_path / "queue.py").write_text("mine = True\n", encoding="utf-8")
     (tmp_path / "yaml.py").write_text("mine = True\n", encoding="utf-8")
     assert run("import queue, yaml\nprint(queue.mine, yaml.mine)").lines == ["True True"]
 
 
-def test_mere_folders_are_packages_but_hide_nothing(run, tmp_path):
+def test_plain_folders_are_packages_but_hide_no_module(run, tmp_path):
     for folder in ("models", "logging", "yaml"):
         (tmp_path / folder).mkdir()
     (tmp_path / "models" / "car.py").write_text("wheels = 4\n", encoding="utf-8")
@@ -261,7 +261,7 @@ def test_the_host_is_not_patched(run):
     assert sys.getrecursionlimit() > 100
 
 
-def test_every_module_that_is_executed_afresh_can_be(run):
+def test_modules_executed_for_each_node_can_be_imported(run):
     names = sorted(name for name in sharing.FRESH if importlib.util.find_spec(name) is not None)
     program = run(f"""
         import importlib

@@ -47,12 +47,12 @@ def flown(source: str, kinds: Kinds | None, policy: Policy | None = None) -> tup
 
 
 @pytest.mark.parametrize("source", PROGRAMS.values(), ids=PROGRAMS.keys())
-def test_a_program_does_the_same_with_hooks(source: str) -> None:
+def test_program_does_the_same_with_hooks(source: str) -> None:
     assert flown(source, ALL)[0] == flown(source, None)[0]
 
 
 @pytest.mark.parametrize("source", PROGRAMS.values(), ids=PROGRAMS.keys())
-def test_the_same_accesses_are_told_each_time(source: str) -> None:
+def test_accesses_are_the_same_each_time(source: str) -> None:
     once, again = (
         [(each.thing, each.key, each.is_write, each.name, each.place) for each in flown(source, ALL)[1]]
         for _ in range(2)

@@ -23,7 +23,7 @@ def late(log: list[str], fails: bool = False) -> ModuleType:
     return postpone(module, run)
 
 
-def test_the_first_look_runs_the_code_once() -> None:
+def test_first_access_runs_the_code_once() -> None:
     log: list[str] = []
     module = late(log)
     assert (hasattr(module, "__path__"), module.__name__, log) == (False, "late", [])
@@ -33,7 +33,7 @@ def test_the_first_look_runs_the_code_once() -> None:
         module.c  # noqa: B018
 
 
-def test_what_is_set_first_stays() -> None:
+def test_value_set_before_the_code_runs_is_kept() -> None:
     module = late([])
     module.a = 5  # type: ignore[attr-defined]
     assert (module.a, module.b) == (5, 2)
@@ -46,7 +46,7 @@ def test_dir_and_del() -> None:
     assert not hasattr(module, "a")
 
 
-def test_code_that_fails_is_run_again() -> None:
+def test_failed_code_is_run_again() -> None:
     module = late([], fails=True)
     with pytest.raises(ValueError, match="not yet"):
         module.a  # noqa: B018
@@ -54,7 +54,7 @@ def test_code_that_fails_is_run_again() -> None:
     assert module.a == 1
 
 
-def test_logging_does_not_run_what_it_does_not_need_and_its_errors_are_shown_all_the_same() -> None:
+def test_logging_loads_no_unneeded_module_and_shows_errors() -> None:
     with Kernel() as kernel:
         universe = Universe(kernel, name="n")
         logging = universe.importer.load("logging")

@@ -26,7 +26,7 @@ rospy.sleep(0.2)
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_the_stack_has_the_nodes_own_lines(tasks: str, tmp_path: Path) -> None:
+def test_stack_shows_only_lines_of_the_node(tasks: str, tmp_path: Path) -> None:
     script = tmp_path / "node.py"
     script.write_text(NODE, encoding="utf-8")
     run = cfepy.run(script, seconds=1, tasks=tasks)

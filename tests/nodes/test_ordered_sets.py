@@ -47,7 +47,7 @@ def test_changes_in_place(left, right):
 
 
 @given(items)
-def test_pop_takes_the_oldest(values):
+def test_pop_removes_the_oldest(values):
     mine = OrderedSet(values)
     assert [mine.pop() for _ in range(len(mine))] == unique(values)
     with pytest.raises(KeyError, match="pop from an empty set"):
@@ -88,7 +88,7 @@ def test_set_displays_become_ordered():
     assert names["c"] is True
 
 
-def test_errors_keep_their_place():
+def test_errors_keep_their_line():
     with pytest.raises(SyntaxError) as caught:
         compile_ordered("x = 1\ny = = 2\n", "node.py")
     assert (caught.value.filename, caught.value.lineno) == ("node.py", 2)

@@ -136,21 +136,21 @@ NOT_LEADING = [not_at_all, Thing, threading, threading.Thread(), "THING", weakre
         for number, root in enumerate(LEADING)
     ],
 )
-def test_a_way_leads_there(root: object) -> None:
+def test_reachable_object_is_found(root: object) -> None:
     assert reaches([root], THING)
     assert not reaches([root], object())
 
 
 @pytest.mark.parametrize("root", NOT_LEADING, ids=range(len(NOT_LEADING)))
-def test_no_way_leads_there(root: object) -> None:
+def test_unreachable_object_is_not_found(root: object) -> None:
     assert not reaches([root], THING)
 
 
-def test_what_is_closed_leads_nowhere() -> None:
+def test_closed_objects_are_not_searched() -> None:
     assert not reaches([KEPT], THING, [KEPT])
 
 
-def test_what_pretends_to_be_of_another_type_is_looked_into() -> None:
+def test_object_that_pretends_another_type_is_searched() -> None:
     class Pretender:
         __class__ = property(lambda self: int)
 
@@ -218,15 +218,15 @@ def holds(function: Callable[[Thing, Callable[[], object]], object]) -> bool:
 
 
 @pytest.mark.parametrize("function", [before, used_in_loop, over_list, in_block, in_statement])
-def test_what_is_used_later_or_lies_on_the_stack_is_held(function: Callable[..., object]) -> None:
+def test_name_used_later_or_on_the_stack_is_held(function: Callable[..., object]) -> None:
     assert holds(function)
 
 
 @pytest.mark.parametrize("function", [after, used_before_loop])
-def test_behind_its_last_use_a_name_is_not_held(function: Callable[..., object]) -> None:
+def test_name_is_released_after_last_use(function: Callable[..., object]) -> None:
     assert not holds(function)
 
 
-def test_what_only_one_function_names_is_private() -> None:
+def test_object_named_by_one_function_is_private() -> None:
     assert is_private(THING, by_name.__code__, [by_name, not_at_all], [])
     assert not is_private(THING, by_name.__code__, [by_name, by_anything], [])

@@ -27,6 +27,6 @@ import cfepy.osal as osal
         ("OS_TIME_TICKS_PER_SECOND", 10_000_000),
     ],
 )
-def test_a_constant_is_at_the_package(name: str, value: int) -> None:
+def test_constant_is_in_the_package(name: str, value: int) -> None:
     assert getattr(osal, name) == value
     assert name in osal.__all__

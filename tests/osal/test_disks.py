@@ -36,7 +36,7 @@ def test_the_life_of_a_ram_disk(bench: Bench) -> None:
     assert status_of(os.mount, "/ramdev1", "/again") == OS_ERR_NAME_NOT_FOUND
 
 
-def test_the_disks_that_are_there_from_the_start(tmp_path: Path) -> None:
+def test_initial_disks_exist(tmp_path: Path) -> None:
     bench = Bench(files=FileSystem(tmp_path))
     os = bench.os
     assert os.fs_get_phys_drive_name("/cf") == str(tmp_path)
@@ -57,11 +57,11 @@ def test_the_disks_that_are_there_from_the_start(tmp_path: Path) -> None:
         ("/ramdev0", "RAM", OS_ERR_NAME_TAKEN),
     ],
 )
-def test_bad_names(bench: Bench, devname: str, volname: str, status: int) -> None:
+def test_invalid_names_are_refused(bench: Bench, devname: str, volname: str, status: int) -> None:
     assert status_of(bench.os.mkfs, devname, volname, 512, 4) == status
 
 
-def test_there_are_14_file_systems(bench: Bench) -> None:
+def test_number_of_file_systems_is_limited_to_14(bench: Bench) -> None:
     for number in range(12):
         bench.os.initfs(f"/a_name_of_over_20_chars_{number}", "RAM", 512, 1)
     assert status_of(bench.os.mkfs, "/one_more", "RAM", 512, 1) == OS_FS_ERR_DEVICE_NOT_FREE
@@ -92,7 +92,7 @@ def test_a_fixed_map(bench: Bench, tmp_path: Path) -> None:
     assert not bench.os.files.exists("/data/x")
 
 
-def test_a_relative_path_of_a_fixed_map_begins_at_the_missions_folder(tmp_path: Path) -> None:
+def test_relative_path_of_a_fixed_map_begins_at_the_folder_of_the_mission(tmp_path: Path) -> None:
     (tmp_path / "more").mkdir()
     (tmp_path / "more" / "x").write_bytes(b"x")
     os = Bench(files=FileSystem(tmp_path)).os
@@ -101,7 +101,7 @@ def test_a_relative_path_of_a_fixed_map_begins_at_the_missions_folder(tmp_path: 
     assert os.fs_get_phys_drive_name("/more") == "./more"
 
 
-def test_a_disk_that_is_removed_while_it_is_mounted(bench: Bench) -> None:
+def test_disk_may_be_removed_while_it_is_mounted(bench: Bench) -> None:
     bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
     bench.os.mount("/ramdev1", "/scratch")
     bench.os.rmfs("/ramdev1")
@@ -110,14 +110,14 @@ def test_a_disk_that_is_removed_while_it_is_mounted(bench: Bench) -> None:
     bench.os.mount("/ramdev1", "/scratch")
 
 
-def test_only_ram_disks_can_be_mounted(bench: Bench) -> None:
+def test_mount_requires_a_ram_disk(bench: Bench) -> None:
     bench.os.mkfs("/ssrdev0", "SSR1", 512, 4)
     assert status_of(bench.os.mount, "/ssrdev0", "/ssr") == OS_ERR_NAME_NOT_FOUND
     bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
     assert status_of(bench.os.mount, "/ramdev1", "scratch") == OS_ERR_NAME_NOT_FOUND
 
 
-def test_a_disk_in_memory_can_be_mounted_whatever_its_name_is(bench: Bench) -> None:
+def test_disk_in_memory_can_be_mounted_with_any_name(bench: Bench) -> None:
     bench.os.mkfs("/ssrdev1", "SSR1", 512, 4, in_memory=True)
     bench.os.initfs("/ssrdev2", "SSR2", 512, 4, in_memory=True)
     bench.os.mount("/ssrdev1", "/ssr")
@@ -132,7 +132,7 @@ def test_long_names(bench: Bench, function: str) -> None:
     assert status_of(bench.os.mount, "/ramdev0", "/" + "n" * 63) == OS_FS_ERR_PATH_TOO_LONG
 
 
-def test_formatting_the_boards_own_disk(bench: Bench) -> None:
+def test_format_of_the_disk_of_the_board_empties_it(bench: Bench) -> None:
     os = bench.os
     os.files.write_file("/ram/x", bytes(512))
     assert os.file_sys_stat_volume("/ram").blocks_free == 4095
@@ -144,7 +144,7 @@ def test_formatting_the_boards_own_disk(bench: Bench) -> None:
     assert os.file_sys_stat_volume("/ram").blocks_free == 4096
 
 
-def test_disks_count_against_the_memory_except_the_boards_own() -> None:
+def test_disks_count_against_the_memory_except_for_the_disks_of_the_board() -> None:
     ledger = Ledger(free=3000)
     bench = Bench(memory=ledger)
     bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
@@ -157,7 +157,7 @@ def test_disks_count_against_the_memory_except_the_boards_own() -> None:
     assert ledger.free == 3000
 
 
-def test_after_a_reset_the_boards_own_disks_are_there_and_guests_are_gone() -> None:
+def test_reset_keeps_disks_of_the_board_and_removes_others() -> None:
     files = FileSystem()
     first = Bench(files=files).os
     first.mkfs("/ramdev1", "RAM1", 512, 4)

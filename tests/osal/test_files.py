@@ -63,13 +63,13 @@ def files(folder: Path) -> FileSystem:
         ("/", OS_FS_ERR_PATH_INVALID),
     ],
 )
-def test_bad_paths(files: FileSystem, path: str, status: int) -> None:
+def test_invalid_paths_are_refused(files: FileSystem, path: str, status: int) -> None:
     assert status_of(files.translate, path) == status
     assert status_of(files.read_file, path) == status
     assert not files.exists(path)
 
 
-def test_the_missions_folder_shows_and_is_never_written(files: FileSystem, folder: Path) -> None:
+def test_folder_of_the_mission_is_readable_and_never_written(files: FileSystem, folder: Path) -> None:
     assert files.read_file("/cf/a.tbl") == b"table"
     assert files.read_file("/cf/sub/b.txt") == b"text"
     files.write_file("/cf/a.tbl", b"changed")
@@ -82,7 +82,7 @@ def test_the_missions_folder_shows_and_is_never_written(files: FileSystem, folde
     assert (folder / "a.tbl").read_bytes() == b"table"
 
 
-def test_a_host_file_that_changes_during_a_run_does_not_change_the_run(files: FileSystem, folder: Path) -> None:
+def test_host_file_changed_during_a_run_does_not_change_the_run(files: FileSystem, folder: Path) -> None:
     assert files.read_file("/cf/a.tbl") == b"table"
     (folder / "a.tbl").write_bytes(b"edited meanwhile")
     assert files.read_file("/cf/a.tbl") == b"table"
@@ -109,7 +109,7 @@ def test_folders(files: FileSystem) -> None:
     assert status_of(files.remove_folder, "/ram") == OS_ERROR
 
 
-def test_a_folder_is_renamed_with_all_that_is_in_it(files: FileSystem) -> None:
+def test_folder_is_renamed_with_its_contents(files: FileSystem) -> None:
     for folder in ("/ram/logs", "/ram/logs/old", "/ram/empty", "/ram/full"):
         files.make_folder(folder)
     files.write_file("/ram/logs/one", b"1")
@@ -124,7 +124,7 @@ def test_a_folder_is_renamed_with_all_that_is_in_it(files: FileSystem) -> None:
     assert files.read_file("/ram/empty/old/two") == b"2"
 
 
-def test_a_folder_of_the_host_is_renamed_for_the_run_alone(files: FileSystem, folder: Path) -> None:
+def test_folder_of_the_host_is_renamed_only_in_the_run(files: FileSystem, folder: Path) -> None:
     (folder / "tables").mkdir()
     (folder / "tables" / "x.tbl").write_bytes(b"x")
     files.rename("/cf/tables", "/cf/old")
@@ -237,7 +237,7 @@ def test_truncate_and_allocate(bench: Bench) -> None:
     assert os.files.read_file("/ram/x") == b"123\0\0\0\0"
 
 
-def test_one_open_file_too_many_is_neither_made_nor_emptied(bench: Bench) -> None:
+def test_file_beyond_the_limit_is_neither_created_nor_emptied(bench: Bench) -> None:
     os = bench.os
     os.files.write_file("/ram/x", b"content")
     for _ in range(OS_MAX_NUM_OPEN_FILES):

@@ -143,7 +143,7 @@ def test_an_application_leaves_nothing_behind(bench: Bench) -> None:
     assert os.files.exists("/ram/APP")
 
 
-def test_what_cannot_be_deleted_is_told(bench: Bench) -> None:
+def test_object_that_cannot_be_deleted_is_reported(bench: Bench) -> None:
     app = App("APP")
 
     def borrower() -> None:
@@ -158,7 +158,7 @@ def test_what_cannot_be_deleted_is_told(bench: Bench) -> None:
     assert leftovers == {(bench.os.mut_sem_get_id_by_name("LENT"), OS_SEM_FAILURE)}
 
 
-def test_the_caller_survives_its_own_clean_up(bench: Bench) -> None:
+def test_caller_survives_its_own_cleanup(bench: Bench) -> None:
     app = App("APP")
 
     def body() -> None:

@@ -60,7 +60,7 @@ def test_the_life_of_a_module(loader: Bench) -> None:
     os.module_load("FIRST", "/cf/a.so")
 
 
-def test_what_cannot_be_loaded(loader: Bench) -> None:
+def test_module_load_refuses_invalid_names_paths_and_code(loader: Bench) -> None:
     os = loader.os
     assert status_of(os.module_load, "n" * 20, "/cf/a.so") == OS_ERR_NAME_TOO_LONG
     assert status_of(os.module_load, "M", "cf") == OS_FS_ERR_PATH_INVALID
@@ -72,7 +72,7 @@ def test_what_cannot_be_loaded(loader: Bench) -> None:
     assert status_of(os.module_load, "ONE_MORE", "/cf/a.so") == OS_ERR_NO_FREE_IDS
 
 
-def test_symbols_that_are_not_there(loader: Bench) -> None:
+def test_unknown_symbols_are_an_error(loader: Bench) -> None:
     os = loader.os
     module = os.module_load("M", "/cf/a.so")
     assert status_of(os.module_symbol_lookup, module, "NotFound") == OS_ERROR
@@ -81,10 +81,10 @@ def test_symbols_that_are_not_there(loader: Bench) -> None:
     assert status_of(os.module_unload, 0) == OS_ERR_INVALID_ID
 
 
-def test_there_is_no_table_of_addresses(bench: Bench) -> None:
+def test_symbol_table_dump_is_not_available(bench: Bench) -> None:
     assert status_of(bench.os.symbol_table_dump, "/ram/symbols.dat", 10_000) == OS_ERR_NOT_IMPLEMENTED
     assert status_of(bench.os.symbol_table_dump, "/this/is/nowhere", 10_000) == OS_FS_ERR_PATH_INVALID
 
 
-def test_without_a_loader(bench: Bench) -> None:
+def test_osal_without_a_loader_loads_nothing(bench: Bench) -> None:
     assert status_of(bench.os.module_load, "M", "/cf/a.so") == OS_ERR_NOT_IMPLEMENTED

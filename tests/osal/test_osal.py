@@ -77,7 +77,7 @@ def test_teardown_deletes_everything(bench: Bench) -> None:
     os.idle_loop()
 
 
-def test_nothing_can_be_made_between_a_teardown_and_an_init(bench: Bench) -> None:
+def test_objects_cannot_be_made_between_a_teardown_and_an_init(bench: Bench) -> None:
     os = bench.os
     os.printf_disable()
     os.register_event_handler(lambda event, object_id, data: bench.log.append(event))
@@ -92,7 +92,7 @@ def test_nothing_can_be_made_between_a_teardown_and_an_init(bench: Bench) -> Non
     assert os.console.lines[-1] == "again"
 
 
-def test_file_systems_are_gone_after_a_new_init(bench: Bench) -> None:
+def test_file_systems_are_removed_by_a_new_init(bench: Bench) -> None:
     os = bench.os
     os.api_teardown()
     assert os.files.mount_points()
@@ -101,7 +101,7 @@ def test_file_systems_are_gone_after_a_new_init(bench: Bench) -> None:
     os.mkfs("/ramdev0", "RAM", 512, 4)
 
 
-def test_a_task_does_not_come_back_from_the_exit(bench: Bench) -> None:
+def test_application_exit_does_not_return(bench: Bench) -> None:
     os, log = bench.os, bench.log
     bench.task(lambda: (os.task_delay(5), os.application_exit(-1), log.append("back")), name="T")
     bench.kernel.run(until_ns=1_000_000_000)
@@ -110,14 +110,14 @@ def test_a_task_does_not_come_back_from_the_exit(bench: Bench) -> None:
     assert os.exit_code == 0
 
 
-def test_the_heap_is_what_the_board_has_left() -> None:
+def test_heap_info_is_the_free_memory_of_the_board() -> None:
     os = Bench(memory=Ledger(free=5000)).os
     assert os.heap_get_info() == (5000, 1, 5000)
     os.mkfs("/ramdev1", "RAM1", 1000, 5)
     assert os.heap_get_info() == (0, 0, 0)
 
 
-def test_a_board_without_limits_cannot_say(bench: Bench) -> None:
+def test_heap_info_is_not_implemented_on_a_board_without_limits(bench: Bench) -> None:
     assert status_of(bench.os.heap_get_info) == OS_ERR_NOT_IMPLEMENTED
 
 

@@ -67,7 +67,7 @@ def test_chmod(bench: Bench, mode: int, readable: bool, writable: bool) -> None:
     assert os.files.read_file("/ram/x") == b"Content"
 
 
-def test_a_file_that_cannot_be_opened_at_all_stays_so(bench: Bench) -> None:
+def test_chmod_of_an_inaccessible_file_fails(bench: Bench) -> None:
     bench.os.files.write_file("/ram/x", b"")
     bench.os.chmod("/ram/x", 77)
     assert status_of(bench.os.chmod, "/ram/x", OS_READ_WRITE) == OS_ERROR
@@ -95,7 +95,7 @@ def test_bad_paths(bench: Bench, path: str, status: int) -> None:
     assert status_of(os.open_create, path, OS_FILE_FLAG_CREATE, OS_WRITE_ONLY) == status
 
 
-def test_remove_takes_an_empty_folder_too(bench: Bench) -> None:
+def test_remove_deletes_an_empty_folder_like_c(bench: Bench) -> None:
     """As C's remove() under NASA's OSAL does."""
     bench.os.mkdir("/cf/folder")
     bench.os.files.write_file("/cf/folder/a.txt", b"a")
@@ -107,7 +107,7 @@ def test_remove_takes_an_empty_folder_too(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize("new", ["/cf/nowhere/a.txt", "/cf/folder"])
-def test_a_file_becomes_no_folder_and_goes_into_none_that_is_not_there(bench: Bench, new: str) -> None:
+def test_rename_to_a_folder_or_a_missing_folder_is_refused(bench: Bench, new: str) -> None:
     """As on NASA's cFE."""
     bench.os.files.write_file("/cf/a.txt", b"a")
     bench.os.mkdir("/cf/folder")
@@ -116,7 +116,7 @@ def test_a_file_becomes_no_folder_and_goes_into_none_that_is_not_there(bench: Be
     assert bench.os.files.read_file("/cf/a.txt") == b"a"
 
 
-def test_what_is_gone_cannot_be_renamed_copied_or_moved(bench: Bench) -> None:
+def test_missing_file_cannot_be_renamed_copied_or_moved(bench: Bench) -> None:
     os = bench.os
     os.files.write_file("/ram/x", b"content")
     os.rename("/ram/x", "/ram/y")
@@ -159,7 +159,7 @@ def test_directories(bench: Bench) -> None:
     assert status_of(os.rmdir, "/ram/d") == OS_ERROR
 
 
-def test_a_directory_has_what_is_in_it_at_the_first_read(bench: Bench) -> None:
+def test_directory_is_listed_at_the_first_read_and_after_a_rewind(bench: Bench) -> None:
     """It is read again after a rewind, as with the C library under NASA's OSAL. FM's listing names itself."""
     os = bench.os
     os.mkdir("/ram/d")
@@ -172,7 +172,7 @@ def test_a_directory_has_what_is_in_it_at_the_first_read(bench: Bench) -> None:
     assert [os.directory_read(dir_id) for _ in range(3)] == ["a", "b", None]
 
 
-def test_a_directory_that_goes_while_it_is_open_has_nothing(bench: Bench) -> None:
+def test_directory_removed_while_open_has_no_entries(bench: Bench) -> None:
     os = bench.os
     os.mkdir("/ram/d")
     dir_id = os.directory_open("/ram/d")

@@ -20,7 +20,7 @@ from tests.osal.helpers import MS, Bench
 from tests.statuses import status_of
 
 
-def test_messages_come_out_in_order(bench: Bench) -> None:
+def test_messages_are_read_in_order(bench: Bench) -> None:
     queue_id = bench.os.queue_create("Q", 3, 8)
     for text in (b"a", b"bb", b"ccc"):
         bench.os.queue_put(queue_id, text)
@@ -34,7 +34,7 @@ def test_a_put_never_waits(bench: Bench) -> None:
     assert bench.os.queue_get(queue_id) == b"a"
 
 
-def test_a_changed_buffer_does_not_change_the_message(bench: Bench) -> None:
+def test_changed_buffer_does_not_change_the_message(bench: Bench) -> None:
     queue_id = bench.os.queue_create("Q", 1, 8)
     buffer = bytearray(b"old")
     bench.os.queue_put(queue_id, buffer)
@@ -61,7 +61,7 @@ def test_bad_arguments(bench: Bench) -> None:
     assert status_of(bench.os.queue_get_info, 0x10001) == OS_ERR_INVALID_ID
 
 
-def test_a_queue_that_the_system_refuses_uses_up_an_id(bench: Bench) -> None:
+def test_queue_refused_by_the_system_uses_up_an_id(bench: Bench) -> None:
     first = bench.os.queue_create("Q", 1, 1)
     status_of(bench.os.queue_create, "R", 51, 1)
     status_of(bench.os.queue_create, "R", 0, 1)
@@ -74,7 +74,7 @@ def test_there_are_as_many_queues_as_configured(bench: Bench) -> None:
     assert status_of(bench.os.queue_create, "ONE_MORE", 1, 1) == OS_ERR_NO_FREE_IDS
 
 
-def test_a_deleted_id_does_not_come_back_at_once(bench: Bench) -> None:
+def test_id_of_a_deleted_queue_is_not_reused_at_once(bench: Bench) -> None:
     first = bench.os.queue_create("Q", 1, 1)
     bench.os.queue_delete(first)
     assert bench.os.queue_create("Q", 1, 1) != first
@@ -90,7 +90,7 @@ def test_time_outs(bench: Bench, timeout_ms: int, elapsed_ms: int) -> None:
     assert bench.run(body) == (None, elapsed_ms * MS)
 
 
-def test_a_pending_reader_gets_what_comes_later(bench: Bench) -> None:
+def test_pending_reader_gets_a_later_message(bench: Bench) -> None:
     queue_id = bench.os.queue_create("Q", 1, 4)
 
     def writer() -> None:
@@ -101,7 +101,7 @@ def test_a_pending_reader_gets_what_comes_later(bench: Bench) -> None:
     assert bench.run(lambda: (bench.os.queue_get(queue_id, OS_PEND), bench.kernel.now)) == (b"late", 5000 * MS)
 
 
-def test_deleting_a_queue_wakes_its_readers_with_an_error(bench: Bench) -> None:
+def test_deleted_queue_wakes_its_readers_with_an_error(bench: Bench) -> None:
     queue_id = bench.os.queue_create("Q", 1, 4)
 
     def deleter() -> None:

@@ -45,7 +45,7 @@ def test_wrong_arguments(bench: Bench) -> None:
     assert status_of(os.select_multiple, None, None, 0) == OS_ERR_INVALID_ID
 
 
-def test_one_socket(bench: Bench) -> None:
+def test_select_single_reports_a_readable_and_writable_socket(bench: Bench) -> None:
     def use() -> list[object]:
         os, sender = bench.os, bench.os.socket_open(INET, DATAGRAM)
         receiver = bound(bench, 5000)
@@ -57,7 +57,7 @@ def test_one_socket(bench: Bench) -> None:
     assert bench.run(use) == [0, WRITE, None, 30, READ, READ | WRITE]
 
 
-def test_one_of_several_wakes_the_task(bench: Bench) -> None:
+def test_datagram_for_one_of_several_sockets_wakes_the_task(bench: Bench) -> None:
     receivers = [bound(bench, port) for port in (5000, 5001, 5002)]
 
     def send() -> None:
@@ -75,7 +75,7 @@ def test_one_of_several_wakes_the_task(bench: Bench) -> None:
     assert bench.kernel.now >= 12 * MS
 
 
-def test_a_server_is_readable_when_somebody_knocks(bench: Bench) -> None:
+def test_server_is_readable_when_a_client_connects(bench: Bench) -> None:
     def connect() -> None:
         bench.os.task_delay(3)
         bench.os.socket_connect(bench.os.socket_open(INET, STREAM), address(9997))
@@ -88,7 +88,7 @@ def test_a_server_is_readable_when_somebody_knocks(bench: Bench) -> None:
     assert bench.run(use) == (READ, 3)
 
 
-def test_a_full_stream_is_not_writable_and_an_ended_one_is_readable(bench: Bench) -> None:
+def test_full_stream_is_not_writable_and_ended_stream_is_readable(bench: Bench) -> None:
     _, client, served = connection(bench)
     assert bench.os.write(client, bytes(STREAM_BUFFER)) == STREAM_BUFFER
     readers, writers = fd_set(bench, client, served), fd_set(bench, client, served)
@@ -107,7 +107,7 @@ def test_files_are_always_ready(bench: Bench) -> None:
     assert members(bench, readers, file_id, silent) == [True, False]
 
 
-def test_a_socket_that_is_closed_meanwhile(bench: Bench) -> None:
+def test_socket_closed_during_select_is_reported(bench: Bench) -> None:
     first, second = bound(bench, 5000), bound(bench, 5001)
 
     def close() -> None:

@@ -18,7 +18,7 @@ from tests.osal.helpers import MS, Bench
 from tests.osal.test_queues import status_of
 
 
-def test_a_second_give_of_a_binary_semaphore_is_lost(bench: Bench) -> None:
+def test_second_give_of_a_binary_semaphore_is_lost(bench: Bench) -> None:
     sem_id = bench.os.bin_sem_create("S", 0)
     bench.os.bin_sem_give(sem_id)
     bench.os.bin_sem_give(sem_id)
@@ -34,7 +34,7 @@ def test_initial_values(bench: Bench) -> None:
     assert status_of(bench.os.bin_sem_create, "A", 0) == OS_ERR_NAME_TAKEN
 
 
-def test_a_counting_semaphore_has_a_largest_value(bench: Bench) -> None:
+def test_counting_semaphore_has_a_maximum(bench: Bench) -> None:
     sem_id = bench.os.count_sem_create("S", SEM_VALUE_MAX)
     assert status_of(bench.os.count_sem_give, sem_id) == OS_SEM_FAILURE
 
@@ -61,7 +61,7 @@ def test_take_waits_for_a_give(bench: Bench, kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["bin", "count"])
-def test_deleting_a_semaphore_wakes_its_waiters_with_an_error(bench: Bench, kind: str) -> None:
+def test_deleted_semaphore_wakes_its_waiters_with_an_error(bench: Bench, kind: str) -> None:
     sem_id = getattr(bench.os, f"{kind}_sem_create")("S", 0)
     bench.task(lambda: (bench.os.task_delay(1), getattr(bench.os, f"{kind}_sem_delete")(sem_id)), name="D")
     take = getattr(bench.os, f"{kind}_sem_take")
@@ -69,7 +69,7 @@ def test_deleting_a_semaphore_wakes_its_waiters_with_an_error(bench: Bench, kind
     assert status_of(take, sem_id) == OS_ERR_INVALID_ID
 
 
-def test_flush_releases_everybody(bench: Bench) -> None:
+def test_flush_releases_all_waiters(bench: Bench) -> None:
     sem_id = bench.os.bin_sem_create("S", 0)
     for name in "abc":
         bench.task(lambda name=name: (bench.os.bin_sem_take(sem_id), bench.log.append(name)), name=name)
@@ -84,7 +84,7 @@ def test_flush_releases_everybody(bench: Bench) -> None:
     assert bench.log == ["a", "b", "c"]
 
 
-def test_a_mutex_belongs_to_its_taker(bench: Bench) -> None:
+def test_mutex_belongs_to_its_taker(bench: Bench) -> None:
     mutex_id = bench.os.mut_sem_create("M")
 
     def owner() -> None:
@@ -109,7 +109,7 @@ def test_a_mutex_belongs_to_its_taker(bench: Bench) -> None:
     assert status_of(bench.os.mut_sem_take, mutex_id) == OS_ERR_INVALID_ID
 
 
-def test_a_condition_variable_does_not_lose_a_signal_between_unlock_and_wait(bench: Bench) -> None:
+def test_condition_variable_loses_no_signal_between_unlock_and_wait(bench: Bench) -> None:
     var_id = bench.os.cond_var_create("C")
 
     def urgent_signaller() -> None:
@@ -132,7 +132,7 @@ def test_a_condition_variable_does_not_lose_a_signal_between_unlock_and_wait(ben
     assert bench.log == ["signal", "woken"]
 
 
-def test_broadcast_wakes_everybody_one_after_another(bench: Bench) -> None:
+def test_broadcast_wakes_all_waiters_one_after_another(bench: Bench) -> None:
     var_id = bench.os.cond_var_create("C")
 
     def waiter(name: str) -> None:
@@ -148,7 +148,7 @@ def test_broadcast_wakes_everybody_one_after_another(bench: Bench) -> None:
     assert bench.log == [("a", 1), ("b", 6)]
 
 
-def test_a_timed_wait_ends_at_a_local_time_with_the_lock_held(bench: Bench) -> None:
+def test_timed_wait_ends_at_a_local_time_with_the_lock_held(bench: Bench) -> None:
     var_id = bench.os.cond_var_create("C")
     bench.os.set_local_time(time_from_total_milliseconds(1_000_000))
 
@@ -167,7 +167,7 @@ def test_a_wait_without_the_lock_is_an_error(bench: Bench) -> None:
     assert status_of(bench.os.cond_var_unlock, var_id) == OS_ERROR
 
 
-def test_deleting_a_condition_variable_wakes_its_waiters_with_an_error(bench: Bench) -> None:
+def test_deleted_condition_variable_wakes_its_waiters_with_an_error(bench: Bench) -> None:
     var_id = bench.os.cond_var_create("C")
     bench.task(lambda: (bench.os.task_delay(1), bench.os.cond_var_delete(var_id)), name="D")
     assert bench.run(lambda: (bench.os.cond_var_lock(var_id), status_of(bench.os.cond_var_wait, var_id))[1]) == (
@@ -175,7 +175,7 @@ def test_deleting_a_condition_variable_wakes_its_waiters_with_an_error(bench: Be
     )
 
 
-def test_many_readers_or_one_writer(bench: Bench) -> None:
+def test_lock_has_many_readers_or_one_writer(bench: Bench) -> None:
     lock = bench.os.rw_lock_create("L")
 
     def reader(name: str, start: int) -> None:

@@ -41,13 +41,13 @@ def test_commands_on_the_virtual_file_system(bench: Bench) -> None:
         ("echo 'open", b"sh: No closing quotation\n"),
     ],
 )
-def test_a_command_that_fails_says_why_in_the_file(bench: Bench, command: str, complaint: bytes) -> None:
+def test_failed_command_writes_its_error_to_the_file(bench: Bench, command: str, complaint: bytes) -> None:
     filedes = bench.os.open_create("/ram/out", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
     assert status_of(bench.os.shell_output_to_file, command, filedes) == OS_ERROR
     assert bench.os.files.read_file("/ram/out") == complaint
 
 
-def test_the_descriptor_must_be_good(bench: Bench) -> None:
+def test_invalid_descriptor_is_refused(bench: Bench) -> None:
     assert status_of(bench.os.shell_output_to_file, "ls /ram", 0) == OS_ERR_INVALID_ID
     filedes = bench.os.open_create("/ram/out", OS_FILE_FLAG_CREATE, OS_READ_ONLY)
     assert status_of(bench.os.shell_output_to_file, "echo x", filedes) == OS_ERROR

@@ -114,14 +114,14 @@ def test_absolute_time_outs(bench: Bench) -> None:
     assert bench.run(receive) == (None, 30)
 
 
-def test_a_socket_bound_to_all_hosts_gets_what_is_sent_to_any(bench: Bench) -> None:
+def test_socket_bound_to_all_hosts_gets_datagrams_for_any_host(bench: Bench) -> None:
     receiver, sender = bound(bench, 5000, host="0.0.0.0"), bound(bench, 5001, host="0.0.0.0")
     for host in ("127.0.0.1", "127.0.0.9", "0.0.0.0"):
         bench.os.socket_send_to(sender, host.encode(), address(5000, host))
         assert bench.os.socket_recv_from(receiver, 20, OS_CHECK) == (host.encode(), address(5001))
 
 
-def test_what_nobody_is_there_for_is_lost_or_goes_out(bench: Bench) -> None:
+def test_datagram_without_a_receiver_is_lost_or_leaves_the_network(bench: Bench) -> None:
     sender, seen = bound(bench, 5001), []
     assert bench.os.socket_send_to(sender, b"x", address(5000)) == 1
     bench.os.network.outlets.append(seen.append)
@@ -129,7 +129,7 @@ def test_what_nobody_is_there_for_is_lost_or_goes_out(bench: Bench) -> None:
     assert seen == [Datagram(Place("127.0.0.1", 5001), Place("10.0.0.7", 5000), b"y")]
 
 
-def test_a_full_mailbox_loses_the_newest(bench: Bench) -> None:
+def test_full_mailbox_drops_the_newest_datagram(bench: Bench) -> None:
     sender, receiver = bench.os.socket_open(INET, DATAGRAM), bound(bench, 5000)
     room = DATAGRAM_BUFFER // (1 + DATAGRAM_OVERHEAD)
     for number in range(room + 3):
@@ -139,7 +139,7 @@ def test_a_full_mailbox_loses_the_newest(bench: Bench) -> None:
     assert bench.os.socket_recv_from(receiver, 1, OS_CHECK) is None
 
 
-def test_a_connected_datagram_socket_knows_one_peer(bench: Bench) -> None:
+def test_connected_datagram_socket_has_one_peer(bench: Bench) -> None:
     first, second, third = bound(bench, 5001), bound(bench, 5002), bound(bench, 5003)
     assert bench.os.socket_connect(first, address(5002))
     assert bench.os.write(first, b"hello") == 5
@@ -207,7 +207,7 @@ def test_port_0_is_any_free_port(bench: Bench) -> None:
     assert ports == [32_769, 32_770]
 
 
-def test_a_task_that_waits_at_a_closed_socket_is_told(bench: Bench) -> None:
+def test_task_waiting_at_a_closed_socket_gets_an_error(bench: Bench) -> None:
     sock_id = bound(bench, 5000)
 
     def receive() -> None:
@@ -222,7 +222,7 @@ def test_a_task_that_waits_at_a_closed_socket_is_told(bench: Bench) -> None:
     assert bench.log == [(OS_ERR_INVALID_ID, 7)]
 
 
-def test_processors_meet_on_one_network() -> None:
+def test_two_processors_exchange_datagrams_on_one_network() -> None:
     network = Network()
     first, second = Bench(network=network), Bench(network=network)
     with first.kernel, second.kernel:
@@ -264,7 +264,7 @@ def test_options(bench: Bench) -> None:
     assert status_of(os.socket_get_option, file_id, OS_socket_option_IP_DSCP) == OS_ERROR
 
 
-def test_what_only_files_can_do(bench: Bench) -> None:
+def test_seek_is_refused_on_sockets_and_timed_io_works_on_files(bench: Bench) -> None:
     sock_id = bound(bench, 9999)
     assert status_of(bench.os.lseek, sock_id, 0, 0) == OS_ERR_OPERATION_NOT_SUPPORTED
     file_id = a_file(bench)
@@ -312,7 +312,7 @@ def crowd(context: str) -> tuple[str, list[object]]:
         return kernel.trace.digest(), bench.log
 
 
-def test_a_socket_that_is_closed_while_it_sends_takes_no_port() -> None:
+def test_socket_closed_while_it_sends_keeps_no_port() -> None:
     bench = Bench(costs=CpuCosts(byte_ps=1_000_000))
     sock = bench.os.socket_open(INET, DATAGRAM)
     statuses: list[int] = []

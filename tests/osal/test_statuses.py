@@ -99,7 +99,7 @@ def test_ids(bench: Bench, family: Family) -> None:
 
 
 @each_family
-def test_how_many_there_are(bench: Bench, family: Family) -> None:
+def test_number_of_objects_is_limited(bench: Bench, family: Family) -> None:
     for number in range(family.most):
         family.make(bench.os, f"N{number}")
     assert status_of(family.make, bench.os, "OneTooMany") == OS_ERR_NO_FREE_IDS
@@ -158,7 +158,7 @@ def test_time_bases_cannot_be_managed_from_a_sync_function(bench: Bench) -> None
 
 
 @pytest.mark.parametrize("function", ["object_id_to_array_index", "convert_to_array_index", "get_resource_name"])
-def test_ids_of_nothing(bench: Bench, function: str) -> None:
+def test_unknown_ids_are_refused(bench: Bench, function: str) -> None:
     kind = (1,) if function == "object_id_to_array_index" else ()
     for bad in (0, 0xFFFFFFFF):
         assert status_of(getattr(bench.os, function), *kind, bad) == OS_ERR_INVALID_ID
@@ -166,7 +166,7 @@ def test_ids_of_nothing(bench: Bench, function: str) -> None:
     assert status_of(bench.os.object_id_to_array_index, 1, queue) == OS_ERR_INVALID_ID
 
 
-def test_functions_for_tasks_only(bench: Bench) -> None:
+def test_functions_for_tasks_are_refused_elsewhere(bench: Bench) -> None:
     assert status_of(bench.os.task_install_delete_handler, lambda: None) == OS_ERR_INVALID_ID
     assert status_of(bench.os.task_create, "T", None, 4096, 100) == OS_INVALID_POINTER
     assert status_of(bench.os.task_create, "T", lambda: None, 0, 100) == OS_ERR_INVALID_SIZE

@@ -105,7 +105,7 @@ def test_shutdown(bench: Bench) -> None:
         assert status_of(os.socket_shutdown, sock_id, mode) == status
 
 
-def test_a_waiting_connection_can_send_before_it_is_accepted(bench: Bench) -> None:
+def test_waiting_connection_can_send_before_it_is_accepted(bench: Bench) -> None:
     server, client = bound(bench, 9997, STREAM), bench.os.socket_open(INET, STREAM)
     bench.os.socket_connect(client, address(9997))
     bench.os.write(client, b"early")
@@ -126,7 +126,7 @@ def test_ten_connections_wait_to_be_accepted(bench: Bench) -> None:
     assert bench.run(use) == [True] * 10 + [False, True]
 
 
-def test_closing_a_socket_that_waits_to_be_connected(bench: Bench) -> None:
+def test_close_of_a_socket_that_waits_to_connect_is_an_error(bench: Bench) -> None:
     bound(bench, 9997, STREAM)
     clients = [bench.os.socket_open(INET, STREAM) for _ in range(11)]
     for client in clients[:10]:
@@ -170,7 +170,7 @@ def test_wrong_states_of_streams(bench: Bench) -> None:
     assert os.timed_read(client, 4, OS_CHECK) is None
 
 
-def test_a_closed_server_drops_those_who_wait(bench: Bench) -> None:
+def test_closed_server_disconnects_waiting_clients(bench: Bench) -> None:
     server, client = bound(bench, 9997, STREAM), bench.os.socket_open(INET, STREAM)
     bench.os.socket_connect(client, address(9997))
     bench.os.close(server)

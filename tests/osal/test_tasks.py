@@ -27,7 +27,7 @@ def _nothing() -> None:
     pass
 
 
-def test_a_task_knows_its_id_and_name(bench: Bench) -> None:
+def test_task_gets_its_own_id_and_name(bench: Bench) -> None:
     def body() -> tuple[int, str]:
         task_id = bench.os.task_get_id()
         return task_id, bench.os.get_resource_name(task_id)
@@ -81,7 +81,7 @@ def test_task_get_info_and_id_by_name(bench: Bench) -> None:
     assert bench.log == [True, TaskProperties("CHILD", bench.log[2], 2048, 120), bench.log[2]]
 
 
-def test_a_task_that_ended_is_unknown(bench: Bench) -> None:
+def test_ended_task_is_unknown(bench: Bench) -> None:
     task_id = bench.task(_nothing)
     bench.kernel.run(until_ns=1)
     for call in (bench.os.task_get_info, bench.os.task_delete, bench.os.get_resource_name):
@@ -104,7 +104,7 @@ def test_a_negative_delay_is_refused(bench: Bench) -> None:
     assert caught.value.status == OS_ERR_INVALID_ARGUMENT
 
 
-def test_set_priority_changes_who_runs(bench: Bench) -> None:
+def test_set_priority_changes_the_running_task(bench: Bench) -> None:
     def body() -> None:
         lazy = bench.task(lambda: bench.log.append("lazy"), 200, "LAZY")
         bench.os.task_set_priority(lazy, 10)
@@ -114,7 +114,7 @@ def test_set_priority_changes_who_runs(bench: Bench) -> None:
     assert bench.log == ["lazy", "main"]
 
 
-def test_delete_unwinds_and_calls_the_handler(bench: Bench) -> None:
+def test_delete_unwinds_the_task_and_calls_its_handler(bench: Bench) -> None:
     def victim() -> None:
         bench.os.task_install_delete_handler(lambda: bench.log.append("handler"))
         try:
@@ -131,7 +131,7 @@ def test_delete_unwinds_and_calls_the_handler(bench: Bench) -> None:
     assert bench.log == ["finally", "handler", "deleted"]
 
 
-def test_deleting_oneself_calls_the_handler_and_does_not_return(bench: Bench) -> None:
+def test_task_that_deletes_itself_calls_its_handler_and_ends(bench: Bench) -> None:
     def suicide() -> None:
         bench.os.task_install_delete_handler(lambda: bench.log.append("handler"))
         bench.os.task_delete(bench.os.task_get_id())
@@ -152,12 +152,12 @@ def test_exit_calls_no_handler(bench: Bench) -> None:
     assert bench.log == []
 
 
-def test_a_task_deleted_before_it_began_frees_its_name(bench: Bench) -> None:
+def test_task_deleted_before_it_began_frees_its_name(bench: Bench) -> None:
     bench.os.task_delete(bench.task(_nothing, name="EARLY"))
     bench.task(_nothing, name="EARLY")
 
 
-def test_a_delete_leaves_what_the_task_made(bench: Bench) -> None:
+def test_objects_of_a_deleted_task_are_kept(bench: Bench) -> None:
     def maker() -> None:
         bench.os.queue_create("LEFT", 1, 1)
         bench.os.task_delay(1000)

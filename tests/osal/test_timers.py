@@ -60,7 +60,7 @@ def test_a_timer_set_between_ticks_counts_from_the_last_tick(bench: Bench, maste
     assert bench.log == [20]
 
 
-def test_an_idle_time_base_costs_nothing(bench: Bench, master: int) -> None:
+def test_idle_time_base_costs_nothing(bench: Bench, master: int) -> None:
     bench.kernel.run(until_ns=1)
     events = len(bench.kernel.trace.records) if bench.kernel.trace else 0
     bench.kernel.run(until_ns=3_600_000 * MS)
@@ -85,7 +85,7 @@ def test_timers_due_at_one_tick_run_newest_first(bench: Bench, master: int) -> N
     assert bench.log == [("c", 50), ("b", 50), ("a", 50)]
 
 
-def test_a_timer_of_its_own(bench: Bench) -> None:
+def test_single_timer_has_its_own_time_base(bench: Bench) -> None:
     timer_id = bench.os.timer_create("T", lambda given: bench.log.append((given == timer_id, bench.kernel.now // MS)))
     bench.os.timer_set(timer_id, 7_000, 13_000)
     bench.kernel.run(until_ns=40 * MS)
@@ -105,7 +105,7 @@ def test_the_argument_of_a_timer(bench: Bench, master: int) -> None:
     assert bench.log == ["argument"]
 
 
-def test_a_callback_runs_before_any_other_task_of_that_instant(bench: Bench, master: int) -> None:
+def test_callback_runs_before_other_tasks_of_that_instant(bench: Bench, master: int) -> None:
     bench.task(lambda: (bench.os.task_delay(20), bench.log.append("task")), priority=0, name="T")
     bench.os.timer_set(bench.os.timer_add("T", master, lambda *_: bench.log.append("callback")), 20_000, 0)
     bench.task(lambda: (bench.os.task_delay(20), bench.log.append("lesser")), priority=1, name="L")
@@ -139,7 +139,7 @@ def test_callbacks_may_give_semaphores_and_put_messages_but_not_manage_timers(be
     assert bench.log == [master] + [OS_ERR_INCORRECT_OBJ_STATE] * 10
 
 
-def test_a_callbacks_error_is_its_applications_and_the_time_base_goes_on(bench: Bench, master: int) -> None:
+def test_error_in_a_callback_belongs_to_its_application_and_the_time_base_continues(bench: Bench, master: int) -> None:
     class App:
         name = "APP"
 
@@ -173,14 +173,14 @@ def test_an_external_sync_drives_a_time_base(bench: Bench) -> None:
     assert bench.os.time_base_get_info(timebase_id).accuracy == 0
 
 
-def test_a_sync_that_never_waits_is_slowed_down(bench: Bench) -> None:
+def test_sync_that_never_waits_is_slowed_down(bench: Bench) -> None:
     calls: list[int] = []
     bench.os.time_base_create("BAD", lambda timebase_id: calls.append(bench.kernel.now) or 0)
     bench.kernel.run(until_ns=100 * MS)
     assert 10 <= len(calls) <= 20
 
 
-def test_bad_arguments(bench: Bench, master: int) -> None:
+def test_invalid_arguments_are_refused(bench: Bench, master: int) -> None:
     timer_id = bench.os.timer_add("T", master, _noter(bench))
     assert status_of(bench.os.timer_set, timer_id, 0, 0) == OS_TIMER_ERR_INVALID_ARGS
     assert status_of(bench.os.timer_set, timer_id, -1, 5) == OS_TIMER_ERR_INVALID_ARGS

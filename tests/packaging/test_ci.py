@@ -35,7 +35,7 @@ def test_the_page_shows_the_workflow_of_the_example() -> None:
     assert f"```yaml\n{WORKFLOW.read_text(encoding='utf-8')}```\n" in page
 
 
-def test_what_is_kept_is_what_steps_write() -> None:
+def test_workflow_keeps_the_files_that_steps_write() -> None:
     steps = job_of(WORKFLOW, "cfepy")["steps"]
     paths = {
         kind: [step["with"]["path"] for step in steps if step.get("uses", "").startswith(action)]
@@ -47,7 +47,7 @@ def test_what_is_kept_is_what_steps_write() -> None:
             assert step["if"] == "always()"
 
 
-def test_ours_runs_what_every_change_must_pass() -> None:
+def test_own_workflow_runs_the_required_checks() -> None:
     assert "bash .ci/run" in [step.get("run") for step in job_of(OURS, "all")["steps"]]
     assert {name.partition("-")[0] for name in job_of(OURS, "systems")["strategy"]["matrix"]["system"]} == {
         *("ubuntu", "macos", "windows")
@@ -55,7 +55,7 @@ def test_ours_runs_what_every_change_must_pass() -> None:
 
 
 @pytest.mark.slow
-def test_the_steps_work_with_and_without_what_an_earlier_run_left(tmp_path: Path) -> None:
+def test_steps_work_with_and_without_results_of_an_earlier_run(tmp_path: Path) -> None:
     package = tmp_path / "probe"
     shutil.copytree(PROBE, package)
     job = job_of(WORKFLOW, "cfepy")

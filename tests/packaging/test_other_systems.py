@@ -22,7 +22,7 @@ WITHOUT = Path(__file__).with_name("without.py")
 
 
 @pytest.mark.parametrize("system", ["windows", "macos"])
-def test_all_is_imported_and_the_demonstration_is_the_same_run(system: str) -> None:
+def test_modules_are_importable_and_the_demonstration_has_the_same_trace(system: str) -> None:
     environment = {**os.environ, "PYTHONPATH": import_path()}
     command = [sys.executable, "-P", str(WITHOUT), system, "capture", "1"]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)

@@ -33,7 +33,7 @@ def test_the_changelog_gets_the_day() -> None:
         (CHANGES, "0.3.0", "no section"),
         (CHANGES, "0.1.0", "below other versions"),
         (CHANGES.replace("- News.", ""), "0.2.0", "has nothing"),
-        (CHANGES.replace("unreleased", "soon"), "0.2.0", "neither unreleased nor a day"),
+        (CHANGES.replace("unreleased", "soon"), "0.2.0", "invalid day 'soon'"),
     ],
 )
 def test_a_changelog_without_the_version_is_refused(changes: str, version: str, why: str) -> None:
@@ -41,7 +41,7 @@ def test_a_changelog_without_the_version_is_refused(changes: str, version: str, 
         dated(changes, version, "2026-11-24")
 
 
-def test_a_wheel_with_other_files_than_git_has_is_refused(tmp_path: Path) -> None:
+def test_wheel_with_other_files_than_git_is_refused(tmp_path: Path) -> None:
     tracked = ["cfepy/py.typed", "cfepy/a.py", "boards/linux.yaml", "tests/test_a.py"]
     assert wanted_in("whl", tracked) == {"cfepy/py.typed", "cfepy/a.py", "cfepy/share/boards/linux.yaml"}
     assert wanted_in("gz", [*tracked, ".ci/run"]) == set(tracked)
@@ -54,7 +54,7 @@ def test_a_wheel_with_other_files_than_git_has_is_refused(tmp_path: Path) -> Non
             "cfepy-0.2.0.dist-info/METADATA",
         ):
             wheel.writestr(name, "Name: cfepy\nVersion: 0.2.0\n\n")
-    with pytest.raises(UsageError, match=r"lacks cfepy/a\.py, .*and it has: cfepy/stray\.py"):
+    with pytest.raises(UsageError, match=r"missing files: cfepy/a\.py, .*unexpected files, .*: cfepy/stray\.py"):
         check_contents(file, "0.2.0", tracked)
 
 
@@ -80,18 +80,18 @@ def git(folder: Path, *words: str) -> str:
     return subprocess.run(["git", *who, *words], cwd=folder, check=True, capture_output=True, text=True).stdout
 
 
-def test_the_version_is_in_one_place(checkout: Path) -> None:
+def test_version_must_be_in_one_place(checkout: Path) -> None:
     check_version(checkout, "0.2.0")
-    with pytest.raises(UsageError, match=r"says 0\.2\.0: write 0\.2\.1"):
+    with pytest.raises(UsageError, match=r"has version 0\.2\.0; write 0\.2\.1"):
         check_version(checkout, "0.2.1")
     with pytest.raises(UsageError, match="expected a version such as"):
         check_version(checkout, "two")
     (checkout / "pyproject.toml").write_text('[project]\nversion = "0.2.0"\n', encoding="utf-8")
-    with pytest.raises(UsageError, match=r"alone, and is in cfepy/__init__\.py, pyproject\.toml"):
+    with pytest.raises(UsageError, match=r"not in cfepy/__init__\.py, pyproject\.toml"):
         check_version(checkout, "0.2.0")
 
 
-def test_a_checkout_with_changes_or_the_tag_is_refused(checkout: Path) -> None:
+def test_checkout_with_changes_or_the_tag_is_refused(checkout: Path) -> None:
     check_clean(checkout, "0.2.0")
     git(checkout, "tag", "v0.2.0")
     with pytest.raises(UsageError, match=r"there is a tag v0\.2\.0"):
@@ -102,7 +102,7 @@ def test_a_checkout_with_changes_or_the_tag_is_refused(checkout: Path) -> None:
 
 
 @pytest.mark.slow
-def test_one_command_makes_a_version_ready(tmp_path: Path) -> None:
+def test_command_prepares_a_version(tmp_path: Path) -> None:
     """In a copy of this checkout: two environments are made, and the demonstration is flown in each."""
     copy = tmp_path / "copy"
     shutil.copytree(ROOT, copy, ignore=LEFT, symlinks=True)

@@ -27,14 +27,14 @@ PAGES = ("README.md", "docs/how_to/install.md", "docs/how_to/run_a_ros_node.md")
 LINES = [line for page in PAGES for line in lines_of(page)]
 
 
-def test_each_page_has_one() -> None:
+def test_each_page_has_one_line() -> None:
     assert len(LINES) == 3
     assert len({re.sub(r".* install ", "", line) for line in LINES}) == 3
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("line", LINES)
-def test_the_line_makes_an_environment_with_cfepy(line: str, tmp_path: Path) -> None:
+def test_line_makes_an_environment_with_cfepy(line: str, tmp_path: Path) -> None:
     copy = tmp_path / "cfepy"
     shutil.copytree(ROOT, copy, ignore=LEFT)
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_"))}

@@ -12,12 +12,12 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.mark.parametrize("name", [*NAMES, ALL])
-def test_the_rest_flies(name: str, tmp_path: Path) -> None:
+def test_core_flies_without_an_add_on(name: str, tmp_path: Path) -> None:
     copy = Copy(tmp_path / "cfepy", NAMES if name == ALL else [name])
     for tried in copy.flights():
         assert not tried.trouble, tried.what
 
 
-def test_the_computer_needs_no_add_on(tmp_path: Path) -> None:
+def test_computer_needs_no_add_on(tmp_path: Path) -> None:
     tried = Copy(tmp_path / "cfepy", NAMES).computer()
     assert not tried.trouble

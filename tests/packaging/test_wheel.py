@@ -66,7 +66,7 @@ def cfepy(home: Path, *arguments: str) -> str:
     return execute([str(home / "venv/bin/cfepy"), *arguments], home)
 
 
-def test_the_wheel_brings_everything_along(wheel: Path) -> None:
+def test_wheel_has_all_shipped_files(wheel: Path) -> None:
     names = set(zipfile.ZipFile(wheel).namelist())
     assert names.issuperset(SHIPPED)
     assert any(name.endswith("licenses/LICENSE") for name in names)
@@ -75,7 +75,7 @@ def test_the_wheel_brings_everything_along(wheel: Path) -> None:
     ]
 
 
-def test_the_capture_mission_flies_as_in_the_checkout(home: Path) -> None:
+def test_capture_mission_has_the_trace_of_the_checkout(home: Path) -> None:
     output = cfepy(home, "run", "capture", "--for", "1", "--quiet", "--json", "numbers.json")
     numbers = json.loads((home / "numbers.json").read_text(encoding="utf-8"))
     assert output.splitlines()[-1] == f"trace: {numbers['trace']}"
@@ -93,7 +93,7 @@ def test_boards_are_found(home: Path) -> None:
 
 
 @needs_compiler
-def test_a_compiled_application_is_made_built_and_flown_away_from_the_checkout(home: Path, wheel: Path) -> None:
+def test_compiled_application_is_created_built_and_flown_away_from_the_checkout(home: Path, wheel: Path) -> None:
     execute([str(home / "venv/bin/python"), "-m", "pip", "install", "--quiet", f"{wheel}[c]"], home)
     cfepy(home, "new", "app", "probe", "--c")
     cfepy(home, "build", "probe")
@@ -105,7 +105,7 @@ def test_a_compiled_application_is_made_built_and_flown_away_from_the_checkout(h
 
 
 @needs_compiler
-def test_engine_kernel_and_bus_are_compiled_where_they_are_wanted(home: Path, tmp_path: Path) -> None:
+def test_engine_kernel_and_bus_are_compiled_on_request(home: Path, tmp_path: Path) -> None:
     """As docs/how_to/install.md has it."""
     venv.create(tmp_path / "venv", with_pip=True)
     python = str(tmp_path / "venv/bin/python")

@@ -28,7 +28,7 @@ def stream(batches: Sequence[Sequence[bytes]], facts: dict[str, int] | None = No
 
 
 @given(st.lists(records, max_size=4), st.lists(records, max_size=4), records)
-def test_the_first_parting_is_that_of_the_lists(
+def test_first_difference_of_streams_equals_that_in_the_lists(
     one: list[list[bytes]], other: list[list[bytes]], common: list[bytes]
 ) -> None:
     flat = [[record for batch in (common, *batches) for record in batch if record] for batches in (one, other)]
@@ -38,13 +38,13 @@ def test_the_first_parting_is_that_of_the_lists(
     assert found == (None if flat[0] == flat[1] else Parting(1, expected))
 
 
-def test_the_earliest_of_several_runs() -> None:
+def test_earliest_difference_of_several_runs_is_found() -> None:
     runs = [stream([[b"a", b"b", b"c"]], {"n": 3}) for _ in range(2)]
     runs += [stream([[b"a", b"b"], [b"x"]], {}), stream([[b"a"], [b"x"]], {})]
     assert first_parting(runs) == (Parting(3, 1), 1)
 
 
-def test_how_a_run_ended_is_known_or_missed() -> None:
+def test_end_of_a_run_is_known_or_missing() -> None:
     runs = [stream([[b"a"]], {"n": 1}), stream([[b"a"]], {"n": 2})]
     assert first_parting(runs) == (None, 1)
     assert [run.facts for run in runs] == [{"n": 1}, {"n": 2}]
@@ -52,7 +52,7 @@ def test_how_a_run_ended_is_known_or_missed() -> None:
         first_parting([stream([[b"a"]], {}), stream([[b"a"]])])
 
 
-def test_a_look_at_a_record() -> None:
+def test_record_has_its_stack_and_records_around_it() -> None:
     seen: list[Look] = []
     trace = LookingTrace(3, lambda records: [record.decode() for record in records], seen.append)
     for record in (b"a", b"", b"b"):
@@ -105,11 +105,11 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         encoding="utf-8",
     )
     assert [(each.line, each.why) for each in suspects(str(file))] == [
-        (5, "is a set in the order of addresses"),
-        (6, "asks a library in C, whose clock and random numbers are this computer's"),
+        (5, "is a set that is ordered by addresses"),
         (6, "asks the clock of this computer"),
-        (6, "counts what else Python keeps"),
-        (6, "has what lay in memory before"),
+        (6, "calls a C library, which uses the clock and random numbers of this computer"),
+        (6, "counts objects of the whole process"),
+        (6, "returns uninitialized memory"),
     ]
     file.write_text("this is = no program", encoding="utf-8")
     assert suspects(str(file)) == suspects(str(tmp_path / "none.py")) == []

@@ -35,12 +35,13 @@ DEMANDS = {
     "measured: no message of 0x0895 was sent",
     "deadlines: {apps: {TALKR: {response: 1 ms}}}": "the deadline response of TALKR was never measured: "
     "unknown application TALKR; did you mean TALKER?",
-    "results: {/enrgy: last}": "the result /enrgy (last) never came: no message of /enrgy "
+    "results: {/enrgy: last}": "the result /enrgy (last) never occurred: no message of /enrgy "
     "was sent; did you mean /energy?",
-    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never came: the file does not exist",
-    "results: {TALKR: output}": "the result TALKR (output) never came: unknown application TALKR; did you mean TALKER?",
+    "results: {/ram/x.txt: file}": "the result /ram/x.txt (file) never occurred: the file does not exist",
+    "results: {TALKR: output}": "the result TALKR (output) never occurred: unknown application TALKR; "
+    "did you mean TALKER?",
     "results: {/energy: last}": "",
-    "results: {/silent: last}": "the result /silent (last) never came: no message of /silent was sent",
+    "results: {/silent: last}": "the result /silent (last) never occurred: no message of /silent was sent",
     "invariants: {few: {topic: /energy, holds: msg.data < 3}}": "",
 }
 
@@ -51,7 +52,7 @@ def mission(folder: Path, demands: str) -> Path:
 
 
 @pytest.mark.parametrize("demands", list(DEMANDS))
-def test_demand_without_anything_to_judge_is_told(tmp_path: Path, demands: str) -> None:
+def test_demand_that_was_never_judged_is_reported(tmp_path: Path, demands: str) -> None:
     flown = fly(RunPlan((str(mission(tmp_path, demands)),), seconds=2))
     told = [DEMANDS[demands]] if DEMANDS[demands] else []
     assert flown.results.never_judged == told
@@ -70,7 +71,7 @@ def test_demand_without_anything_to_judge_is_told(tmp_path: Path, demands: str) 
     ],
     ids=lambda words: words[0],
 )
-def test_commands_tell_of_an_invariant_that_was_never_judged(
+def test_commands_report_an_invariant_that_was_never_judged(
     tmp_path: Path, command: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     demands = next(iter(DEMANDS))
@@ -87,7 +88,7 @@ def test_commands_tell_of_an_invariant_that_was_never_judged(
 
 
 @pytest.mark.slow
-def test_explore_tells_of_a_measure_that_measured_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_explore_reports_a_measure_without_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = str(mission(tmp_path, ""))
     main(["explore", folder, "--for", "1.5", "--seeds", "1", "--jobs", "1", "--quiet", "--worst", "age:/enrgy"])
     told = "no value of age:/enrgy was measured: no message of /enrgy was sent; did you mean /energy?"
@@ -95,7 +96,7 @@ def test_explore_tells_of_a_measure_that_measured_nothing(tmp_path: Path, capsys
 
 
 @pytest.mark.slow
-def test_sweep_is_not_clean_when_its_topic_never_came(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_sweep_is_not_clean_when_its_topic_was_never_sent(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = str(mission(tmp_path, ""))
     words = ["--for", "1.5", "--board", "linux", "--measure", "/enrgy", "--jobs", "1", "--quiet", "--csv", "-"]
     main(["sweep", folder, *words])
@@ -105,7 +106,7 @@ def test_sweep_is_not_clean_when_its_topic_never_came(tmp_path: Path, capsys: py
     )
 
 
-def test_page_tells_of_an_invariant_that_was_never_judged(tmp_path: Path) -> None:
+def test_page_reports_an_invariant_that_was_never_judged(tmp_path: Path) -> None:
     demands, page = next(iter(DEMANDS)), tmp_path / "page.html"
     main(["report", str(mission(tmp_path, demands)), "--for", "1.5", "-o", str(page)])
     text = page.read_text(encoding="utf-8")

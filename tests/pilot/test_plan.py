@@ -38,25 +38,25 @@ rospy.sleep(1.0)
 """
 
 
-def test_a_schedule_that_is_a_text_is_refused_at_once() -> None:
+def test_schedule_given_as_a_text_is_refused() -> None:
     with pytest.raises(TypeError, match=r"Schedule\.parse\('random:7'\)"):
         RunPlan(("capture",), schedule="random:7")  # type: ignore[arg-type]
 
 
 @settings(max_examples=30)
 @given(PLANS)
-def test_a_plan_survives_json(plan: RunPlan) -> None:
+def test_plan_survives_json(plan: RunPlan) -> None:
     assert RunPlan.from_dict(json.loads(json.dumps(plan.to_dict()))) == plan
 
 
-def test_what_is_usual_is_not_said() -> None:
+def test_default_options_are_omitted_in_the_command_line() -> None:
     assert RunPlan(("capture",)).command_line() == "cfepy run capture"
     assert RunPlan(("capture",), seconds=2.5, seed=7).command_line(tasks="greenlet") == (
         "cfepy run --for 2.5 --seed 7 --tasks greenlet capture"
     )
 
 
-def test_the_command_line_does_the_same_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_command_line_reproduces_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     plan = RunPlan(("capture",), seconds=0.7, seed=3, schedule=Schedule.parse("random:5"))
     flown = fly(plan)
     numbers = tmp_path / "numbers.json"
@@ -68,7 +68,7 @@ def test_the_command_line_does_the_same_run(tmp_path: Path, capsys: pytest.Captu
     )
 
 
-def test_a_node_gets_its_time_from_its_start(tmp_path: Path) -> None:
+def test_time_limit_of_a_node_starts_with_the_node(tmp_path: Path) -> None:
     script = tmp_path / "teller.py"
     script.write_text(NODE, encoding="utf-8")
     flown = fly(RunPlan((str(script),), command="node", seconds=5))
@@ -76,7 +76,7 @@ def test_a_node_gets_its_time_from_its_start(tmp_path: Path) -> None:
     assert flown.results.virtual_s < 3  # it is over when its node is
 
 
-def test_a_script_is_flown_to_its_end(tmp_path: Path) -> None:
+def test_run_with_a_script_ends_with_the_script(tmp_path: Path) -> None:
     script = tmp_path / "ask.txt"
     script.write_text("at 2 send CFE_ES_NOOP\nexpect event CFE_ES 3 within 1\n", encoding="utf-8")
     flown = fly(RunPlan(("capture",), script=str(script)))
@@ -85,6 +85,6 @@ def test_a_script_is_flown_to_its_end(tmp_path: Path) -> None:
     assert 2 <= flown.results.virtual_s < 4
 
 
-def test_what_flies_to_the_end_takes_what_takes_off() -> None:
+def test_fly_and_takeoff_have_the_same_options() -> None:
     names = set(inspect.signature(takeoff).parameters) - {"plan"}
     assert set(TakeoffOptions.__annotations__) == names

@@ -104,14 +104,14 @@ def mission(folder: Path, what: str, number: int) -> Path:
 
 
 @pytest.mark.parametrize("what", [*IN_ROS, *IN_CFE])
-def test_digest_differs_when_what_is_published_differs(tmp_path: Path, what: str) -> None:
+def test_digest_differs_when_published_content_differs(tmp_path: Path, what: str) -> None:
     one, other = (digest(mission(tmp_path / "mission", what, number)) for number in (1, 2))
     assert one != other
     assert digest(mission(tmp_path / "mission", what, 1)) == one
 
 
 @pytest.mark.parametrize("what", [*IN_ROS, "a packet"])
-def test_digest_of_unsent_messages_is_the_same_when_somebody_looks(tmp_path: Path, what: str) -> None:
+def test_digest_of_unsent_messages_does_not_depend_on_observers(tmp_path: Path, what: str) -> None:
     folder = mission(tmp_path / "mission", what, 1)
     seen: list[object] = []
     kinds = [THREAD, GREENLET] if has_greenlets() else [THREAD]
@@ -139,7 +139,7 @@ def test_large_unsent_messages_are_hashed_at_once(tmp_path: Path) -> None:
     assert max(waiting) < 70000
 
 
-def test_unsent_message_is_no_scheduling_point(tmp_path: Path) -> None:
+def test_unsent_message_is_not_a_scheduling_point(tmp_path: Path) -> None:
     write_mission(tmp_path, NODE, talker=HEAD)
     found: list[tuple[bool, bool]] = []
 

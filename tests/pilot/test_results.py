@@ -55,7 +55,7 @@ def topic(results: Results, msg_id: int) -> TopicResult:
     return next(topic for topic in results.topics if topic.msg_id == msg_id)
 
 
-def test_messages_and_why_they_were_dropped(tmp_path: Path) -> None:
+def test_messages_are_counted_with_the_reason_of_drops(tmp_path: Path) -> None:
     results = results_of(tmp_path, "Sender")
     full = topic(results, 0x0890)
     assert (full.sent, full.delivered, full.waiting, full.dropped_pipe_full, full.dropped_limit) == (5, 1, 1, 3, 0)
@@ -80,13 +80,13 @@ def test_restarts_are_counted(tmp_path: Path) -> None:
     assert results.problems == []
 
 
-def test_an_app_that_is_not_there(tmp_path: Path) -> None:
+def test_missing_app_is_not_started(tmp_path: Path) -> None:
     results = results_of(tmp_path, "Missing")
     assert [app.state for app in results.apps if app.name == "MISSING"] == ["NOT STARTED"]
     assert results.script_problems == ["MISSING could not be started"]
 
 
-def test_the_run_itself(tmp_path: Path) -> None:
+def test_results_have_times_and_counters_of_the_run(tmp_path: Path) -> None:
     results = results_of(tmp_path, "Sender")
     assert (results.virtual_s, results.wall_s, results.speed) == (3.0, 0.5, 6.0)
     assert (results.seed, results.board, results.tasks) == (4, "linux", task_kind(AUTO).name)
@@ -95,12 +95,12 @@ def test_the_run_itself(tmp_path: Path) -> None:
     assert results.sb["PipeOverflowErrorCounter"] == 3
 
 
-def test_it_is_plain_enough_for_json(tmp_path: Path) -> None:
+def test_results_are_serializable_as_json(tmp_path: Path) -> None:
     results = results_of(tmp_path, "Sender")
     assert json.loads(json.dumps(results.to_dict()))["topics"][0]["msg_id"] == results.topics[0].msg_id
 
 
-def test_a_mission_that_is_over_leaves_no_modules_behind(tmp_path: Path) -> None:
+def test_finished_mission_leaves_no_modules(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("CFE_APP, hk, HK_AppMain, HK, 50, 16384, 0, 0;\n!", encoding="utf-8")
     before = set(sys.modules)
     with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
@@ -112,5 +112,5 @@ def test_a_mission_that_is_over_leaves_no_modules_behind(tmp_path: Path) -> None
     ("share", "text"),
     [(0, "0.00%"), (1e-9, "<0.0001%"), (4.2e-6, "0.0004%"), (0.00042, "0.0420%"), (0.0123, "1.23%"), (1, "100.00%")],
 )
-def test_a_small_share_of_the_cpu_is_not_nothing(share: float, text: str) -> None:
+def test_small_share_of_the_cpu_is_greater_than_zero(share: float, text: str) -> None:
     assert AppResult("APP", "RUNNING", share, 0, 0, None, False).cpu_text == text

@@ -32,7 +32,7 @@ typed_values = st.sampled_from(TYPES).flatmap(lambda name: st.tuples(st.just(nam
 @pytest.mark.slow
 @_SMALL
 @given(typed_values)
-def test_round_trip(typed: tuple[str, Any]) -> None:
+def test_messages_survive_a_round_trip(typed: tuple[str, Any]) -> None:
     name, value = typed
     library, cls = shipped(), message_class(name)
     message = build(library, name, value)
@@ -45,7 +45,7 @@ def test_round_trip(typed: tuple[str, Any]) -> None:
 
 @_SMALL
 @given(st.lists(st.lists(st.text(max_size=3), max_size=4), min_size=1, max_size=6))
-def test_remembered_strings_change_nothing(lists: list[list[str]]) -> None:
+def test_cached_strings_change_nothing(lists: list[list[str]]) -> None:
     library, cls = shipped(), message_class("sensor_msgs/JointState")
     for names in [*lists, *lists[::-1], lists[0]]:
         message = cls(name=names)
@@ -59,7 +59,7 @@ def test_remembered_strings_change_nothing(lists: list[list[str]]) -> None:
 @pytest.mark.slow
 @_SMALL
 @given(typed_values, st.data())
-def test_cut_off_bytes_never_crash(typed: tuple[str, Any], data: st.DataObject) -> None:
+def test_truncated_bytes_are_decoded_or_refused(typed: tuple[str, Any], data: st.DataObject) -> None:
     name, value = typed
     cls = message_class(name)
     encoded = build(shipped(), name, value).__pack__()
@@ -106,7 +106,7 @@ def peer() -> Iterator[Peer]:
 
 @_SMALL
 @given(typed=typed_values)
-def test_like_real_genpy(peer: Peer, typed: tuple[str, Any]) -> None:
+def test_messages_equal_genpy(peer: Peer, typed: tuple[str, Any]) -> None:
     name, value = typed
     message = build(shipped(), name, value)
     theirs = peer.ask(name, value=value)
@@ -116,7 +116,7 @@ def test_like_real_genpy(peer: Peer, typed: tuple[str, Any]) -> None:
 @pytest.mark.slow
 @_SMALL
 @given(typed=typed_values, data=st.data())
-def test_damaged_bytes_like_real_genpy(peer: Peer, typed: tuple[str, Any], data: st.DataObject) -> None:
+def test_damaged_bytes_are_decoded_as_by_genpy(peer: Peer, typed: tuple[str, Any], data: st.DataObject) -> None:
     name, value = typed
     octets = bytearray(build(shipped(), name, value).__pack__())
     for _ in range(data.draw(st.integers(0, 2))):

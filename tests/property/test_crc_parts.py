@@ -9,5 +9,5 @@ from cfepy import fs
 
 
 @given(st.binary(max_size=100), st.binary(max_size=100), st.integers(0, 0xFFFF))
-def test_in_one_go_or_in_parts(first: bytes, second: bytes, start: int) -> None:
+def test_crc_of_parts_equals_the_crc_of_the_whole(first: bytes, second: bytes, start: int) -> None:
     assert fs.crc16(second, fs.crc16(first, start)) == fs.crc16(first + second, start)

@@ -32,7 +32,7 @@ FLAGS = {
     count=st.integers(0, 0x3FFF),
     size=st.integers(7, 65542),
 )
-def test_same_bytes(
+def test_headers_have_the_bytes_of_spacepackets(
     version: int, msg_type: MsgType, secondary: bool, ap_id: int, flag: SegmentationFlag, count: int, size: int
 ) -> None:
     packet = bytearray(6)
@@ -68,7 +68,7 @@ def test_same_bytes(
     count=st.integers(0, 0x3FFF),
     body=st.binary(min_size=1, max_size=300),
 )
-def test_a_whole_packet_of_any_valid_msg_id_goes_there_and_back(
+def test_packet_of_any_valid_msg_id_survives_a_round_trip(
     msg_id: int, flag: SegmentationFlag, count: int, body: bytes
 ) -> None:
     packet = msg.init(msg_id, 6 + len(body))
@@ -86,7 +86,7 @@ def test_a_whole_packet_of_any_valid_msg_id_goes_there_and_back(
 
 
 @given(st.integers(0x1800, 0x1FFF), st.integers(0, 127), st.binary(max_size=200))
-def test_commands_and_telemetry_have_headers_that_others_read(msg_id: int, code: int, payload: bytes) -> None:
+def test_headers_of_commands_and_telemetry_are_read_by_spacepackets(msg_id: int, code: int, payload: bytes) -> None:
     for packet, kind in (
         (msg.command(msg_id, code, payload), PacketType.TC),
         (msg.telemetry(msg_id & 0x0FFF, payload), PacketType.TM),
@@ -98,7 +98,7 @@ def test_commands_and_telemetry_have_headers_that_others_read(msg_id: int, code:
 
 
 @given(st.integers(0x1800, 0x1FFF), st.integers(0, 127), st.binary(max_size=200))
-def test_a_command_checks_and_one_flipped_bit_does_not(msg_id: int, code: int, payload: bytes) -> None:
+def test_checksum_of_a_command_detects_a_flipped_bit(msg_id: int, code: int, payload: bytes) -> None:
     packet = msg.command(msg_id, code, payload)
     assert msg.validate_checksum(packet)
     packet[len(packet) - 1] ^= 0x40
@@ -106,7 +106,7 @@ def test_a_command_checks_and_one_flipped_bit_does_not(msg_id: int, code: int, p
 
 
 @given(st.binary(max_size=20))
-def test_getters_raise_nothing_but_cfe_errors(data: bytes) -> None:
+def test_getters_raise_only_cfe_errors(data: bytes) -> None:
     for getter in (msg.get_msg_id, msg.get_size, msg.get_fcn_code, msg.get_msg_time, msg.validate_checksum):
         try:
             getter(data)

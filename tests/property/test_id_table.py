@@ -10,7 +10,7 @@ from cfepy.ids import IdTable
 
 
 @given(st.integers(1, 9), st.lists(st.integers(0, 20), max_size=60))
-def test_an_id_comes_back_only_after_all_others(capacity: int, choices: list[int]) -> None:
+def test_id_is_reused_only_after_all_others(capacity: int, choices: list[int]) -> None:
     table: IdTable[int] = IdTable(ids.ES_APPID_BASE, capacity)
     live: list[int] = []
     issued: list[int] = []

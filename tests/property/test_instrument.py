@@ -91,7 +91,7 @@ finally: out.append((total, vars(box) if box.next is None else (vars(box.next), 
 
 @pytest.mark.slow
 @given(st.lists(STATEMENT, min_size=1, max_size=6), st.booleans())
-def test_a_program_does_the_same_with_hooks(statements: list[str], has_calls: bool) -> None:
+def test_program_does_the_same_with_hooks(statements: list[str], has_calls: bool) -> None:
     source = PRELUDE + FUNCTION.format(indent("\n".join(statements), "    "))
     kinds = Kinds(accesses=not has_calls, lines=not has_calls, calls=has_calls, is_main=True)
     policy = Policy(points="calls") if has_calls else None

@@ -203,7 +203,7 @@ def execute(
 
 @QUICK
 @given(TASKS)
-def test_both_contexts_give_the_same_run(program: Program) -> None:
+def test_threads_and_greenlets_give_the_same_run(program: Program) -> None:
     assert execute(program, "thread") == execute(program, "greenlet")
 
 
@@ -228,7 +228,7 @@ def test_slices_give_the_same_run_on_a_board(program: Program, cost: int, tick: 
 
 @QUICK
 @given(TASKS, SCHEDULES, ENDS)
-def test_every_schedule_can_be_given_again(program: Program, schedule: Schedule, ends: list[int]) -> None:
+def test_every_schedule_can_be_reproduced(program: Program, schedule: Schedule, ends: list[int]) -> None:
     """It is repeated as recorded, as deviations from fifo, on the other context, and in slices."""
     recorded = NotingPolicy(schedule.policy())
     first = execute(program, "greenlet", policy=recorded)
@@ -240,7 +240,7 @@ def test_every_schedule_can_be_given_again(program: Program, schedule: Schedule,
 
 @QUICK
 @given(TASKS, st.integers(0, 3), st.integers(0, 20))
-def test_taking_the_first_candidate_is_the_order_without_a_policy(program: Program, cost: int, tick: int) -> None:
+def test_first_candidate_is_the_order_without_a_policy(program: Program, cost: int, tick: int) -> None:
     plain = execute(program, "greenlet", switch_cost_ns=cost, tick_ns=tick)
     assert execute(program, "greenlet", policy=Policy(), switch_cost_ns=cost, tick_ns=tick) == plain
     explored = Policy(any_priority=True, hold_ns=END_NS)
@@ -249,7 +249,7 @@ def test_taking_the_first_candidate_is_the_order_without_a_policy(program: Progr
 
 @settings(max_examples=25, deadline=None)
 @given(st.lists(st.integers(1, 5), min_size=2, max_size=8), st.integers(0, 99))
-def test_a_policy_never_breaks_priorities(priorities: list[int], seed: int) -> None:
+def test_policy_never_violates_priorities(priorities: list[int], seed: int) -> None:
     order: list[int] = []
 
     def noter(priority: int) -> Callable[[], None]:

@@ -23,7 +23,7 @@ HOSTS = ("0.0.0.0", "127.0.0.1", "127.0.0.2", "::", "::1")
 
 
 @given(st.lists(st.tuples(st.booleans(), st.integers(1, STREAM_BUFFER + 10)), max_size=30), st.booleans())
-def test_a_stream_gives_what_it_took_in_order(steps: list[tuple[bool, int]], closes: bool) -> None:
+def test_stream_is_read_in_the_order_of_writing(steps: list[tuple[bool, int]], closes: bool) -> None:
     listener = Listener()
     near = listener.connect(HERE, THERE)
     far = listener.accept()
@@ -61,7 +61,7 @@ def test_a_mailbox_is_a_queue_with_a_limit(steps: list[int | None]) -> None:
 
 
 @given(st.lists(st.tuples(st.sampled_from(HOSTS), st.integers(1, 3), st.booleans()), max_size=25))
-def test_a_place_belongs_to_one(steps: list[tuple[str, int, bool]]) -> None:
+def test_place_has_one_owner(steps: list[tuple[str, int, bool]]) -> None:
     ports: BoundEndpoints[Mailbox] = BoundEndpoints()
     owners: dict[Place, Mailbox] = {}
     for host, port, binds in steps:

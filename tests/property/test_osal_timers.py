@@ -42,7 +42,7 @@ class Model:
     set_at_ms=st.integers(0, 100),
     timers=st.lists(st.tuples(TIMES, st.one_of(st.just(0), TIMES)), min_size=1, max_size=4),
 )
-def test_expiries_are_those_of_counting_every_tick(
+def test_expiries_equal_a_model_that_counts_every_tick(
     start_ms: int, tick_ms: int, set_at_ms: int, timers: list[tuple[int, int]]
 ) -> None:
     seen: list[tuple[int, int]] = []

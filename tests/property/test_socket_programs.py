@@ -80,7 +80,7 @@ def fly(
 
 @settings(max_examples=30, deadline=None)
 @given(st.lists(st.tuples(STEPS, STEPS), min_size=1, max_size=3))
-def test_any_programs(programs: list[tuple[list[Step], list[Step]]]) -> None:
+def test_any_programs_give_the_same_run_on_threads_and_greenlets(programs: list[tuple[list[Step], list[Step]]]) -> None:
     sides, log, digest = fly(programs, "thread")
     for near, far in sides:
         assert near.done

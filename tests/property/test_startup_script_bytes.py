@@ -18,7 +18,7 @@ def test_any_bytes_give_one_result_for_each_entry(data: bytes) -> None:
 
 
 @given(st.lists(st.sampled_from([b"CFE_APP", b"CFE_LIB", b",", b";", b"\n", b" ", b"hk", b"0x", b"!", b"/", b"."])))
-def test_script_like_bytes_too(parts: list[bytes]) -> None:
+def test_bytes_like_a_script_give_one_result_for_each_entry(parts: list[bytes]) -> None:
     data = b"".join(parts)
     assert len(list(parse(data))) == data.partition(b"!")[0].count(b";")
     check(data)

@@ -64,7 +64,7 @@ def test_copy_and_set(memory: EepromSpace) -> None:
     assert memory.mem_read32(EEPROM + 4) == 0x0000AAAA
 
 
-def test_a_range_gets_its_bytes_when_they_are_needed(memory: EepromSpace) -> None:
+def test_range_allocates_its_bytes_on_demand(memory: EepromSpace) -> None:
     memory.mem_range_set(5, MEM_RAM, 1 << 20, 1 << 62, 4, MEM_ATTR_READWRITE)
     memory.mem_validate_range(1 << 60, 4, MEM_RAM)
     with pytest.raises(OsalError) as caught:
@@ -75,7 +75,7 @@ def test_a_range_gets_its_bytes_when_they_are_needed(memory: EepromSpace) -> Non
     assert memory.mem_read8(1 << 20) == 7
 
 
-def test_an_area_of_the_retained_memory_can_be_moved() -> None:
+def test_area_of_the_retained_memory_can_be_moved() -> None:
     board = Board()
     board.psp.boot()
     psp, places = board.psp, []
@@ -97,7 +97,7 @@ def test_an_area_of_the_retained_memory_can_be_moved() -> None:
     assert psp.mem_read8(address) == 4
 
 
-def test_eeprom_is_written_by_its_own_functions(memory: EepromSpace) -> None:
+def test_eeprom_is_written_only_by_its_own_functions(memory: EepromSpace) -> None:
     memory.eeprom_write32(EEPROM, 0x01020304)
     memory.eeprom_write16(EEPROM + 4, 0x0506)
     memory.eeprom_write8(EEPROM + 6, 7)
@@ -105,7 +105,7 @@ def test_eeprom_is_written_by_its_own_functions(memory: EepromSpace) -> None:
     assert _status(lambda: memory.mem_write8(EEPROM, 1)) == CFE_PSP_INVALID_MEM_TYPE
 
 
-def test_eeprom_that_nothing_protects_is_written_anywhere(memory: EepromSpace) -> None:
+def test_unprotected_eeprom_is_written_anywhere(memory: EepromSpace) -> None:
     memory.eeprom_write32(EEPROM + 1, 0x01020304)
     memory.eeprom_write16(EEPROM + 3, 0x0506)
     memory.eeprom_write16(RAM + 7, 0x0809)
@@ -120,7 +120,7 @@ def test_eeprom_that_nothing_protects_is_written_anywhere(memory: EepromSpace) -
     assert _status(lambda: memory.eeprom_write8(RAM, 1)) == CFE_PSP_INVALID_MEM_TYPE
 
 
-def test_addresses_count_round() -> None:
+def test_addresses_wrap_around() -> None:
     space = EepromSpace()
     highest = (1 << 64) - 16
     space.mem_range_set(0, MEM_RAM, highest, 32, 4, MEM_ATTR_READWRITE)
@@ -145,7 +145,7 @@ def test_invalid_ranges(memory: EepromSpace, address: int, size: int, memory_typ
     assert _status(lambda: memory.mem_validate_range(address, size, memory_type)) == status
 
 
-def test_bad_definitions(memory: EepromSpace) -> None:
+def test_invalid_definitions_are_refused(memory: EepromSpace) -> None:
     def define(number: int = 1, kind: int = MEM_RAM, word: int = 4, attributes: int = 3) -> None:
         memory.mem_range_set(number, kind, 0, 8, word, attributes)
 
@@ -164,7 +164,7 @@ def test_words_must_be_aligned(memory: EepromSpace) -> None:
     assert _status(lambda: memory.mem_write32(RAM + 2, 0)) == CFE_PSP_ERROR_ADDRESS_MISALIGNED
 
 
-def test_the_eeprom_of_a_board_outlives_a_power_on_reset() -> None:
+def test_eeprom_survives_a_power_on_reset() -> None:
     retained = Retained(eeprom_bytes=64)
     for written in (0, 99):
         board = Board(retained)
@@ -178,7 +178,7 @@ def test_the_eeprom_of_a_board_outlives_a_power_on_reset() -> None:
             board.psp.eeprom_power_down(0)
 
 
-def test_absent_hardware_says_so() -> None:
+def test_absent_hardware_is_reported() -> None:
     board = Board()
     with board.kernel:
         assert _status(lambda: board.psp.port_read8(0)) == CFE_PSP_ERROR_NOT_IMPLEMENTED
@@ -234,7 +234,7 @@ def _status_or_0(call: Callable[[], object]) -> int:
     return 0
 
 
-def test_of_ranges_that_overlap_one_has_to_be_right() -> None:
+def test_access_must_be_valid_in_one_of_overlapping_ranges() -> None:
     # as NASA's Linux has it: a range of RAM that is all memory, and the EEPROM in it
     space = EepromSpace()
     space.mem_range_set(0, MEM_RAM, 0, 0x10000, 4, MEM_ATTR_READWRITE)

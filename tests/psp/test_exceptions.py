@@ -27,7 +27,7 @@ def no_data(call: Callable[[], object]) -> None:
     assert caught.value.status == CFE_PSP_NO_EXCEPTION_DATA
 
 
-def test_the_oldest_comes_first_and_once(board: Board) -> None:
+def test_oldest_exception_is_returned_first_and_once(board: Board) -> None:
     psp = board.psp
     psp.set_default_exception_environment()
     no_data(psp.exception_get_summary)
@@ -41,7 +41,7 @@ def test_the_oldest_comes_first_and_once(board: Board) -> None:
     no_data(psp.exception_get_summary)
 
 
-def test_contexts_stay_until_their_place_is_needed(board: Board) -> None:
+def test_contexts_are_kept_until_their_place_is_needed(board: Board) -> None:
     psp = board.psp
     first = psp.store_exception(1, "first", b"context")
     assert psp.exception_copy_context(first, 100) == b"context"
@@ -59,7 +59,7 @@ def test_contexts_stay_until_their_place_is_needed(board: Board) -> None:
     no_data(lambda: psp.exception_copy_context(0, 100))
 
 
-def test_a_full_storage_keeps_the_oldest(board: Board) -> None:
+def test_full_storage_keeps_the_oldest_exceptions(board: Board) -> None:
     psp = board.psp
     ids = [psp.store_exception(task, "why") for task in range(1, 6)]
     assert ids[4] == 0
@@ -69,7 +69,7 @@ def test_a_full_storage_keeps_the_oldest(board: Board) -> None:
     assert [summary.context_id for summary in summaries] == [0, *ids[1:4]]  # the place of the first is the next to go
 
 
-def test_unread_exceptions_end_when_the_next_cfe_starts() -> None:
+def test_unread_exceptions_are_dropped_at_the_next_start() -> None:
     retained = Retained()
     first = Board(retained)
     with first.kernel:

@@ -52,7 +52,7 @@ MEASURE = f"""
 """
 
 
-def test_a_mission_measures_on_the_profile_what_the_profile_was_made_of(tmp_path: Path) -> None:
+def test_measured_times_match_the_profile_of_the_board(tmp_path: Path) -> None:
     cycles = Measured(100_000_000, 14_000, 4_960, 65_440).cycles()
     assert cycles == {"context_switch_cycles": 300, "syscall_cycles": 200, "copy_cycles_per_byte": 3}
     board = BoardProfile("measured", cpu_hz=100_000_000, **cycles)  # type: ignore[arg-type]  # names of its fields
@@ -69,7 +69,7 @@ def test_a_mission_measures_on_the_profile_what_the_profile_was_made_of(tmp_path
     ("times", "option"),
     [((14_000, 5_000, 4_000), "--long"), ((14_000, 100, 65_440), "--short"), ((1_000, 4_960, 65_440), "--round-trip")],
 )
-def test_times_that_do_not_fit_together(times: tuple[float, float, float], option: str) -> None:
+def test_inconsistent_times_are_refused(times: tuple[float, float, float], option: str) -> None:
     with pytest.raises(UsageError, match="measure again") as caught:
         Measured(100_000_000, *times).cycles()
     assert caught.value.field == option

@@ -28,7 +28,7 @@ def test_claims_are_summed_by_owner_and_kind() -> None:
     assert (budget.used, budget.free) == (850, 150)
 
 
-def test_too_much_is_refused_with_a_table() -> None:
+def test_too_large_claim_is_refused_with_a_table() -> None:
     budget = MemoryBudget(SMALL)
     budget.claim("HK", "stack", 600)
     budget.claim("TO", "pool", 300)
@@ -55,7 +55,7 @@ def test_released_memory_can_be_claimed_again() -> None:
     assert budget.peak == 1000
 
 
-def test_a_board_without_limits_counts_too() -> None:
+def test_board_without_limits_counts_claims() -> None:
     budget = MemoryBudget(load_profile("linux"))
     budget.claim("HK", "stack", 1 << 40)
     assert budget.free is None
@@ -69,7 +69,7 @@ def test_a_negative_claim_is_refused() -> None:
 
 
 @given(st.lists(st.tuples(st.booleans(), st.sampled_from("AB"), st.integers(0, 400))))
-def test_the_sum_is_always_that_of_the_open_claims(steps: list[tuple[bool, str, int]]) -> None:
+def test_sum_equals_the_open_claims(steps: list[tuple[bool, str, int]]) -> None:
     budget = MemoryBudget(SMALL)
     tokens: list[tuple[int, int]] = []
     for give_back, owner, size in steps:
@@ -84,7 +84,7 @@ def test_the_sum_is_always_that_of_the_open_claims(steps: list[tuple[bool, str, 
         assert budget.peak >= budget.used
 
 
-def test_osal_books_what_it_makes_and_gives_it_back() -> None:
+def test_osal_claims_memory_of_its_objects_and_releases_it() -> None:
     costs = MemoryCosts(task_control_block=10, queue_control_block=20, queue_slot=2, semaphore=5, mutex=6, timer=7)
     board = BoardProfile("board", memory_costs=costs)
     budget = MemoryBudget(board)
@@ -106,7 +106,7 @@ def test_osal_books_what_it_makes_and_gives_it_back() -> None:
         assert budget.totals() == {("system", "mutex"): 6, ("system", "semaphore"): 5}
 
 
-def test_a_full_board_creates_nothing() -> None:
+def test_full_board_creates_no_objects() -> None:
     with Kernel("thread") as kernel:
         osal = Osal(kernel, memory=MemoryBudget(SMALL))
         with pytest.raises(OverBudget):
@@ -121,7 +121,7 @@ def test_costs_of_a_board() -> None:
     assert load_profile("linux").cpu_costs() == CpuCosts(polling_ns=1000)  # a loop that polls ends on any board
 
 
-def test_what_a_call_costs() -> None:
+def test_cost_of_a_call_grows_with_its_bytes() -> None:
     costs = CpuCosts(call_ns=1500, byte_ps=8334)
     assert (costs.of(0), costs.of(1), costs.of(100)) == (1500, 1508, 2333)
     assert (costs.of_copying(0), costs.of_copying(100)) == (0, 833)

@@ -24,7 +24,7 @@ def psp() -> Iterator[Psp]:
         yield board.psp
 
 
-def test_a_register_reads_what_was_written(psp: Psp) -> None:
+def test_register_has_the_written_value(psp: Psp) -> None:
     psp.port_write32(GPIO, 0x1_0403_0201)
     psp.port_write16(GPIO + 2, 0xBBAA)
     psp.port_write8(UART + 3, 0x1FF)
@@ -33,7 +33,7 @@ def test_a_register_reads_what_was_written(psp: Psp) -> None:
     assert psp.port_read8(UART + 3) == 0xFF
 
 
-def test_a_test_can_play_the_device(psp: Psp) -> None:
+def test_code_can_simulate_the_device(psp: Psp) -> None:
     psp.port_areas["uart"][0] = ord("!")
     assert psp.port_read8(UART) == ord("!")
     psp.port_write8(UART + 1, 9)
@@ -41,13 +41,13 @@ def test_a_test_can_play_the_device(psp: Psp) -> None:
 
 
 @pytest.mark.parametrize("address", [0, GPIO - 1, GPIO + 8, UART + 4])
-def test_there_is_no_port_elsewhere(psp: Psp, address: int) -> None:
+def test_address_without_a_port_is_refused(psp: Psp, address: int) -> None:
     with pytest.raises(OsalError) as caught:
         psp.port_read8(address)
     assert caught.value.status == CFE_PSP_INVALID_MEM_ADDR
 
 
-def test_registers_are_aligned_and_do_not_reach_over_the_end(psp: Psp) -> None:
+def test_access_that_is_misaligned_or_beyond_the_end_is_refused(psp: Psp) -> None:
     with pytest.raises(OsalError) as caught:
         psp.port_write16(GPIO + 1, 0)
     assert caught.value.status == CFE_PSP_ERROR_ADDRESS_MISALIGNED
@@ -56,7 +56,7 @@ def test_registers_are_aligned_and_do_not_reach_over_the_end(psp: Psp) -> None:
     assert caught.value.status == CFE_PSP_INVALID_MEM_ADDR
 
 
-def test_the_console_says_that_there_are_ports(psp: Psp) -> None:
+def test_boot_reports_ports_on_the_console(psp: Psp) -> None:
     psp.boot()
     assert "CFE_PSP: Using DIRECT memory mapped PORT implementation" in psp.console.lines
     assert "CFE_PSP: I/O Port access not implemented" not in psp.console.lines

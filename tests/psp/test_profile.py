@@ -70,7 +70,7 @@ def test_limits_are_numbers_or_switches(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", sorted(MAY_BE_ZERO))
-def test_a_limit_for_which_zero_says_something_may_be_zero(tmp_path: Path, name: str) -> None:
+def test_limit_for_which_zero_has_a_meaning_may_be_zero(tmp_path: Path, name: str) -> None:
     config = load_profile(write(tmp_path, f"name: mine\nlimits: {{{name}: 0}}\n")).config()
     assert getattr(config, name) == 0
 
@@ -104,7 +104,7 @@ def test_a_limit_for_which_zero_says_something_may_be_zero(tmp_path: Path, name:
         ("name: !thing x\n", "board.yaml:1: is not YAML"),
     ],
 )
-def test_wrong_files_say_where(tmp_path: Path, text: str, message: str) -> None:
+def test_errors_of_a_profile_have_their_line(tmp_path: Path, text: str, message: str) -> None:
     with pytest.raises(UsageError) as caught:
         load_profile(write(tmp_path, text))
     assert str(caught.value).startswith(f"{tmp_path}/{message}")

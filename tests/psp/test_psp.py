@@ -63,14 +63,14 @@ def board() -> Iterator[Board]:
         yield made
 
 
-def test_the_boot_lines_of_nasas_linux_psp(board: Board) -> None:
+def test_boot_lines_match_nasas_linux_psp(board: Board) -> None:
     assert board.psp.boot() == RestartType(2, 1)
     assert board.console.lines == BOOT.splitlines()
     board.kernel.run(until_ns=55 * MS)
     assert board.osal.time_base_get_free_run(board.osal.time_base_get_id_by_name("cFS-Master")) == 50_000
 
 
-def test_who_and_when_it_is(board: Board) -> None:
+def test_psp_reports_identity_time_and_version(board: Board) -> None:
     psp = board.psp
     board.kernel.run(until_ns=2_000_000_300)
     assert (psp.get_spacecraft_id(), psp.get_processor_id(), psp.get_processor_name()) == (66, 1, "cpu1")
@@ -81,7 +81,7 @@ def test_who_and_when_it_is(board: Board) -> None:
     assert (psp.get_version_code_name(), psp.get_version_number(), psp.get_build_number()) == ("Draco", (7, 0, 0, 0), 0)
 
 
-def test_a_processor_reset_keeps_memory_and_a_power_on_reset_clears_it() -> None:
+def test_processor_reset_keeps_memory_and_power_on_reset_clears_it() -> None:
     retained = Retained(cds_bytes=64)
     first = Board(retained)
     with first.kernel:
@@ -116,7 +116,7 @@ def test_a_processor_reset_keeps_memory_and_a_power_on_reset_clears_it() -> None
         assert not retained.kept
 
 
-def test_the_end_of_a_run_without_a_restart_is_told_at_the_next() -> None:
+def test_abnormal_exit_is_reported_at_the_next_boot() -> None:
     retained = Retained()
     starts: list[tuple[int, str]] = []
     for _ in range(4):
@@ -128,7 +128,7 @@ def test_the_end_of_a_run_without_a_restart_is_told_at_the_next() -> None:
     assert starts == [(2, ""), (1, abnormal), (2, abnormal), (1, abnormal)]
 
 
-def test_a_power_on_restart_removes_the_boot_record_too() -> None:
+def test_power_on_restart_removes_the_boot_record() -> None:
     retained = Retained()
     first = Board(retained)
     with first.kernel:
@@ -149,7 +149,7 @@ def test_a_power_on_restart_removes_the_boot_record_too() -> None:
         assert not [line for line in second.console.lines if "previous" in line]
 
 
-def test_the_cds_has_ends(board: Board) -> None:
+def test_access_beyond_the_cds_is_refused(board: Board) -> None:
     size = board.psp.get_cds_size()
     assert size == 131072
     for call in (
@@ -164,7 +164,7 @@ def test_the_cds_has_ends(board: Board) -> None:
     board.psp.write_to_cds(b"ab", size - 2)
 
 
-def test_a_task_does_not_come_back_from_a_restart(board: Board) -> None:
+def test_restart_does_not_return(board: Board) -> None:
     log: list[str] = []
     board.osal.task_create("T", lambda: (board.psp.restart(1), log.append("back")), 100, 50)
     board.kernel.run(until_ns=1000 * MS)
@@ -173,7 +173,7 @@ def test_a_task_does_not_come_back_from_a_restart(board: Board) -> None:
     assert log == []
 
 
-def test_the_mission_may_handle_a_restart() -> None:
+def test_mission_may_handle_a_restart() -> None:
     kinds: list[int] = []
     board = Board(on_restart=lambda kind, reason, fault: kinds.append(kind))
     with board.kernel:
@@ -223,7 +223,7 @@ class Watched(Board):
         self.resets.append(self.kernel.now // MS)
 
 
-def test_the_watchdog_bites_when_nobody_serves_it() -> None:
+def test_watchdog_resets_when_it_is_not_serviced() -> None:
     board = Watched()
     with board.kernel:
         board.psp.watchdog_set(100)
@@ -234,7 +234,7 @@ def test_the_watchdog_bites_when_nobody_serves_it() -> None:
     assert board.psp.watchdog.bites == 1
 
 
-def test_a_bite_is_told_apart_at_the_next_start() -> None:
+def test_watchdog_reset_is_reported_at_the_next_boot() -> None:
     retained = Retained()
     board = Watched(retained)
     with board.kernel:
@@ -254,7 +254,7 @@ def test_a_bite_is_told_apart_at_the_next_start() -> None:
         assert third.psp.boot() == RestartType(1, 1)
 
 
-def test_a_disabled_watchdog_does_not_bite() -> None:
+def test_disabled_watchdog_does_not_reset() -> None:
     board = Watched()
     with board.kernel:
         board.psp.watchdog_set(100)
@@ -268,7 +268,7 @@ def test_a_disabled_watchdog_does_not_bite() -> None:
     assert board.resets == []
 
 
-def test_a_shorter_time_counts_at_once() -> None:
+def test_shorter_time_of_the_watchdog_takes_effect_at_once() -> None:
     board = Watched()
     with board.kernel:
         board.psp.watchdog_set(5000)
@@ -279,7 +279,7 @@ def test_a_shorter_time_counts_at_once() -> None:
     assert board.resets == [110]
 
 
-def test_a_watchdog_without_teeth_keeps_its_value(board: Board) -> None:
+def test_watchdog_without_a_reset_function_keeps_its_value(board: Board) -> None:
     board.psp.watchdog_set(1)
     board.psp.watchdog_enable()
     board.kernel.run(until_ns=2000 * MS)

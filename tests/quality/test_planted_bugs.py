@@ -45,7 +45,7 @@ def test_every_mission_is_listed() -> None:
 
 
 @MOST_LATER
-def test_first_come_first_served_shows_nothing(bug: Bug) -> None:
+def test_fifo_shows_no_bug(bug: Bug) -> None:
     trial = reference_trial(bug.folder)
     plain, asked = trial.run(Schedule()), trial.run(Schedule("at"))
     assert not plain.failures
@@ -54,7 +54,7 @@ def test_first_come_first_served_shows_nothing(bug: Bug) -> None:
 
 
 @MOST_LATER
-def test_the_best_policy_finds_it_and_the_schedule_shows_it_again_on_threads(bug: Bug) -> None:
+def test_best_policy_finds_the_bug_and_its_schedule_reproduces_it_on_threads(bug: Bug) -> None:
     verdict = found_by(bug, best(load(), bug.name)[0])
     assert verdict.failures[0].kind in bug.kinds
     assert "\n" not in verdict.failures[0].text
@@ -71,14 +71,14 @@ def never_fails(trial: Trial, policy: str, schedules: int) -> None:
 
 
 @MOST_LATER
-def test_mended_it_does_not_fail(bug: Bug, tmp_path: Path) -> None:
+def test_mended_mission_does_not_fail(bug: Bug, tmp_path: Path) -> None:
     never_fails(mended_trial(bug, tmp_path)[0], "all", 4)
 
 
 @pytest.mark.slow
 @EACH
 @pytest.mark.parametrize("policy", ["all", "dfs 2"])
-def test_mended_it_never_fails(bug: Bug, policy: str, tmp_path: Path) -> None:
+def test_mended_mission_does_not_fail_under_many_schedules(bug: Bug, policy: str, tmp_path: Path) -> None:
     never_fails(mended_trial(bug, tmp_path)[0], policy, 12)
 
 

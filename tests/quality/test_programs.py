@@ -19,23 +19,23 @@ FOUND = pytest.mark.parametrize(
 """Those that were found when it was measured."""
 
 
-def test_the_page_is_what_was_measured() -> None:
+def test_page_matches_the_measurements() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m dev.quality programs"
 
 
-def test_most_are_found() -> None:
+def test_most_bugs_are_found() -> None:
     measured = load()
     assert set(measured) == {program.name for program in PROGRAMS}
     assert len(missed(measured)) <= len(PROGRAMS) // 4
 
 
-def test_there_are_many_of_others() -> None:
+def test_many_programs_come_from_other_benchmarks() -> None:
     assert sum(bool(program.origin) for program in PROGRAMS) >= 25
 
 
 @pytest.mark.slow
 @EACH
-def test_first_come_first_served_shows_nothing_but_what_hangs(program: Program) -> None:
+def test_fifo_shows_only_bugs_that_hang(program: Program) -> None:
     trial = program_trial(program)
     plain, asked = trial.run(Schedule()), trial.run(Schedule("at"))
     assert bool(plain.failures) == program.hangs
@@ -45,7 +45,7 @@ def test_first_come_first_served_shows_nothing_but_what_hangs(program: Program) 
 
 @pytest.mark.slow
 @FOUND
-def test_the_default_policy_finds_it_and_the_schedule_shows_it_again_on_threads(program: Program) -> None:
+def test_bug_is_found_by_default_and_reproduced_on_greenlets_and_threads(program: Program) -> None:
     found = find(program_trial(program), "all")
     assert found is not None
     assert found.failures[0].kind in program.kinds
@@ -58,5 +58,5 @@ def test_the_default_policy_finds_it_and_the_schedule_shows_it_again_on_threads(
 
 @pytest.mark.slow
 @EACH
-def test_mended_it_never_fails(program: Program, tmp_path: Path) -> None:
+def test_mended_program_never_fails(program: Program, tmp_path: Path) -> None:
     assert not [verdict for verdict in verdicts(program, tmp_path, 10) if verdict.failed or verdict.trouble]

@@ -10,7 +10,7 @@ from dev.quality.report import PAGE, SHRUNK, best, complete, load, medians, page
 from dev.quality.shrinking import Shrunk
 
 
-def test_everything_was_measured() -> None:
+def test_each_bug_was_measured() -> None:
     measured = load()
     assert complete(measured), "run python -m dev.quality report"
     assert set(measured) == {bug.name for bug in BUGS}
@@ -19,11 +19,11 @@ def test_everything_was_measured() -> None:
             assert found.trials == (1 if policy.startswith("dfs") else TRIALS)
 
 
-def test_the_page_is_what_was_measured() -> None:
+def test_page_matches_the_measurements() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(load()), "run python -m dev.quality report"
 
 
-def test_every_bug_is_found_and_half_of_them_soon() -> None:
+def test_each_bug_is_found_and_half_of_them_within_50_schedules() -> None:
     measured = load()
     found = [best(measured, bug.name)[1] for bug in BUGS]
     assert all(each.found and each.schedules <= LONGEST for each in found)
@@ -37,7 +37,7 @@ def test_shrinking_leaves_few_preemptions() -> None:
     assert sum(bug.preemptions > 3 for bug in BUGS) <= 2
 
 
-def test_the_bugs_are_of_all_kinds() -> None:
+def test_bugs_are_of_all_kinds() -> None:
     worlds = [bug.world for bug in BUGS]
     assert len(BUGS) >= 25
     assert worlds.count(CFE) >= 5

@@ -13,7 +13,7 @@ QUICK = ("lock_order", "parameter_update")
 @pytest.mark.parametrize(
     "bug", [pytest.param(bug, marks=[] if bug.name in QUICK else [pytest.mark.slow], id=bug.name) for bug in BUGS]
 )
-def test_the_cause_is_the_one_that_was_found_true(bug: Bug) -> None:
+def test_reported_cause_is_the_reviewed_one(bug: Bug) -> None:
     recorded = read()[bug.name]
     story = told(bug, recorded.schedule)
     assert story is not None, f"{recorded.schedule} does not show {bug.name}"

@@ -68,7 +68,7 @@ def test_a_regular_file_is_read(tmp_path: Path) -> None:
     assert read_limited("/proc/self/status", 1 << 20).startswith(b"Name:"), "its size is told as 0"
 
 
-def test_a_file_with_holes_is_refused_before_it_is_read(tmp_path: Path) -> None:
+def test_sparse_file_is_refused_before_it_is_read(tmp_path: Path) -> None:
     with (tmp_path / "x").open("wb") as file:
         file.truncate(1 << 40)
     with pytest.raises(UsageError, match="more than the limit of 10 bytes"):
@@ -89,7 +89,7 @@ def test_devices_and_pipes_are_refused(tmp_path: Path) -> None:
             load(path)
 
 
-def test_what_is_not_there_is_an_error_of_the_system(tmp_path: Path) -> None:
+def test_missing_file_and_folder_are_errors_of_the_system(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         open_input(tmp_path / "none")
     with pytest.raises(IsADirectoryError):
@@ -98,12 +98,12 @@ def test_what_is_not_there_is_an_error_of_the_system(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("path", ["a\0b", "\0", "/tmp/\0"])
-def test_a_name_with_a_nul_is_not_a_path(path: str) -> None:
+def test_name_with_a_nul_is_not_a_path(path: str) -> None:
     with pytest.raises(UsageError, match="invalid path"):
         read_limited(path, 10)
 
 
-def test_a_descriptor_is_taken_from_the_command_line_alone() -> None:
+def test_descriptors_are_accepted_only_from_the_command_line() -> None:
     reader, writer = os.pipe()
     try:
         os.write(writer, b"text\r\n")
@@ -115,7 +115,7 @@ def test_a_descriptor_is_taken_from_the_command_line_alone() -> None:
         os.close(reader)
 
 
-def test_a_file_that_has_nothing_to_say_yet_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_file_that_is_not_ready_is_not_waited_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     reader, writer = os.pipe()
     os.set_blocking(reader, False)
     monkeypatch.setattr("cfepy.reading.input_files.open_input", lambda path, handed: os.fdopen(reader, "rb"))
@@ -134,7 +134,7 @@ def test_a_missing_file_gets_the_name_of_a_similar_one(tmp_path: Path) -> None:
     assert caught.value.text == "cannot be read: No such file or directory; check the path"
 
 
-def test_inputs_are_opened_by_the_helper_alone() -> None:
+def test_input_files_are_opened_only_by_the_helper() -> None:
     found = set()
     for file in sorted((ROOT / "cfepy").rglob("*.py")):
         name, source = file.relative_to(ROOT).as_posix(), file.read_bytes()
@@ -156,7 +156,7 @@ def _opens(node: ast.AST) -> bool:
     return of_path or node.func.attr in ("read_bytes", "read_text")
 
 
-def test_an_error_of_reading_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_read_error_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(path: object, flags: int) -> int:
         raise OSError(errno.EIO, "Input/output error")
 

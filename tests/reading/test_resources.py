@@ -12,6 +12,6 @@ def test_boards_are_found() -> None:
     assert (shipped("boards") / "rx64m.yaml").is_file()
 
 
-def test_an_unknown_kind_says_where_it_looked() -> None:
+def test_unknown_kind_names_the_searched_folders() -> None:
     with pytest.raises(UsageError, match="nonsense missing"):
         shipped("nonsense")

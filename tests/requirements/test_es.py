@@ -63,7 +63,7 @@ def state_of(ground: Ground, app: str) -> int | None:
 # -- housekeeping -----------------------------------------------------------------------------------------------------
 
 
-def test_cES1000_housekeeping_tells_how_the_executive_is(ground: Ground) -> None:
+def test_cES1000_housekeeping_reports_the_state_of_the_executive(ground: Ground) -> None:
     ground.command(pk.START_PERF_DATA, TriggerMode=2)
     ground.command(pk.SET_PERF_TRIGGER_MASK, TriggerMaskNum=1, TriggerMask=0x10)
     ground.command(pk.SET_MAX_PR_COUNT, MaxPRCount=5)
@@ -89,7 +89,7 @@ def test_cES1000_housekeeping_tells_how_the_executive_is(ground: Ground) -> None
     assert [values[f"{part}MajorVersion"] for part in ("CFE", "OSAL", "PSP")] == [7, 7, 7]
 
 
-def test_cES1000_heap_is_what_is_left_of_a_board_with_limits(tmp_path: Path) -> None:
+def test_cES1000_heap_is_the_free_memory_of_a_board_with_limits(tmp_path: Path) -> None:
     board = load_profile("rx64m")
     with Mission(write_mission(tmp_path, "!"), board=board, console=Console(quiet=True)) as mission:
         mission.run_for(2)
@@ -225,7 +225,7 @@ def test_cES1007_2_restart_and_reload_need_the_file(ground: Ground) -> None:
 
 @pytest.mark.parametrize(("action", "event"), [("Restart", 40), ("Reload", 44)])
 @covers("cES1007.3", "cES1008.3")
-def test_cES1007_3_an_application_that_does_not_start_again_is_gone(ground: Ground, action: str, event: int) -> None:
+def test_cES1007_3_an_application_that_does_not_start_again_is_deleted(ground: Ground, action: str, event: int) -> None:
     """The file is there, but the entry point is not in it any more."""
     folder = Path(ground.mission.spec.folder)
     (folder / "empty.py").write_text("nothing = 0\n", encoding="utf-8")

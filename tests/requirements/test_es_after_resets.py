@@ -49,7 +49,7 @@ def ground(tmp_path: Path) -> Iterator[Ground]:
 
 
 @covers("cES1511", "cES1522")
-def test_cES1511_the_system_log_outlives_a_processor_reset(ground: Ground) -> None:
+def test_cES1511_the_system_log_survives_a_processor_reset(ground: Ground) -> None:
     ground.mission.cfe.es.write_to_sys_log("before the reset")
     reset(ground, PROCESSOR)
     values, log = housekeeping(ground), ground.mission.cfe.es.syslog.read()
@@ -60,7 +60,7 @@ def test_cES1511_the_system_log_outlives_a_processor_reset(ground: Ground) -> No
 
 
 @covers("cES1501", "cES1523")
-def test_cES1501_the_system_log_does_not_outlive_a_power_on_reset(ground: Ground) -> None:
+def test_cES1501_the_system_log_does_not_survive_a_power_on_reset(ground: Ground) -> None:
     ground.command(pk.OVER_WRITE_SYS_LOG, Mode=1)
     ground.mission.cfe.es.write_to_sys_log("before the reset")
     reset(ground, POWERON)
@@ -70,7 +70,7 @@ def test_cES1501_the_system_log_does_not_outlive_a_power_on_reset(ground: Ground
 
 
 @covers("cES1522", "cES1523")
-def test_cES1522_the_mode_of_the_system_log_is_that_of_the_platform(fly: Callable[..., Flight]) -> None:
+def test_cES1522_mode_of_the_system_log_is_set_by_the_platform(fly: Callable[..., Flight]) -> None:
     flight = fly(pk.HK_TLM_MID, es_default_por_syslog_mode=1, es_default_pr_syslog_mode=0)
 
     def mode() -> int:
@@ -94,7 +94,7 @@ def test_cES1503_the_ram_disk_is_new_after_a_power_on_reset(ground: Ground) -> N
 
 
 @covers("cES1513", "cES1517")
-def test_cES1513_the_ram_disk_outlives_a_processor_reset(ground: Ground) -> None:
+def test_cES1513_the_ram_disk_survives_a_processor_reset(ground: Ground) -> None:
     ground.mission.files.write_file("/ram/file", bytes(512 * 2048))
     reset(ground, PROCESSOR)
     assert ground.file("/ram/file") == bytes(512 * 2048)
@@ -217,7 +217,7 @@ def test_cES1518_a_script_on_the_ram_disk_comes_first_after_a_processor_reset(gr
 
 
 @covers("cES1519", "cES1519.1", "cES1519.2")
-def test_cES1519_else_it_is_the_one_that_is_always_there(ground: Ground) -> None:
+def test_cES1519_default_startup_script_is_used_without_one_on_the_ram_disk(ground: Ground) -> None:
     reset(ground, PROCESSOR)
     assert ground.lines("CFE_ES_StartApplications")[-2:] == [
         "CFE_ES_StartApplications: Cannot Open Volatile Startup file: /ram/cfe_es_startup.scr, Trying Nonvolatile.",

@@ -33,7 +33,7 @@ from tests.statuses import status_of
 
 
 @covers("cES1304", "cES1306", "cES1307")
-def test_cES1304_an_application_is_told_its_id_and_names(make_lab: Make) -> None:
+def test_cES1304_an_application_gets_its_id_and_names(make_lab: Make) -> None:
     def question(cfe: Cfe) -> tuple[object, ...]:
         es = cfe.es
         mine = es.get_app_id()
@@ -107,7 +107,7 @@ def test_cES1344_a_library_is_described(make_lab: Make) -> None:
 # -- the run loop and waiting ------------------------------------------------------------------------------------------
 
 
-def test_cES1333_the_run_loop_counts_and_tells_what_is_asked(make_lab: Make) -> None:
+def test_cES1333_run_loop_counts_and_returns_the_requested_end(make_lab: Make) -> None:
     ends: list[int] = []
 
     def main(cfe: Cfe) -> None:

@@ -112,7 +112,7 @@ def test_cES1315_1_another_size(fly: Fly) -> None:
 
 
 @covers("cES1316", "cES1316.2", "cES1328", "cES1328.2")
-def test_cES1316_copy_there_and_back(fly: Fly) -> None:
+def test_cES1316_data_survive_a_copy_to_the_cds_and_back(fly: Fly) -> None:
     es = (flight := fly()).cfe.es
     handle = saved(flight)
     assert es.restore_from_cds(handle) == DATA_BYTES
@@ -165,7 +165,7 @@ def test_cES1514_damage_outside_a_block(fly: Fly) -> None:
     assert [block.name for block in flight.cfe.es.cds_blocks()] == ["CFE_TBL.CritReg"]
 
 
-def test_without_room_for_a_cds_there_is_none(fly: Fly) -> None:
+def test_cds_is_not_available_without_room(fly: Fly) -> None:
     flight = fly(es_cds_size=1024)
     assert status_of(lambda: register(flight)) == CFE_ES_NOT_IMPLEMENTED
     assert status_of(lambda: flight.cfe.es.get_cds_block_name(0x150001)) == CFE_ES_NOT_IMPLEMENTED

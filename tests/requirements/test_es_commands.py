@@ -99,7 +99,7 @@ def test_cES1002_a_valid_command_is_counted(
     assert counters(flight) == (valid + 1, invalid)
 
 
-def test_cES1002_these_are_all_commands_that_can_be_counted() -> None:
+def test_cES1002_all_commands_that_can_be_counted_are_tested() -> None:
     uncounted = {pk.RESET_COUNTERS.name, pk.RESTART.name, pk.SEND_HK.name}
     assert {command.name for command, _ in VALID} | uncounted == {command.name for command in pk.COMMANDS}
 

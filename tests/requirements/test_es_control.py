@@ -94,7 +94,7 @@ def test_cES1332_an_application_reloads_another_from_a_file(make_lab: Make) -> N
 
 
 @covers("cES1309.1", "cES1310.1")
-def test_cES1309_1_an_application_that_is_none_cannot_be_controlled(make_lab: Make) -> None:
+def test_cES1309_1_an_unknown_application_cannot_be_controlled(make_lab: Make) -> None:
     def question(cfe: Cfe) -> list[int]:
         es = cfe.es
         core = es.get_app_id_by_name("CFE_TBL")
@@ -132,7 +132,7 @@ def test_cES1310_2_restart_and_reload_need_the_file(make_lab: Make) -> None:
     assert [app.name for app in lab.es.apps if not app.is_core] == ["IDLE", "ONE"]
 
 
-def test_cES1310_3_a_restart_that_fails_later_ends_the_application(make_lab: Make) -> None:
+def test_cES1310_3_an_application_whose_restart_fails_is_deleted(make_lab: Make) -> None:
     """The file disappears between the request, which succeeds, and the new start. The event then has the status."""
 
     def question(cfe: Cfe) -> int:
@@ -201,7 +201,7 @@ def test_cES1311_a_child_task_belongs_to_its_application(make_lab: Make) -> None
 
 
 @covers("cES1311.1", "cES1311.2")
-def test_cES1311_1_child_tasks_that_cannot_be(make_lab: Make) -> None:
+def test_cES1311_1_invalid_child_tasks_are_refused(make_lab: Make) -> None:
     nested: list[int] = []
 
     def child(cfe: Cfe) -> None:
@@ -232,7 +232,7 @@ def test_cES1311_1_child_tasks_that_cannot_be(make_lab: Make) -> None:
 
 
 @covers("cES1312", "cES1312.1")
-def test_cES1312_a_child_task_is_deleted_but_no_main_task(make_lab: Make) -> None:
+def test_cES1312_a_child_task_can_be_deleted_but_not_a_main_task(make_lab: Make) -> None:
     counts: list[int] = []
 
     def child(cfe: Cfe) -> None:
@@ -266,7 +266,7 @@ def test_cES1312_a_child_task_is_deleted_but_no_main_task(make_lab: Make) -> Non
 
 
 @covers("cES1314", "cES1314.1")
-def test_cES1314_a_child_task_ends_itself_but_no_main_task(make_lab: Make) -> None:
+def test_cES1314_a_child_task_can_end_itself_but_not_a_main_task(make_lab: Make) -> None:
     reached: list[str] = []
 
     def child(cfe: Cfe) -> None:

@@ -70,7 +70,7 @@ def test_cES1014_2_the_use_of_the_log_is_counted(ground: Ground) -> None:
     assert after["SysLogBytesUsed"] == len(log_of(ground))
 
 
-def test_cES1014_2_1_a_full_log_goes_on_at_its_top(ground: Ground) -> None:
+def test_cES1014_2_1_a_full_log_continues_at_its_top(ground: Ground) -> None:
     es = ground.mission.cfe.es
     for number in range(100):
         assert es.write_to_sys_log(f"line {number:02} {'x' * 40}") == CFE_SUCCESS
@@ -82,7 +82,7 @@ def test_cES1014_2_1_a_full_log_goes_on_at_its_top(ground: Ground) -> None:
     assert es.syslog.data.memory.index(b"line 99") < es.syslog.data.memory.index(b"line 60")
 
 
-def test_cES1014_2_2_a_full_log_that_discards_stays_as_it_is(ground: Ground) -> None:
+def test_cES1014_2_2_a_full_log_in_discard_mode_does_not_change(ground: Ground) -> None:
     es = ground.mission.cfe.es
     assert ground.command(pk.OVER_WRITE_SYS_LOG, Mode=1) == [
         "CFE_ES 70: Set OverWriteSysLog Command Received with Mode setting = 1"
@@ -134,7 +134,7 @@ def test_cES1016_the_log_is_written_to_a_file(ground: Ground) -> None:
     assert ground.command(pk.WRITE_SYS_LOG, FileName="/ram/") == ["CFE_ES 55: Error parsing file name RC = 0xC6000002"]
 
 
-def test_cES1016_1_its_file_has_a_default_name(ground: Ground) -> None:
+def test_cES1016_1_system_log_file_has_a_default_name(ground: Ground) -> None:
     ground.command(pk.WRITE_SYS_LOG)
     assert ground.file("/ram/cfe_es_syslog.log")[64:] == log_of(ground)
 
@@ -175,7 +175,7 @@ def test_cES1018_the_log_is_cleared_by_command(ground: Ground) -> None:
     assert not any(ground.file("/ram/cfe_erlog.log")[64:])
 
 
-def test_cES1019_one_write_at_a_time(ground: Ground) -> None:
+def test_cES1019_only_one_write_runs_at_a_time(ground: Ground) -> None:
     ground.mission.cfe.sb.transmit_msg(pk.WRITE_ER_LOG.packet(FileName="/ram/first"))
     assert ground.command(pk.WRITE_ER_LOG, 3, FileName="/ram/second") == [
         "CFE_ES 93: Error log write already in progress",
@@ -187,7 +187,7 @@ def test_cES1019_one_write_at_a_time(ground: Ground) -> None:
     assert ground.command(pk.WRITE_ER_LOG, 3, FileName="/ram/") == ["CFE_ES 56: Error creating file, RC = -973078526"]
 
 
-def test_cES1019_1_its_file_has_a_default_name(ground: Ground) -> None:
+def test_cES1019_1_exception_log_file_has_a_default_name(ground: Ground) -> None:
     ground.command(pk.WRITE_ER_LOG, 3)
     ground.command(pk.WRITE_ER_LOG, 3, FileName="/ram/mine.log")
     data = ground.file("/ram/cfe_erlog.log")

@@ -79,7 +79,7 @@ def test_cES1021_marked_places_are_recorded_with_the_time_and_written_to_a_file(
 
 
 @covers("cES1021", "cES1022")
-def test_cES1021_a_marker_that_cannot_be_is_reported_once(ground: Ground) -> None:
+def test_cES1021_an_invalid_marker_is_reported_once(ground: Ground) -> None:
     ground.command(pk.START_PERF_DATA, 1, TriggerMode=START)
     assert ground.lines("CFE_ES_PerfLogAdd") == ["CFE_ES_PerfLogAdd: Invalid performance marker 200,max is 127"]
 
@@ -98,7 +98,7 @@ def test_cES1022_2_a_full_log_loses_its_oldest_entries(ground: Ground) -> None:
     assert times[0] > 2 * 10**9
 
 
-def test_cES1023_1_its_file_has_a_default_name(ground: Ground) -> None:
+def test_cES1023_1_performance_file_has_a_default_name(ground: Ground) -> None:
     ground.command(pk.START_PERF_DATA, TriggerMode=START)
     ground.command(pk.STOP_PERF_DATA, 1)
     assert len(entries(ground.file("/ram/cfe_es_perf.dat"))) > 0
@@ -118,7 +118,7 @@ def test_cES1023_a_dump_that_fails_is_reported(ground: Ground) -> None:
 
 
 @covers("cES1023", "cES1029")
-def test_cES1023_one_thing_at_a_time(ground: Ground) -> None:
+def test_cES1023_only_one_performance_command_runs_at_a_time(ground: Ground) -> None:
     ground.command(pk.START_PERF_DATA, 5, TriggerMode=START)
     ground.command(pk.STOP_PERF_DATA, 0.03)
     assert ground.mission.processor.es_task.perf_dump.remaining == 52  # 50 steps in 20 ms, two of them for headers
@@ -134,7 +134,7 @@ def test_cES1023_one_thing_at_a_time(ground: Ground) -> None:
     ]
 
 
-def test_cES1030_the_filter_mask_says_what_is_recorded(ground: Ground) -> None:
+def test_cES1030_filter_mask_selects_the_recorded_markers(ground: Ground) -> None:
     assert ground.command(pk.SET_PERF_FILTER_MASK, FilterMaskNum=1, FilterMask=0) == [
         "CFE_ES 63: Set Performance Filter Mask Cmd rcvd, num 1, val 0x00000000"
     ]
@@ -150,7 +150,7 @@ def test_cES1030_the_filter_mask_says_what_is_recorded(ground: Ground) -> None:
 
 
 @pytest.mark.parametrize(("mode", "after"), [(START, 100), (CENTER, 50), (END, 1)])
-def test_cES1031_the_trigger_mask_says_when_the_recording_ends(ground: Ground, mode: int, after: int) -> None:
+def test_cES1031_trigger_mask_ends_the_recording(ground: Ground, mode: int, after: int) -> None:
     only_the_worker(ground)
     assert ground.command(pk.SET_PERF_TRIGGER_MASK, 0.001, TriggerMaskNum=1, TriggerMask=0x100) == [
         "CFE_ES 65: Set Performance Trigger Mask Cmd rcvd,num 1, val 0x00000100"

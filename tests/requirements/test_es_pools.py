@@ -89,7 +89,7 @@ def test_cES1321_allocate_under_a_mutex(fly: Fly) -> None:
 
 
 @covers("cES1322", "cES1322.1")
-def test_cES1322_give_back(fly: Fly) -> None:
+def test_cES1322_a_block_is_returned(fly: Fly) -> None:
     es = (flight := fly()).cfe.es
     pool = flight.call(lambda: es.pool_create(600))
     block = es.get_pool_buf(pool, 512)

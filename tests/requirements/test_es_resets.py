@@ -65,7 +65,7 @@ def test_cES1010_a_processor_reset_by_command(ground: Ground) -> None:
 
 @pytest.mark.parametrize(("app", "kind"), [("resets", PROCESSOR), ("powers", POWERON)])
 @covers("cES1317", "cES1318")
-def test_cES1317_an_application_asks_for_a_reset(ground: Ground, app: str, kind: int) -> None:
+def test_cES1317_an_application_requests_a_reset(ground: Ground, app: str, kind: int) -> None:
     fields = {"AppEntryPoint": f"{app}_main", "AppFileName": app, "Priority": 60}
     ground.command(pk.START_APP, 3, Application=app.upper(), **fields)
     assert ground.mission.cfe.es.get_reset_type().reset_type == kind
@@ -78,7 +78,7 @@ def test_cES1317_an_application_asks_for_a_reset(ground: Ground, app: str, kind:
 
 
 @covers("cES1301", "cES1301.1")
-def test_cES1301_an_application_is_told_the_type_of_the_last_reset(fly: Callable[..., Flight]) -> None:
+def test_cES1301_an_application_gets_the_type_of_the_last_reset(fly: Callable[..., Flight]) -> None:
     flight = fly()
 
     def told() -> tuple[int, int]:
@@ -118,7 +118,7 @@ def test_cES1709_too_many_processor_resets_become_a_power_on_reset(ground: Groun
     assert housekeeping(ground)["ProcessorResets"] == 0
 
 
-def test_cES1709_exceptions_count_too(ground: Ground) -> None:
+def test_cES1709_exceptions_count_as_processor_resets(ground: Ground) -> None:
     fields = {"AppEntryPoint": "broken_main", "AppFileName": "broken", "Priority": 60, "ExceptionAction": 1}
     for _ in range(3):
         ground.command(pk.START_APP, 3, Application="BROKEN", **fields)
@@ -131,7 +131,7 @@ def test_cES1709_exceptions_count_too(ground: Ground) -> None:
     ]
 
 
-def test_cES1510_a_reset_by_the_watchdog_is_told_apart(tmp_path: Path) -> None:
+def test_cES1510_a_reset_by_the_watchdog_is_distinguished(tmp_path: Path) -> None:
     board = tmp_path / "dog.yaml"
     board.write_text("name: dog\nwatchdog_max_ms: 5000\n", encoding="utf-8")
     sleeper = """
@@ -169,7 +169,7 @@ def test_cES1510_a_reset_by_the_watchdog_is_told_apart(tmp_path: Path) -> None:
     ],
 )
 @covers("cES1500", "cES1510")
-def test_cES1500_the_subtype_of_a_reset_is_told_apart(
+def test_cES1500_the_subtype_of_a_reset_is_distinguished(
     ground: Ground, kind: int, subtype: int, kept: int, text: str
 ) -> None:
     """The same as at a boot that was not requested."""
@@ -184,7 +184,7 @@ def test_cES1500_the_subtype_of_a_reset_is_told_apart(
 @pytest.mark.parametrize(
     ("subtype", "cause"), [(RST_SUBTYPE_HW_WATCHDOG, "Watchdog"), (RST_SUBTYPE_HW_SPECIAL_COMMAND, "HW Spec Cmd")]
 )
-def test_cES1709_resets_by_the_hardware_count_too(ground: Ground, subtype: int, cause: str) -> None:
+def test_cES1709_resets_by_the_hardware_count_as_processor_resets(ground: Ground, subtype: int, cause: str) -> None:
     ground.command(pk.SET_MAX_PR_COUNT, MaxPRCount=0)
     ground.mission.cfe.es.setup_reset_variables(PROCESSOR, subtype, 1)
     ground.mission.run_for(3)

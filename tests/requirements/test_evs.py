@@ -180,7 +180,7 @@ INVALID: list[tuple[Command, dict[str, Any], int]] = [
 ]
 
 
-def test_cEVS3006_every_invalid_command_is_counted_and_told(flight: Flight) -> None:
+def test_cEVS3006_each_invalid_command_is_counted_and_reported(flight: Flight) -> None:
     for count, (command, fields, event) in enumerate(INVALID, 1):
         told = [(each.app, each.event_id, each.event_type) for each in flight.send(command, **fields)]
         assert told == [("CFE_EVS", event, ERROR)], command.name
@@ -188,7 +188,7 @@ def test_cEVS3006_every_invalid_command_is_counted_and_told(flight: Flight) -> N
         assert (values["CommandCounter"], values["CommandErrorCounter"]) == (0, count), command.name
 
 
-def test_cEVS3006_what_is_no_command_is_counted_and_told(flight: Flight) -> None:
+def test_cEVS3006_malformed_commands_are_counted_and_reported(flight: Flight) -> None:
     assert flight.send(Command("unknown", pk.CMD_MID, 99)) == [
         ("CFE_EVS", 15, ERROR, "Invalid command code -- ID = 0x00001801, CC = 99")
     ]

@@ -110,7 +110,7 @@ def test_cEVS3103_4_1_truncation(flight: Flight) -> None:
     assert housekeeping(flight)["MessageTruncCounter"] == 1
 
 
-def test_cEVS3103_6_in_the_name_of_another(flight: Flight) -> None:
+def test_cEVS3103_6_event_is_sent_in_the_name_of_another_application(flight: Flight) -> None:
     tbl = flight.cfe.es.get_app_id_by_name("CFE_TBL")
     flight.call(lambda: flight.cfe.evs.send_event_with_app_id(3, ERROR, tbl, "for TBL"))
     assert flight.events() == [("CFE_TBL", 3, ERROR, "for TBL")]
@@ -190,7 +190,7 @@ def test_cEVS3220_floods_are_cut_after_a_burst(flight: Flight) -> None:
     assert events[-1] == ("CFE_EVS", 44, ERROR, "Events squelched, AppName = PROBE")
 
 
-def test_cEVS3220_2_events_come_again_when_the_flood_is_over(flight: Flight) -> None:
+def test_cEVS3220_2_events_are_sent_again_after_the_flood(flight: Flight) -> None:
     flood(flight, 100)
     flight.run_for(2 * CREDIT_S)
     assert flood(flight, 10) == [CFE_SUCCESS] * 10

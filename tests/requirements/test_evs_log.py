@@ -74,7 +74,7 @@ def test_cEVS3015_the_log_is_written_to_a_file(flight: Flight) -> None:
 
 
 @covers("cEVS3015", "cEVS3016", "cEVS3108", "cEVS3103.4")
-def test_cEVS3015_the_log_of_a_boot_has_the_bytes_of_the_real_one(flight: Flight) -> None:
+def test_cEVS3015_the_log_of_a_boot_matches_nasas_bytes(flight: Flight) -> None:
     """Times of this boot, and two texts that name the build and the mission, are all that differs in 20 events."""
     real = (Path(__file__).parents[1] / "data" / "cfe_evs.log").read_bytes()
     flight.send(pk.WRITE_LOG_DATA_FILE)
@@ -147,7 +147,7 @@ def test_cEVS3207_after_a_processor_reset(flight: Flight) -> None:
     assert logged(flight) == before == [str(text) for text in range(20)]
 
 
-def test_cEVS3207_a_log_that_overwrites_does_so_after_a_processor_reset(flight: Flight) -> None:
+def test_cEVS3207_a_log_in_overwrite_mode_keeps_its_mode_after_a_processor_reset(flight: Flight) -> None:
     flight.send(pk.SET_LOG_MODE, LogMode=OVERWRITE)
     flight.reset(PROCESSOR_RESET)
     assert state(flight)[2] == OVERWRITE

@@ -105,7 +105,7 @@ def test_cES1603_the_time_of_a_file_is_set(ask: Callable[..., Any]) -> None:
     assert b"CFE_FS_SetTimestamp: Failed to lseek time fields (Status=-16)\n" in log
 
 
-def test_cES1604_the_name_of_a_file_is_taken_out_of_its_path(ask: Callable[..., Any]) -> None:
+def test_cES1604_the_name_of_a_file_is_extracted_from_its_path(ask: Callable[..., Any]) -> None:
     def question(cfe: Cfe) -> str:
         assert status_of(cfe.fs.extract_filename_from_path, "name") == CFE_FS_INVALID_PATH
         return cfe.fs.extract_filename_from_path("/cf/apps/hk.so")
@@ -157,7 +157,7 @@ def _nameless() -> FileWriteMetaData:
     return FileWriteMetaData("", 99, "x", lambda number: (b"", True), print)
 
 
-def test_cES1606_three_may_wait_and_errors_are_told(ask: Callable[..., Any]) -> None:
+def test_cES1606_three_files_may_wait_and_errors_are_reported(ask: Callable[..., Any]) -> None:
     events: list[tuple[int, ...]] = []
 
     def meta(path: str, size: int = 10) -> FileWriteMetaData:
@@ -177,7 +177,7 @@ def test_cES1606_three_may_wait_and_errors_are_told(ask: Callable[..., Any]) -> 
     ]
 
 
-def test_cES1606_a_disk_without_room_for_a_header_is_told(ask: Callable[..., Any]) -> None:
+def test_cES1606_a_disk_without_room_for_a_header_is_reported(ask: Callable[..., Any]) -> None:
     events: list[tuple[int, ...]] = []
 
     def question(cfe: Cfe) -> None:

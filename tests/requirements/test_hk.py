@@ -153,7 +153,7 @@ def test_HK2001_at_the_scheduled_rate(fly: Fly) -> None:
         ((FIRST, 16, 0, 16, 1), "Invalid Output MID: 0x0"),
     ],
 )
-def test_HK2000_1_a_bad_copy_table_is_refused(fly: Fly, entry: tuple[int, int, int, int, int], fault: str) -> None:
+def test_HK2000_1_an_invalid_copy_table_is_refused(fly: Fly, entry: tuple[int, int, int, int, int], fault: str) -> None:
     """At the start of HK, which then ends, and later, when the table before it stays in use."""
     text = f"HK Validate: {fault} at entry index 1\n"
     begun = start(fly, entries=[ROWS[0], entry])
@@ -190,7 +190,7 @@ def test_HK2001_1_a_new_table_changes_the_packets(flight: Flight) -> None:
 
 
 @covers("HK2001.2", "HK2001.3")
-def test_HK2001_2_old_data_is_sent_again_and_told_of(flight: Flight) -> None:
+def test_HK2001_2_old_data_is_sent_again_and_reported(flight: Flight) -> None:
     feed(flight, FIRST, b"ab")
     feed(flight, SECOND, b"..CDEF")
     combined(flight)
@@ -199,7 +199,7 @@ def test_HK2001_2_old_data_is_sent_again_and_told_of(flight: Flight) -> None:
     assert housekeeping(flight)["MissingDataCtr"] == 1
 
 
-def test_HK2001_5_input_that_is_too_short_is_not_used(flight: Flight) -> None:
+def test_HK2001_5_too_short_input_is_not_used(flight: Flight) -> None:
     feed(flight, FIRST, b"ab")
     feed(flight, SECOND, b"..CDEF")
     assert combined(flight) == ([b"ab\0\0CDEF"], [])
@@ -211,7 +211,7 @@ def test_HK2001_5_input_that_is_too_short_is_not_used(flight: Flight) -> None:
 
 @pytest.mark.parametrize("late", [b"", b"x"])
 @covers("HK2001.6", "HK2001.7")
-def test_HK2001_6_packets_that_lack_data_may_be_discarded(fly: Fly, late: bytes) -> None:
+def test_HK2001_6_incomplete_packets_may_be_discarded(fly: Fly, late: bytes) -> None:
     """Data that is missing, or that is in a packet which is too short."""
     flight = start(fly, "my_hk", my_hk=DISCARDING)
     feed(flight, SECOND, b"..CDEF")
@@ -242,7 +242,7 @@ def test_HK3000_housekeeping(flight: Flight) -> None:
 
 
 @pytest.mark.parametrize("kind", [POWERON_RESET, PROCESSOR_RESET])
-def test_HK4000_all_counters_begin_at_zero_after_any_reset(flight: Flight, kind: bytes) -> None:
+def test_HK4000_all_counters_are_zero_after_any_reset(flight: Flight, kind: bytes) -> None:
     flight.send(hk.NOOP)
     flight.send(Command("unknown", hk.CMD_MID, 99))
     combined(flight)

@@ -7,7 +7,7 @@ from dev.pages.requirements import PAGE, evidence, ids, page
 from dev.pages.segments import missing, segments
 
 
-def test_the_page_is_up_to_date() -> None:
+def test_page_is_up_to_date() -> None:
     assert PAGE.read_text(encoding="utf-8") == page(), "run python -m dev.pages.requirements"
 
 

@@ -89,7 +89,7 @@ def test_cSB4000_noop(flight: Flight) -> None:
 
 
 @covers("cSB4001", "cSB4005")
-def test_cSB4001_counters_are_told_and_set_to_zero(flight: Flight) -> None:
+def test_cSB4001_counters_are_reported_and_set_to_zero(flight: Flight) -> None:
     flight.send(pk.RESET_COUNTERS)
     flight.send(pk.NOOP)
     one_of_each_error(flight)
@@ -287,7 +287,7 @@ def test_cSB4013_previous_subscriptions(flight: Flight) -> None:
 
 @covers("cSB4500", "cSB4501")
 @pytest.mark.parametrize("kind", [POWERON_RESET, PROCESSOR_RESET])
-def test_cSB4500_a_reset_begins_with_no_routes_and_no_counts(flight: Flight, kind: bytes) -> None:
+def test_cSB4500_routes_and_counters_are_empty_after_a_reset(flight: Flight, kind: bytes) -> None:
     before = set(flight.cfe.sb.routes)
     one_of_each_error(flight)
     assert {MID, OTHER_MID} <= set(flight.cfe.sb.routes)

@@ -53,7 +53,7 @@ def count(flight: Flight, name: str) -> int:
 # -- pipes -------------------------------------------------------------------------------------------------------------
 
 
-def test_cSB4301_pipes_have_the_depth_and_name_that_was_asked_for(flight: Flight) -> None:
+def test_cSB4301_pipes_have_the_requested_depth_and_name(flight: Flight) -> None:
     sb = flight.cfe.sb
     one = pipe(flight, 3)
     assert flight.call(lambda: sb.get_pipe_name(one)) == "PROBE_PIPE"
@@ -129,7 +129,7 @@ def test_cSB4303_a_route_by_msg_id_pipe_limit_and_quality(flight: Flight) -> Non
 
 
 @covers("cSB4303.1")
-def test_cSB4303_1_a_duplicate_is_an_event_and_no_error(flight: Flight) -> None:
+def test_cSB4303_1_a_duplicate_is_an_event_and_not_an_error(flight: Flight) -> None:
     one = pipe(flight)
     subscribe(flight, TLM, one, 1)
     flight.packets.clear()
@@ -171,7 +171,7 @@ def test_cSB4331_a_local_subscription(flight: Flight) -> None:
 # -- sending -----------------------------------------------------------------------------------------------------------
 
 
-def test_cSB4305_a_message_goes_to_all_subscribers(flight: Flight) -> None:
+def test_cSB4305_a_message_reaches_all_subscribers(flight: Flight) -> None:
     mine = [pipe(flight, name=name) for name in ("ONE", "TWO")]
     theirs = flight.call(lambda: flight.cfe.sb.create_pipe(5, "THREE"), "MUTE")
     for each in mine:
@@ -184,7 +184,7 @@ def test_cSB4305_a_message_goes_to_all_subscribers(flight: Flight) -> None:
 
 
 @covers("cSB4305.1", "cSB4305.3", "cSB4305.4")
-def test_cSB4305_1_limits_hold_back_from_one_pipe_alone(flight: Flight) -> None:
+def test_cSB4305_1_limits_affect_only_their_own_pipe(flight: Flight) -> None:
     limited, small = pipe(flight, 9, "LIMITED"), pipe(flight, 2, "SMALL")
     first, middle, last = (pipe(flight, 9, name) for name in ("FIRST", "MIDDLE", "LAST"))
     for each, limit in ((first, 9), (limited, 1), (middle, 9), (small, 9), (last, 9)):
@@ -224,7 +224,7 @@ def test_cSB4305_6_too_large(flight: Flight) -> None:
     assert drain(flight, one) == []
 
 
-def test_cSB4334_passing_a_message_on_as_it_is(flight: Flight) -> None:
+def test_cSB4334_a_message_is_forwarded_unchanged(flight: Flight) -> None:
     one, two = pipe(flight), pipe(flight, name="TWO")
     for each in (one, two):
         subscribe(flight, CMD, each)
@@ -269,7 +269,7 @@ def test_cSB4306_receiving_with_and_without_waiting(flight: Flight) -> None:
 
 
 @covers("cSB4340", "cSB4342", "cSB4343")
-def test_cSB4340_messages_filled_in_place(flight: Flight) -> None:
+def test_cSB4340_messages_are_filled_in_place(flight: Flight) -> None:
     sb, one, two = flight.cfe.sb, pipe(flight), pipe(flight, name="TWO")
     for each in (one, two):
         subscribe(flight, CMD, each)

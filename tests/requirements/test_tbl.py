@@ -66,7 +66,7 @@ def test_cTBL6000_1_partial_load_keeps_the_rest_of_the_active_table(table: Probe
 
 
 @covers("cTBL6000.2", "cTBL6000.3", "cTBL6000.5", "cTBL6010")
-def test_cTBL6000_2_files_that_do_not_fit_are_refused(table: ProbeTable) -> None:
+def test_cTBL6000_2_invalid_files_are_refused(table: ProbeTable) -> None:
     assert [(event.event_id, event.event_type) for event in table.upload(NEW + b"!")] == [(72, ERROR)]
     table.flight.send(pk.ABORT_LOAD, TableName=NAME)
     put(table.flight, NEW)
@@ -124,7 +124,7 @@ def test_cTBL6002_both_images_may_wait_for_their_validation(table: ProbeTable) -
 
 
 @covers("cTBL6003", "cTBL6003.1")
-def test_cTBL6003_activate_what_was_validated(table: ProbeTable) -> None:
+def test_cTBL6003_validated_image_is_activated(table: ProbeTable) -> None:
     table.upload(NEW)
     (event,) = table.flight.send(pk.ACTIVATE, TableName=NAME)
     assert (event.event_id, event.event_type) == (81, ERROR)
@@ -134,7 +134,7 @@ def test_cTBL6003_activate_what_was_validated(table: ProbeTable) -> None:
     assert table.content() == NEW
 
 
-def test_cTBL6003_1_1_an_image_that_failed_is_never_active(table: ProbeTable) -> None:
+def test_cTBL6003_1_1_image_that_failed_validation_is_never_activated(table: ProbeTable) -> None:
     table.upload(bytes([BAD]) + NEW[1:])
     table.validate_inactive()
     assert ids(table.flight.send(pk.ACTIVATE, TableName=NAME)) == [81]

@@ -95,7 +95,7 @@ def test_cTBL6302_initialize_from_a_file(fly: Fly) -> None:
     assert table.content() == OLD
 
 
-def test_cTBL6302_1_too_much_data(fly: Fly) -> None:
+def test_cTBL6302_1_too_much_data_is_refused(fly: Fly) -> None:
     table = ProbeTable(fly(cfe_version="7.0.1"))
     put(table.flight, OLD + b"!")
     table.flight.packets.clear()
@@ -256,7 +256,7 @@ def test_cTBL6500_resets_free_tables(table: ProbeTable, kind: bytes) -> None:
     assert ProbeTable(flight).status("get_address") == CFE_TBL_ERR_NEVER_LOADED
 
 
-def test_cTBL6501_1_critical_tables_outlive_a_processor_reset(fly: Fly) -> None:
+def test_cTBL6501_1_critical_tables_survive_a_processor_reset(fly: Fly) -> None:
     table = ProbeTable(fly(cfe_version="7.0.1"), OPT_CRITICAL)
     put(table.flight, NEW)
     table.mine("load", "/ram/t.tbl")

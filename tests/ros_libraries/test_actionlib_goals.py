@@ -32,7 +32,7 @@ rospy.spin()
 """
 
 
-def test_each_goal_has_its_end(tmp_path: Path) -> None:
+def test_each_goal_has_its_result(tmp_path: Path) -> None:
     client = """
 client = ActionClient("jobs", TestAction)
 client.wait_for_server()
@@ -81,7 +81,7 @@ print(GoalStatus.to_string(late.get_terminal_state()))
     ]
 
 
-def test_a_step_against_the_rules_is_refused(tmp_path: Path) -> None:
+def test_invalid_transition_is_refused(tmp_path: Path) -> None:
     client = """
 client = ActionClient("jobs", TestAction)
 client.wait_for_server()
@@ -98,7 +98,7 @@ print(CommState.to_string(handle.get_comm_state()))
     )
 
 
-def test_a_goal_that_the_server_forgot_is_lost(tmp_path: Path) -> None:
+def test_goal_unknown_to_the_server_is_lost(tmp_path: Path) -> None:
     server = SERVER.replace("rospy.spin()", "rospy.sleep(1)\nserver.status_list.clear()\nrospy.spin()")
     client = """
 client = ActionClient("jobs", TestAction)

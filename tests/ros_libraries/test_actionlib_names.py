@@ -70,7 +70,7 @@ def test_transitions(tmp_path: Path, original: str) -> None:
 
 
 @pytest.mark.parametrize("original", ["", "actionlib"])
-def test_ours_and_the_original_give_the_same_answers(tmp_path: Path, original: str) -> None:
+def test_library_and_the_original_give_the_same_answers(tmp_path: Path, original: str) -> None:
     client = """
 client = SimpleActionClient("count", TestAction)
 print(client.wait_for_server())

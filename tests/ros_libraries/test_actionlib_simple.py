@@ -22,7 +22,7 @@ print(client.get_result().result)
 """
 
 
-def test_a_goal_from_beginning_to_end(tmp_path: Path) -> None:
+def test_goal_is_followed_from_beginning_to_end(tmp_path: Path) -> None:
     run = talk(tmp_path, FOLLOWED)
     assert run.printed["client"] == [
         "True",
@@ -37,7 +37,7 @@ def test_a_goal_from_beginning_to_end(tmp_path: Path) -> None:
     assert run.printed["server"] == ["goal 3"]
 
 
-def test_the_same_run_on_threads_and_greenlets(tmp_path: Path) -> None:
+def test_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
     digests = set()
     for tasks in ("thread", "greenlet", "thread"):
         folder = tmp_path / f"{len(list(tmp_path.iterdir()))}"
@@ -55,7 +55,7 @@ def test_the_same_run_on_threads_and_greenlets(tmp_path: Path) -> None:
         ("TestGoal(50)", "PREEMPTED", "stopped"),
     ],
 )
-def test_how_goals_end(tmp_path: Path, goal: str, state: str, text: str) -> None:
+def test_goals_end_with_the_expected_state_and_text(tmp_path: Path, goal: str, state: str, text: str) -> None:
     client = f"""
     client = SimpleActionClient("count", TestAction)
     client.wait_for_server()
@@ -66,7 +66,7 @@ def test_how_goals_end(tmp_path: Path, goal: str, state: str, text: str) -> None
     assert run.printed["client"] == [f"{state} {text}"]
 
 
-def test_a_newer_goal_takes_over(tmp_path: Path) -> None:
+def test_newer_goal_preempts_the_older_one(tmp_path: Path) -> None:
     client = """
 first, second = SimpleActionClient("count", TestAction), SimpleActionClient("count", TestAction)
 first.wait_for_server(), second.wait_for_server()
@@ -82,7 +82,7 @@ print(GoalStatus.to_string(second.get_state()), second.get_result().result)
     assert run.printed["server"] == ["goal 20", "goal 2"]
 
 
-def test_a_goal_that_still_waits_is_replaced(tmp_path: Path) -> None:
+def test_waiting_goal_is_replaced(tmp_path: Path) -> None:
     client = """
 clients = [SimpleActionClient("count", TestAction) for _ in range(3)]
 for number, client in enumerate(clients):
@@ -99,7 +99,7 @@ for client in clients:
     assert run.printed["client"] == ["PREEMPTED stopped", f"RECALLED {replaced}", "ABORTED No terminal state was set."]
 
 
-def test_without_a_goal_or_a_server(tmp_path: Path) -> None:
+def test_calls_without_a_goal_or_a_server_are_refused(tmp_path: Path) -> None:
     client = """
 client = SimpleActionClient("nobody", TestAction)
 print(client.wait_for_server(rospy.Duration(0.5)), client.get_state(), client.get_result())
@@ -149,14 +149,14 @@ print(client.wait_for_result(rospy.Duration(0.5)), client.get_result().result)
     assert any(line.endswith(complaint) for line in run.printed["server"])
 
 
-def test_auto_start_is_warned_of(tmp_path: Path) -> None:
+def test_auto_start_causes_a_warning(tmp_path: Path) -> None:
     server = SERVER.replace("execute, False)\nserver.start()", "execute)")
     run = talk(tmp_path, FOLLOWED, server=server)
     assert run.printed["client"][-1] == "6"
     assert any("You've passed in true for auto_start" in line for line in run.printed["server"])
 
 
-def test_a_class_that_is_no_action(tmp_path: Path) -> None:
+def test_class_that_is_not_an_action_is_refused(tmp_path: Path) -> None:
     client = """
 for make in (lambda: SimpleActionClient("x", TestGoal), lambda: actionlib.ActionServer("x", TestGoal, print, print)):
     try:

@@ -41,18 +41,18 @@ def test_other_end_breaks_the_bond(tmp_path: Path) -> None:
     assert run.printed["other"][1].endswith("(SM.Dead)]")
 
 
-def test_other_end_falls_silent(tmp_path: Path) -> None:
+def test_bond_breaks_when_the_other_end_falls_silent(tmp_path: Path) -> None:
     other = OTHER.format(lives=1.5, end="bond.pub.unregister()\nbond.pub.publish = lambda message: None\nrospy.spin()")
     run = run_nodes(tmp_path, {"ONE": ONE, "OTHER": other}, seconds=30.0)
     assert run.printed["one"] == ["formed", "True False", "broken", "True True 3"]
 
 
-def test_nobody_comes(tmp_path: Path) -> None:
+def test_bond_breaks_when_the_other_end_never_comes(tmp_path: Path) -> None:
     run = run_nodes(tmp_path, {"ONE": ONE}, seconds=30.0)
     assert run.printed["one"] == ["broken", "True True", "True True 3"]
 
 
-def test_broken_out_of_the_callback(tmp_path: Path) -> None:
+def test_bond_can_be_broken_in_the_formed_callback(tmp_path: Path) -> None:
     script = """
         import rospy
         from bondpy import bondpy

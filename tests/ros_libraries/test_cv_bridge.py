@@ -27,7 +27,7 @@ def bridge(package: Any) -> Any:
 
 @pytest.mark.parametrize("dtype", ["uint8", "int8", "uint16", "int16", "int32", "float32", "float64"])
 @pytest.mark.parametrize("shape", [(2, 3), (2, 3, 2), (2, 3, 4)])
-def test_there_and_back(bridge: Any, dtype: str, shape: tuple[int, ...]) -> None:
+def test_image_survives_conversion_and_back(bridge: Any, dtype: str, shape: tuple[int, ...]) -> None:
     array = np.arange(np.prod(shape)).reshape(shape).astype(dtype)
     message = bridge.cv2_to_imgmsg(array)
     assert (message.height, message.width, message.step) == (2, 3, array.strides[0])
@@ -85,14 +85,14 @@ def test_for_display(package: Any) -> None:
         ("rgb8", "pink", r"Unrecognized image encoding \[pink\]"),
     ],
 )
-def test_conversions_that_make_no_sense(bridge: Any, package: Any, source: str, target: str, problem: str) -> None:
+def test_invalid_conversions_are_refused(bridge: Any, package: Any, source: str, target: str, problem: str) -> None:
     message = bridge.cv2_to_imgmsg(PICTURE)
     message.encoding = source
     with pytest.raises(package.CvBridgeError, match=problem):
         bridge.imgmsg_to_cv2(message, target)
 
 
-def test_arrays_that_do_not_fit(bridge: Any, package: Any) -> None:
+def test_arrays_of_another_type_are_refused(bridge: Any, package: Any) -> None:
     with pytest.raises(package.CvBridgeError, match="specified as mono8, but image has incompatible type 8UC3"):
         bridge.cv2_to_imgmsg(PICTURE, "mono8")
     with pytest.raises(TypeError, match="not a numpy array"):

@@ -57,7 +57,7 @@ print(updater.removeByName("task"), updater.removeByName("task"))
     ]
 
 
-def test_missing_hardware_id_is_said_once(tmp_path: Path) -> None:
+def test_missing_hardware_id_is_reported_once(tmp_path: Path) -> None:
     script = """
 updater = Updater()
 updater.add(Heartbeat())

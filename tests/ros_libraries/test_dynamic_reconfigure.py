@@ -104,7 +104,7 @@ def test_parameters_set_beforehand_count_and_are_clamped(tmp_path: Path) -> None
     assert run.printed["head"] == ["level -1 -2.0 1 False", "-2.0"]
 
 
-def test_server_changes_itself(tmp_path: Path) -> None:
+def test_server_can_change_its_own_configuration(tmp_path: Path) -> None:
     run = fly(tmp_path, rest="print(server.update_configuration({'size': 9})['size'])")
     assert run.printed["head"] == ["level -1 1.0 0 False", "level 1 1.0 3 False", "3"]
 
@@ -160,7 +160,7 @@ def test_script_that_generates_another_name(tmp_path: Path) -> None:
         ('gen.enum([gen.const("a", "int", 1, ""), gen.const("b", "str", "", "")], "")', "Inconsistent types"),
     ],
 )
-def test_mistakes_in_scripts(line: str, problem: str) -> None:
+def test_mistakes_in_scripts_are_reported(line: str, problem: str) -> None:
     gen = universe().importer.load("dynamic_reconfigure.parameter_generator").ParameterGenerator()
     with pytest.raises(Exception, match=problem):
         eval(line, {"gen": gen})

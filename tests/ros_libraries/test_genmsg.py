@@ -99,7 +99,7 @@ def test_search_path(tmp_path: Path) -> None:
     assert len(deps.find_srv_dependencies("pkg", str(tmp_path / "Draw.srv"), path)) == 2
 
 
-def test_what_is_not_there() -> None:
+def test_missing_packages_and_messages_are_reported() -> None:
     context = genmsg.MsgContext.create_default()
     with pytest.raises(genmsg.MsgNotFound, match=r"unknown package \[pkg\]") as found:
         genmsg.load_msg_by_type(context, "pkg/X", {})

@@ -47,7 +47,7 @@ def beginning(frame: bytes) -> bytes:
 
 
 @pytest.mark.parametrize("options", FRAMES)
-def test_more_of_the_frame_is_more_of_the_text(options: dict[str, int]) -> None:
+def test_longer_part_of_a_frame_gives_a_longer_part_of_the_text(options: dict[str, int]) -> None:
     text = TEXT * 20  # several blocks of 64 KB
     frame = lz4.frame.compress(text, content_checksum=True, **options)
     found = [beginning(frame[:cut]) for cut in range(0, len(frame), 997)]
@@ -69,14 +69,14 @@ def places(frame: bytes) -> list[int]:
     return [BLOCK_AT + each for each in tokens(frame[BLOCK_AT : BLOCK_AT + size])]
 
 
-def test_each_whole_sequence_of_a_block_is_unpacked(frame: bytes, places: list[int]) -> None:
+def test_each_complete_sequence_of_a_block_is_unpacked(frame: bytes, places: list[int]) -> None:
     found = [beginning(frame[:place]) for place in places]
     assert len(found) > 100
     assert all(TEXT.startswith(each) for each in found)
     assert all(len(one) < len(other) for one, other in pairwise(found))
 
 
-def test_a_damaged_byte_leaves_each_sequence_before_it(frame: bytes, places: list[int]) -> None:
+def test_damaged_byte_keeps_each_sequence_before_it(frame: bytes, places: list[int]) -> None:
     for at in range(BLOCK_AT, len(frame) - 4, 5):
         damaged = bytearray(frame)
         damaged[at] ^= 1 << DRAW.randrange(8)

@@ -121,7 +121,7 @@ print(len(found), found)
 """
 
 
-def test_the_same_matches_as_the_original(tmp_path: Path) -> None:
+def test_matches_equal_the_original(tmp_path: Path) -> None:
     results = []
     for original in ("", "message_filters"):
         folder = tmp_path / f"with_{original}"

@@ -45,14 +45,14 @@ def _dotted(node: ast.AST) -> list[str]:
     return [node.id, *reversed(parts)] if isinstance(node, ast.Name) and parts else []
 
 
-def test_libraries_take_from_each_other_what_the_originals_have() -> None:
+def test_libraries_import_only_names_of_the_originals() -> None:
     known = set(NAMES.read_text(encoding="utf-8").split())
     files = [file for file in sorted(FOLDER.rglob("*.py")) if file.relative_to(FOLDER).parts[0] not in OWN]
     strange = {f"{file.relative_to(FOLDER)}: {name}" for file in files for name in taken(file) if name not in known}
     assert strange == set()
 
 
-def test_load_manifest_beside_the_source_of_rosmsg(tmp_path: Path) -> None:
+def test_load_manifest_works_with_the_original_source_of_rosmsg(tmp_path: Path) -> None:
     source = tmp_path / "rosmsg"
     source.mkdir()
     (source / "__init__.py").write_text("MODE_MSG = '.msg'\n", encoding="utf-8")  # the original has no `packages`

@@ -64,7 +64,7 @@ def test_unknown_datatype_is_skipped(pc2: Any) -> None:
     assert pc2._get_struct_fmt(False, [kind("a", 0, 99, 1), kind("b", 4, kind.INT8, 1)]) == "<4xb"
 
 
-def test_only_clouds_are_read(pc2: Any) -> None:
+def test_only_clouds_are_accepted(pc2: Any) -> None:
     with pytest.raises(AssertionError, match=r"not a sensor_msgs\.msg\.PointCloud2"):
         list(pc2.read_points("cloud"))
 

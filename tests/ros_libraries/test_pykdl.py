@@ -47,7 +47,7 @@ def test_in_place_operators_keep_the_object() -> None:
     assert t == KDL.Twist.Zero()
 
 
-def test_parts_of_a_frame_are_its_own() -> None:
+def test_parts_of_a_frame_are_copies() -> None:
     place = KDL.Vector(1, 2, 3)
     frame = KDL.Frame(KDL.Rotation.RotZ(0.5), place)
     frame.p[0] = 9
@@ -76,7 +76,7 @@ def test_half_turns(axis: tuple[float, float, float]) -> None:
 
 @given(ROTATIONS)
 @example(KDL.Rotation.RPY(0.0, 1.1e-6, 0.0))
-def test_rotation_is_what_it_was_made_from(rotation: Any) -> None:
+def test_rotation_is_reconstructed_from_each_representation(rotation: Any) -> None:
     assert KDL.Rotation.RPY(*rotation.GetRPY()) == rotation
     assert KDL.Rotation.EulerZYX(*rotation.GetEulerZYX()) == rotation
     # KDL takes a tilt of up to 1.42e-6 rad (its cosine is then 1 - 1e-12) for none.
@@ -97,7 +97,7 @@ def test_frames_move_and_move_back(frame: Any, vector: Any, twist: Any, wrench: 
 
 
 @given(FRAMES, FRAMES, st.floats(0.1, 10))
-def test_diff_and_add_delta_are_each_others_reverse(a: Any, b: Any, dt: float) -> None:
+def test_add_delta_reverses_diff(a: Any, b: Any, dt: float) -> None:
     assert KDL.Equal(KDL.addDelta(a, KDL.diff(a, b, dt), dt), b, 1e-4)
 
 

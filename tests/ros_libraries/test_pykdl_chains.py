@@ -61,7 +61,7 @@ def test_jacobian_is_the_derivative(some: Any) -> None:
         assert KDL.diff(*ends, 2 * step) == jac.getColumn(joint)
 
 
-def test_velocities_there_and_back(some: Any) -> None:
+def test_velocities_survive_a_round_trip(some: Any) -> None:
     chain, jac, twist, speeds = six_axes(), KDL.Jacobian(6), KDL.Twist(), KDL.JntArray(6)
     KDL.ChainJntToJacSolver(chain).JntToJac(some, jac)
     KDL.MultiplyJacobian(jac, positions(1, 2, 3, 4, 5, 6), twist)
@@ -69,7 +69,7 @@ def test_velocities_there_and_back(some: Any) -> None:
     assert list(speeds.q) == pytest.approx([1, 2, 3, 4, 5, 6])
 
 
-def test_positions_there_and_back(some: Any) -> None:
+def test_positions_survive_a_round_trip(some: Any) -> None:
     chain, wanted, reached, found = six_axes(), KDL.Frame(), KDL.Frame(), KDL.JntArray(6)
     forward = KDL.ChainFkSolverPos_recursive(chain)
     forward.JntToCart(some, wanted)
@@ -80,7 +80,7 @@ def test_positions_there_and_back(some: Any) -> None:
     assert reached == wanted
 
 
-def test_limits_are_kept(some: Any) -> None:
+def test_limits_are_respected(some: Any) -> None:
     chain, wanted, found = six_axes(), KDL.Frame(), KDL.JntArray(6)
     forward = KDL.ChainFkSolverPos_recursive(chain)
     forward.JntToCart(some, wanted)
@@ -91,7 +91,7 @@ def test_limits_are_kept(some: Any) -> None:
     assert all(-0.1 <= value <= 0.1 for value in found.q)
 
 
-def test_axis_anywhere_and_names() -> None:
+def test_axis_may_be_anywhere_and_joints_have_names() -> None:
     joint = KDL.Joint("elbow", KDL.Vector(1, 0, 0), KDL.Vector(0, 0, 2), KDL.Joint.RotAxis)
     segment = KDL.Segment("arm", joint, KDL.Frame(KDL.Vector(2, 0, 0)))
     assert segment.pose(0) == KDL.Frame(KDL.Vector(2, 0, 0))
@@ -100,7 +100,7 @@ def test_axis_anywhere_and_names() -> None:
     assert KDL.Joint("still").getType() == getattr(KDL.Joint, "None") == KDL.Joint.Fixed
 
 
-def test_wrong_sizes() -> None:
+def test_wrong_sizes_are_refused() -> None:
     chain = six_axes()
     solver = KDL.ChainFkSolverPos_recursive(chain)
     assert (solver.JntToCart(KDL.JntArray(2), KDL.Frame()), solver.getError()) == (-4, -4)
@@ -110,7 +110,7 @@ def test_wrong_sizes() -> None:
         KDL.Jacobian(2)[6, 0]
 
 
-def test_chains_out_of_a_tree() -> None:
+def test_chains_are_extracted_from_a_tree() -> None:
     tree = KDL.Tree("base")
     torso = KDL.Segment("torso", KDL.Joint("waist", KDL.Joint.RotZ), KDL.Frame(KDL.Vector(0, 0, 1)))
     assert tree.addSegment(torso, "base")

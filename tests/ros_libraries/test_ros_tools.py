@@ -13,7 +13,7 @@ DATA = Path(__file__).parents[1] / "data"
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_answers_are_those_of_ros(tmp_path: Path, tasks: str) -> None:
+def test_answers_equal_recorded_answers_of_ros(tmp_path: Path, tasks: str) -> None:
     if tasks == "greenlet":
         pytest.importorskip("greenlet")
     pytest.importorskip("yaml")

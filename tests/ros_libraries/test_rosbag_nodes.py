@@ -50,16 +50,16 @@ def recorded(folder: Path, *args: str, seconds: float = 3.0) -> list[str]:
     return run_nodes(look, {"LOOKS": LOOKS.format(folder=str(bags))}, seconds=0.7).printed["LOOKS"]
 
 
-def test_all_topics(tmp_path: Path) -> None:
+def test_all_topics_are_recorded(tmp_path: Path) -> None:
     (line,) = recorded(tmp_path, "-a", "-O", "run", "-x", "/rosout.*", seconds=3.6)
     assert line == "run.bag [('/chatter', 21), ('/state', 1)]"
 
 
-def test_some_topics(tmp_path: Path) -> None:
+def test_selected_topics_are_recorded(tmp_path: Path) -> None:
     assert recorded(tmp_path, "state", "-o", "my", "--lz4")[0].endswith(".bag [('/state', 1)]")
 
 
-def test_a_limit(tmp_path: Path) -> None:
+def test_recording_ends_at_a_limit(tmp_path: Path) -> None:
     assert recorded(tmp_path, "-l", "3", "chatter", "-O", "few.bag") == ["few.bag [('/chatter', 3)]"]
 
 
@@ -102,7 +102,7 @@ def played(folder: Path, *args: str, sim_time: bool = False, seconds: float = 3.
     return run_nodes(folder / "flight", scripts, seconds=seconds, nodes=nodes, params=params)
 
 
-def test_playing_takes_as_long_as_recording(tmp_path: Path) -> None:
+def test_playback_takes_as_long_as_the_recording(tmp_path: Path) -> None:
     lines = played(tmp_path).printed["hears"]
     words = [line.split() for line in lines]
     assert ["up", "1"] in [each[1:] for each in words]
@@ -130,7 +130,7 @@ def test_immediate_and_loop(tmp_path: Path) -> None:
     assert sum("m0 " in line for line in lines) == 4
 
 
-def test_two_recordings_are_the_same_bytes(tmp_path: Path) -> None:
+def test_two_recordings_have_equal_bytes(tmp_path: Path) -> None:
     found = []
     for number, tasks in enumerate(("thread", "greenlet")):
         folder = tmp_path / str(number)

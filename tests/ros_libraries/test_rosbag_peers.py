@@ -60,7 +60,7 @@ def written(folder: Path, kind: str) -> Path:
 
 
 @pytest.mark.parametrize("kind", ["bz2", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("none", "lz4"))])
-def test_rosbag_says_the_same_of_a_bag(tmp_path: Path, kind: str) -> None:
+def test_rosbag_reports_the_same_about_a_bag(tmp_path: Path, kind: str) -> None:
     if not has_rosbag():
         pytest.skip("ROS's own rosbag is not installed (Debian: python3-rosbag), so it cannot read what was written")
     file = written(tmp_path, kind)
@@ -88,7 +88,7 @@ def _is_date(line: str) -> bool:
 
 
 @pytest.mark.parametrize("kind", ["none", "bz2", "lz4"])
-def test_the_package_rosbags_reads_a_bag(tmp_path: Path, kind: str) -> None:
+def test_rosbags_package_reads_a_bag(tmp_path: Path, kind: str) -> None:
     from rosbags.rosbag1 import Reader
 
     with Reader(written(tmp_path, kind)) as reader:
@@ -100,7 +100,7 @@ def test_the_package_rosbags_reads_a_bag(tmp_path: Path, kind: str) -> None:
 
 
 @pytest.mark.slow
-def test_the_original_source_beside_a_node_is_the_one_that_counts(tmp_path: Path) -> None:
+def test_original_source_next_to_a_node_is_preferred(tmp_path: Path) -> None:
     if not has_rosbag():
         pytest.skip("ROS's own rosbag is not installed (Debian: python3-rosbag), so there is no source to bring along")
     code = "import rosbag; print(rosbag.__path__[0])"

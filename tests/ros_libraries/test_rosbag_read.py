@@ -24,7 +24,7 @@ def printed(folder: Path, code: str) -> list[str]:
 
 
 @pytest.mark.parametrize("kind", ["none", "bz2", "lz4"])
-def test_messages_come_by_time_whatever_the_compression(tmp_path: Path, kind: str) -> None:
+def test_messages_are_ordered_by_time_for_each_compression(tmp_path: Path, kind: str) -> None:
     code = f"""
         with rosbag.Bag("golden_api_{kind}.bag") as bag:
             found = list(bag)
@@ -42,7 +42,7 @@ def test_messages_come_by_time_whatever_the_compression(tmp_path: Path, kind: st
     ]
 
 
-def test_what_is_in_a_bag(tmp_path: Path) -> None:
+def test_bag_reports_counts_times_and_types(tmp_path: Path) -> None:
     code = """
         bag = rosbag.Bag("golden.bag")
         print(bag.get_message_count(), bag.get_message_count("/chatter"), bag.get_message_count(["/tf", "/none"]))
@@ -70,7 +70,7 @@ def test_what_is_in_a_bag(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["golden", "golden_api_none"])
-def test_the_text_is_that_of_rosbag_info(tmp_path: Path, name: str) -> None:
+def test_text_equals_rosbag_info(tmp_path: Path, name: str) -> None:
     expected = (BAGS / f"{name}.bag.info.txt").read_text(encoding="utf-8").rstrip("\n").split("\n")
     found = printed(tmp_path, f'print(rosbag.Bag("{name}.bag", skip_index=True))')
     times = [line for line in expected if line.startswith(("start:", "end:"))]
@@ -125,7 +125,7 @@ def test_filters(tmp_path: Path) -> None:
     ]
 
 
-def test_what_is_no_bag_is_refused(tmp_path: Path) -> None:
+def test_invalid_bag_is_refused(tmp_path: Path) -> None:
     code = f"""
         import io
         folder = {str(tmp_path)!r}
@@ -168,7 +168,7 @@ def test_what_is_no_bag_is_refused(tmp_path: Path) -> None:
     ]
 
 
-def test_messages_are_of_the_definition_in_the_bag(tmp_path: Path) -> None:
+def test_messages_have_the_definition_of_the_bag(tmp_path: Path) -> None:
     """As with ROS, their class differs from the imported one, but can be published in its place."""
     code = """
         from std_msgs.msg import String

@@ -29,7 +29,7 @@ def printed(folder: Path, code: str) -> list[str]:
 
 @pytest.mark.parametrize("kind", ["none", "bz2", "lz4"])
 @pytest.mark.parametrize("raw", [False, True])
-def test_the_bytes_are_those_of_rosbag(tmp_path: Path, kind: str, raw: bool) -> None:
+def test_written_bags_equal_bags_of_ros_byte_for_byte(tmp_path: Path, kind: str, raw: bool) -> None:
     code = f"""
         with Bag("out.bag", "w", compression={kind!r}, chunk_threshold=4096) as out:
             for topic, message, stamp in Bag(BAGS + "/golden_api_none.bag").read_messages(raw={raw}):
@@ -89,7 +89,7 @@ def test_append_adds_a_connection(tmp_path: Path) -> None:
     ]
 
 
-def test_a_bag_that_was_not_closed_is_reindexed(tmp_path: Path) -> None:
+def test_unclosed_bag_is_reindexed(tmp_path: Path) -> None:
     code = """
         out = Bag("whole.bag", "w", chunk_threshold=300)
         for i in range(60):
@@ -118,7 +118,7 @@ def test_a_bag_that_was_not_closed_is_reindexed(tmp_path: Path) -> None:
     assert printed(tmp_path, code) == ["Unindexed bag 58 True", "99"]
 
 
-def test_records_of_a_later_version_are_passed_over(tmp_path: Path) -> None:
+def test_records_of_a_later_version_are_skipped(tmp_path: Path) -> None:
     code = """
         from rosbag import bag
         with Bag("out.bag", "w", chunk_threshold=256) as out:
@@ -275,7 +275,7 @@ def test_rosbagmain(tmp_path: Path) -> None:
     ]
 
 
-def test_without_lz4_the_error_says_what_to_install(tmp_path: Path) -> None:
+def test_missing_lz4_is_reported_with_advice(tmp_path: Path) -> None:
     (tmp_path / "lz4.py").write_text("raise ImportError('no lz4 here')\n", encoding="utf-8")
     code = """
         for attempt in (

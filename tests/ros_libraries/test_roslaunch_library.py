@@ -55,7 +55,7 @@ print(process.is_alive())
     assert run.printed["home/kid"] == ["runs /home/kid None ['-v', 'a:=b', '__name:=kid']", "ends"]
 
 
-def test_a_node_that_is_stopped_does_not_come_back(folder: Path) -> None:
+def test_stopped_node_is_not_respawned(folder: Path) -> None:
     source = """
 launch = roslaunch.scriptapi.ROSLaunch()
 launch.start()
@@ -89,7 +89,7 @@ parent.start()
     assert run.finished
 
 
-def test_what_cannot_be_launched(folder: Path) -> None:
+def test_invalid_launch_is_reported(folder: Path) -> None:
     source = """
 launch = roslaunch.scriptapi.ROSLaunch()
 for make in (

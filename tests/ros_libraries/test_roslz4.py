@@ -24,11 +24,11 @@ def decompress(data):
 """
 
 
-def test_ours(tmp_path: Path) -> None:
+def test_shipped_roslz4_works(tmp_path: Path) -> None:
     assert run_nodes(tmp_path, {"N": ROUND_TRIP}).printed["N"] == ["True True LZ4Compressor"]
 
 
-def test_a_users_python_half_finds_the_compiled_one(tmp_path: Path) -> None:
+def test_python_half_of_a_user_imports_the_compiled_half(tmp_path: Path) -> None:
     (tmp_path / "roslz4").mkdir()
     (tmp_path / "roslz4" / "__init__.py").write_text(PYTHON_HALF, encoding="utf-8")
     lines = run_nodes(tmp_path, {"N": ROUND_TRIP + "print(roslz4.__file__)"}).printed["N"]

@@ -230,7 +230,7 @@ def test_definitions_and_loggers(tmp_path: Path) -> None:
     assert said(tmp_path, script) == ["p/S", "['RosStreamHandler'] 30", "1"]
 
 
-def test_the_distribution_is_that_of_the_environment(tmp_path: Path) -> None:
+def test_distribution_comes_from_the_environment(tmp_path: Path) -> None:
     source = """
         import os
         import rospkg.distro
@@ -241,7 +241,7 @@ def test_the_distribution_is_that_of_the_environment(tmp_path: Path) -> None:
     assert run_nodes(tmp_path, {"NODE": source}).printed["NODE"] == ["noetic", "melodic"]
 
 
-def test_exports_by_the_name_that_flexbe_uses(tmp_path: Path) -> None:
+def test_exports_have_the_name_used_by_flexbe(tmp_path: Path) -> None:
     script = """
         import rospkg
         print([(each.tag, sorted(each.attrs)) for each in rospkg.RosPack()._load_manifest("hand").exports])

@@ -83,7 +83,7 @@ def test_names_of_result_files(tmp_path: Path) -> None:
     assert run_nodes(tmp_path, {"N": source}).printed["N"] == ["test_sub_x", "--gtest_output=xml:"]
 
 
-def test_rostest_runs_a_node_and_knows_the_graph(tmp_path: Path) -> None:
+def test_rostest_runs_a_node_and_queries_the_graph(tmp_path: Path) -> None:
     talker = """
         import rospy
         from std_msgs.msg import String

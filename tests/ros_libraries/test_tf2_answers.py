@@ -62,13 +62,13 @@ def ask(buffer: Any, name: str, args: list[Any]) -> Any:
 
 
 @pytest.mark.parametrize("world", WORLDS, ids=lambda world: f"{len(world['sets'])} transforms")
-def test_as_recorded(world: dict[str, Any]) -> None:
+def test_answers_equal_the_recorded_ones(world: dict[str, Any]) -> None:
     buffer = filled(world)
     for name, args, wanted in world["asks"]:
         assert ask(buffer, name, args) == wanted, f"{name}{args}"
 
 
-def test_the_recording_has_what_it_is_for() -> None:
+def test_recording_covers_all_errors_and_many_transforms() -> None:
     answers = [answer for world in WORLDS for _, _, answer in world["asks"] if isinstance(answer, dict)]
     errors = {answer["error"] for answer in answers if "error" in answer}
     assert errors >= {"LookupException", "ConnectivityException", "ExtrapolationException", "InvalidArgumentException"}

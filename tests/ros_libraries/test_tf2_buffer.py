@@ -43,7 +43,7 @@ BAD = [
 
 
 @pytest.mark.parametrize(("transform", "text"), BAD, ids=lambda value: value[9:30] if isinstance(value, str) else "")
-def test_a_transform_that_makes_no_sense_is_reported(node: Universe, transform: Any, text: str) -> None:
+def test_invalid_transform_is_reported(node: Universe, transform: Any, text: str) -> None:
     load = node.importer.load
     buffer = load("tf2_py").BufferCore()
     buffer.set_transform(stamped(load, *transform[:3], *(transform[3:] or (0, 0, 0))), "me")
@@ -124,7 +124,7 @@ def numbers(value: Any) -> list[float]:
     return [value.x, value.y, value.z]
 
 
-def test_types_that_nobody_registered(node: Universe) -> None:
+def test_unregistered_types_are_refused(node: Universe) -> None:
     load = node.importer.load
     tf2_ros, msg = load("tf2_ros"), load("geometry_msgs.msg")
     with pytest.raises(tf2_ros.TypeException) as caught:
@@ -153,12 +153,12 @@ def test_converting(node: Universe) -> None:
     assert buffer.transform_full(data, "map", load("rospy").Time(5), "map", new_type=str) == "(3+4j)"
 
 
-def test_names_that_tf2_ros_does_not_have(node: Universe) -> None:
+def test_unknown_names_of_tf2_ros_are_an_error(node: Universe) -> None:
     with pytest.raises(AttributeError, match="BufferKlient"):
         _ = node.importer.load("tf2_ros").BufferKlient
 
 
-def test_a_type_that_nobody_has_registered(node: Universe) -> None:
+def test_unregistered_type_has_the_error_text_of_tf2_ros(node: Universe) -> None:
     """The texts are those of tf2_ros 0.7.6."""
     load = node.importer.load
     error = load("tf2_ros").TypeException

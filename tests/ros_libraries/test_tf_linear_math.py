@@ -141,11 +141,11 @@ def test_every_recorded_result_is_computed() -> None:
 
 
 @pytest.mark.parametrize("name", RECORDED)
-def test_as_in_cpp(name: str) -> None:
+def test_results_equal_cpp(name: str) -> None:
     assert flat(results()[name]) == pytest.approx(RECORDED[name], rel=1e-12, abs=1e-12)
 
 
-def test_objects_change_in_place_as_references_do() -> None:
+def test_objects_change_in_place_like_references() -> None:
     transform = lm.Transform()
     transform.getOrigin().setX(3)
     transform.getBasis()[0].setValue(0, 1, 0)
@@ -154,7 +154,7 @@ def test_objects_change_in_place_as_references_do() -> None:
     assert transform == lm.Transform.getIdentity()
 
 
-def test_values_are_copied_in() -> None:
+def test_values_are_copied_into_objects() -> None:
     origin = lm.Vector3(1, 2, 3)
     transform = lm.Transform(lm.Quaternion.getIdentity(), origin)
     stamped = lm.StampedTransform(transform, 5, "map", "base")
@@ -165,7 +165,7 @@ def test_values_are_copied_in() -> None:
     assert stamped != lm.StampedTransform(stamped, 6, "map", "base")
 
 
-def test_swapped_bytes_come_back() -> None:
+def test_swapped_bytes_are_restored() -> None:
     assert scalar.tfUnswapEndianFloat(scalar.tfSwapEndianFloat(-2.5)) == -2.5
     assert scalar.tfUnswapEndianDouble(scalar.tfSwapEndianDouble(math.pi)) == math.pi
 
@@ -174,7 +174,7 @@ def test_minimum_and_maximum() -> None:
     assert (lm.tfMin(1, 2), lm.tfMax(1, 2), lm.tfSetMin(1, 2), lm.tfSetMax(1, 2)) == (1, 2, 1, 2)
 
 
-def test_the_names_of_cpp_are_in_tf_too() -> None:
+def test_names_of_cpp_are_also_in_tf() -> None:
     tf: Any = universe().importer.load("tf")
     assert tf.Quaternion(0, 0, 0, 1) == tf.Transform().getRotation()
     with pytest.raises(AttributeError, match="Quaternion4"):

@@ -64,7 +64,7 @@ def test_between_two_times(transformer: Any) -> None:
     assert transformer.chain("base", rospy.Time(6), "base", rospy.Time(5), "map") == ["base", "map", "base"]
 
 
-def test_waiting_needs_somebody_who_listens(transformer: Any) -> None:
+def test_wait_for_transform_requires_a_dedicated_thread(transformer: Any) -> None:
     with pytest.raises(tf.Exception, match="without a dedicated thread"):
         transformer.waitForTransform("map", "base", rospy.Time(5), rospy.Duration(0))
     transformer.setUsingDedicatedThread(True)

@@ -11,16 +11,16 @@ from tests.ros_libraries.world import universe
 from tests.rospy_shim.missions import run_nodes
 
 
-def test_the_names_are_those_of_the_folders() -> None:
+def test_library_names_equal_the_folders() -> None:
     assert {"tf", "tf2_ros", "tf2_py", "tf2_geometry_msgs"} <= library_names()
 
 
-def test_each_node_executes_a_library_for_itself() -> None:
+def test_each_node_executes_its_own_copy_of_a_library() -> None:
     first, second = (universe().importer.load("tf2_ros") for _ in range(2))
     assert first.TransformRegistration is not second.TransformRegistration
 
 
-def test_nothing_is_read_before_it_is_needed() -> None:
+def test_modules_are_read_only_when_they_are_needed() -> None:
     node = universe()
     node.importer.load("tf")
     assert not {"numpy", "tf.transformations", "tf.linear_math"} & set(node.importer.modules)
@@ -36,7 +36,7 @@ def test_a_library_has_code_and_messages(tmp_path: Path) -> None:
     assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["True tf/FrameGraph tf.transformer"]
 
 
-def test_a_copy_in_the_nodes_folder_comes_first(tmp_path: Path) -> None:
+def test_copy_in_the_folder_of_the_node_is_preferred(tmp_path: Path) -> None:
     (tmp_path / "tf2_ros").mkdir()
     (tmp_path / "tf2_ros/__init__.py").write_text(
         "from tf2_py import BufferCore\nORIGIN = 'my own'\n", encoding="utf-8"
@@ -45,14 +45,14 @@ def test_a_copy_in_the_nodes_folder_comes_first(tmp_path: Path) -> None:
     assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own True"]
 
 
-def test_a_folder_that_the_node_adds_to_its_path_comes_first(tmp_path: Path) -> None:
+def test_folder_added_to_the_path_by_the_node_is_preferred(tmp_path: Path) -> None:
     (tmp_path / "elsewhere").mkdir()
     (tmp_path / "elsewhere/tf.py").write_text("ORIGIN = 'my own'\n", encoding="utf-8")
     script = f"import sys; sys.path.append({str(tmp_path / 'elsewhere')!r}); import tf; print(tf.ORIGIN)"
     assert run_nodes(tmp_path, {"NODE": script}).printed["NODE"] == ["my own"]
 
 
-def test_the_compiled_half_of_a_copy_comes_from_the_library(tmp_path: Path) -> None:
+def test_copy_of_a_library_imports_the_compiled_half_of_the_shipped_one(tmp_path: Path) -> None:
     (tmp_path / "tf2_py").mkdir()
     (tmp_path / "tf2_py/__init__.py").write_text("from ._tf2 import *\nORIGIN = 'my own'\n", encoding="utf-8")
     script = "import tf2_py; print(tf2_py.ORIGIN, tf2_py.BufferCore().all_frames_as_yaml())"
@@ -65,5 +65,5 @@ def test_importlib_finds_a_library() -> None:
     assert spec.origin == str(FOLDER / "tf2_geometry_msgs" / "__init__.py")
 
 
-def test_without_library_paths_there_are_none() -> None:
+def test_universe_without_library_paths_has_no_libraries() -> None:
     assert Universe(Kernel(), name="bare").importer.find_spec("tf2_geometry_msgs") is None

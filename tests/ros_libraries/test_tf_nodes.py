@@ -95,7 +95,7 @@ def fly(folder: Path, tasks: str = "thread") -> Run:
     return run_nodes(folder, {"TELLS": TELLS, "ASKS": ASKS, "OLD": OLD}, seconds=3.0, tasks=tasks)
 
 
-def test_transforms_are_told_heard_and_waited_for(tmp_path: Path) -> None:
+def test_transforms_are_sent_received_and_waited_for(tmp_path: Path) -> None:
     printed = fly(tmp_path).printed
     assert printed["asks"] == [
         '"map" passed to lookupTransform argument target_frame does not exist. ',
@@ -109,11 +109,11 @@ def test_transforms_are_told_heard_and_waited_for(tmp_path: Path) -> None:
     assert printed["old"] == ["[1.0, 2.0]"]
 
 
-def test_a_run_with_transforms_is_the_same_each_time(tmp_path: Path) -> None:
+def test_run_with_transforms_is_the_same_each_time(tmp_path: Path) -> None:
     assert fly(tmp_path / "a").digest == fly(tmp_path / "b", "greenlet").digest
 
 
-def test_transforms_of_another_nodes_buffer(tmp_path: Path) -> None:
+def test_transforms_are_requested_from_the_buffer_of_another_node(tmp_path: Path) -> None:
     printed = run_nodes(tmp_path, {"TELLS": TELLS, "SERVES": SERVES, "ASKS": ASKS_THE_SERVER}, seconds=5.0).printed
     assert printed["asks"] == [
         "True",

@@ -46,7 +46,7 @@ def tupled(argument: Any, name: str) -> Any:
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
-def test_as_recorded(function: str) -> None:
+def test_results_equal_the_recorded_ones(function: str) -> None:
     for name, args, options, wanted in RECORDED:
         if name != function:
             continue
@@ -70,7 +70,7 @@ def test_all_functions_are_recorded_or_tested_here() -> None:
 
 
 @pytest.mark.parametrize(("take_apart", "matrix"), PARTS, ids=lambda value: value if isinstance(value, str) else "")
-def test_a_matrix_taken_apart_and_made_again(take_apart: str, matrix: Any) -> None:
+def test_matrix_is_recomposed_from_its_parts(take_apart: str, matrix: Any) -> None:
     parts = getattr(tr, take_apart)(matrix)
     again = getattr(tr, take_apart.replace("_from", ""))(*parts)
     assert tr.is_same_transform(matrix, again)
@@ -87,7 +87,7 @@ def test_angle_and_axis_of_a_turn() -> None:
     assert point[3] == 1.0
 
 
-def test_results_go_where_out_says() -> None:
+def test_results_are_written_to_out() -> None:
     vectors = np.array([[3.0, 4.0], [6.0, 8.0]])
     lengths = np.empty(2)
     assert tr.vector_norm(vectors, axis=1, out=lengths) is None
@@ -96,14 +96,14 @@ def test_results_go_where_out_says() -> None:
     assert vectors.tolist() == [[0.6, 0.8], [0.6, 0.8]]
 
 
-def test_random_numbers_are_the_nodes_own() -> None:
+def test_random_numbers_belong_to_the_node() -> None:
     drawn = [universe().importer.load("tf.transformations").random_vector(3).tolist() for _ in range(2)]
     assert drawn[0] == drawn[1]
     assert all(0.0 <= number < 1.0 for number in drawn[0])
     assert tr.vector_norm(tr.random_quaternion()) == pytest.approx(1.0)
 
 
-def test_a_ball_turns_as_it_is_dragged() -> None:
+def test_ball_turns_as_it_is_dragged() -> None:
     ball = tr.Arcball(initial=np.identity(4))
     ball.place([320, 320], 320)
     ball.down([500, 250])
@@ -113,7 +113,7 @@ def test_a_ball_turns_as_it_is_dragged() -> None:
     assert not np.allclose(ball.matrix(), np.identity(4))
 
 
-def test_a_ball_held_to_its_axes() -> None:
+def test_ball_is_constrained_to_its_axes() -> None:
     ball = tr.Arcball(initial=[0, 0, 0, 1])
     ball.place([320, 320], 320)
     ball.setaxes([1, 1, 0], [-1, 1, 0])

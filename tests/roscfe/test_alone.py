@@ -21,7 +21,7 @@ NUMERIC = ("clouds",)
 
 
 @pytest.mark.parametrize("target", ["here", "powerpc", "arm"])
-def test_probes_print_what_is_recorded(tmp_path: Path, target: str) -> None:
+def test_probes_print_the_recorded_output(tmp_path: Path, target: str) -> None:
     nodes = [PROBES / f"{name}.cpp" for name in NODES if target == "here" or name not in NUMERIC]
     alone = Alone(tmp_path, nodes, target_named(target))
     for node in nodes:

@@ -30,21 +30,21 @@ int main()
 
 
 @pytest.mark.parametrize("profile", Profile)
-def test_locks_and_rows_print_what_is_recorded(tmp_path: Path, profile: Profile) -> None:
+def test_locks_and_arrays_print_the_recorded_output(tmp_path: Path, profile: Profile) -> None:
     sources, flags = [FOLDER / "locks.cpp", STUBS], (f"-DROSCFE_PROFILE_{profile.name}",)
     made = compile_program(tmp_path / "locks", sources, *flags, base=STRICT_FLAGS)
     assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text(encoding="utf-8")
 
 
 @needs_boost
-def test_what_is_recorded_is_what_boost_prints(tmp_path: Path) -> None:
+def test_recorded_output_equals_the_output_with_boost(tmp_path: Path) -> None:
     sources, libraries = [FOLDER / "locks.cpp"], ("-lboost_thread", "-lboost_system", "-lpthread")
     made = compile_program(tmp_path / "locks", sources, base=("-std=c++17",), include=(), libraries=libraries)
     assert subprocess.check_output([made], text=True) == (FOLDER / "locks.txt").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize("profile", Profile)
-def test_a_mutex_that_would_wait_for_itself_ends_the_node(tmp_path: Path, profile: Profile) -> None:
+def test_mutex_locked_twice_by_its_owner_ends_the_node(tmp_path: Path, profile: Profile) -> None:
     source = tmp_path / "twice.cpp"
     source.write_text(TWICE, encoding="utf-8")
     made = compile_program(tmp_path / "twice", [source, STUBS], f"-DROSCFE_PROFILE_{profile.name}", base=STRICT_FLAGS)
@@ -53,7 +53,7 @@ def test_a_mutex_that_would_wait_for_itself_ends_the_node(tmp_path: Path, profil
 
 
 @needs_boost
-def test_the_interface_library_compiles_with_boost_itself(tmp_path: Path) -> None:
+def test_interface_library_compiles_with_the_original_boost(tmp_path: Path) -> None:
     include = ROSCFE / "include"
     headers = sorted(str(each.relative_to(include)) for each in include.rglob("*.h"))
     packages = ("std_msgs", "geometry_msgs", "sensor_msgs", "visualization_msgs", "actionlib_msgs", "rosgraph_msgs")

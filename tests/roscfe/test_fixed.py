@@ -31,7 +31,7 @@ REFUSED = {
 }
 
 
-def test_they_are_used_as_those_of_the_standard_library(tmp_path: Path) -> None:
+def test_fixed_containers_act_like_std_and_refuse_too_much_data(tmp_path: Path) -> None:
     source = Path(__file__).with_name("fixed.cpp")
     program = compile_program(tmp_path / "fixed", [source], "-O1", "-g", *SANITIZERS)
     done = subprocess.run([program, "0"], capture_output=True, text=True, check=False)

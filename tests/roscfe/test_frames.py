@@ -125,7 +125,7 @@ def parts(line: str) -> tuple[str, list[float]]:
 
 
 @pytest.mark.slow
-def test_as_in_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_answers_equal_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     said: list[str] = []
     monkeypatch.setattr(load("tf2_py._tf2"), "_report", lambda level, text: said.append(f"{level} {text}"))
     made = program(tmp_path, "-Wall", "-Wextra", "-Werror", "-O1", "-fsanitize=address,undefined")
@@ -152,7 +152,7 @@ def comparable(lines: list[str]) -> list[str]:
 
 
 @pytest.mark.slow
-def test_as_in_a_real_ros(tmp_path: Path) -> None:
+def test_answers_equal_a_real_ros(tmp_path: Path) -> None:
     if not REAL.is_file() or shutil.which("g++") is None:
         pytest.skip("there is no libtf2-dev on this computer; the comparison with Python has to do")
     libraries = ["-ltf2", "-lrostime", "-lboost_thread", "-lboost_system"]
@@ -170,7 +170,7 @@ def test_as_in_a_real_ros(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_without_exceptions_a_failure_ends_the_application(tmp_path: Path) -> None:
+def test_failure_without_exceptions_ends_the_application(tmp_path: Path) -> None:
     made = program(tmp_path, *STRICT)
     done = subprocess.run([made, "10"], input="look a b 0\n", capture_output=True, text=True, check=False)
     assert done.returncode == 3
@@ -180,7 +180,7 @@ def test_without_exceptions_a_failure_ends_the_application(tmp_path: Path) -> No
 
 @pytest.mark.slow
 @pytest.mark.parametrize("sanitizers", [[], ["-fsanitize=address,undefined"]])
-def test_nothing_is_allocated_in_flight(sanitizers: list[str], tmp_path: Path) -> None:
+def test_no_memory_is_allocated_in_flight(sanitizers: list[str], tmp_path: Path) -> None:
     """This holds in the strict profile, for 50 s of four frames at 100 Hz, with a buffer too small for 10 s of them."""
     messages = tmp_path / "messages"
     types = ["geometry_msgs/TransformStamped", "geometry_msgs/PoseWithCovarianceStamped", "geometry_msgs/PoseStamped"]
@@ -201,7 +201,7 @@ def test_nothing_is_allocated_in_flight(sanitizers: list[str], tmp_path: Path) -
 
 
 @pytest.mark.slow
-def test_the_type_on_the_bus_is_tf2s(tmp_path: Path) -> None:
+def test_type_on_the_bus_is_that_of_tf2(tmp_path: Path) -> None:
     source = tmp_path / "type.cpp"
     source.write_text(
         "#include <cstdio>\n#include <cstring>\n"

@@ -35,7 +35,7 @@ def words(line: str) -> list[str | float]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("options", [STRICT, ["-Wall", "-Wextra", "-Werror"]])
-def test_as_recorded(options: list[str], tmp_path: Path) -> None:
+def test_results_equal_the_recorded_ones(options: list[str], tmp_path: Path) -> None:
     found = answers(ours(tmp_path, *options), inputs(ON_RECORD))
     wanted = RECORDED.read_text(encoding="utf-8").splitlines()
     assert len(found) == len(wanted) == 46 * ON_RECORD
@@ -44,7 +44,7 @@ def test_as_recorded(options: list[str], tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_as_in_a_real_ros(tmp_path: Path) -> None:
+def test_results_equal_a_real_ros(tmp_path: Path) -> None:
     if not all(path.is_dir() for path in REAL):
         pytest.skip("there is no libtf2-geometry-msgs-dev on this computer; the record has to do")
     libraries = ["-ltf2", "-lrostime", "-lorocos-kdl", "-lboost_thread", "-lboost_system"]

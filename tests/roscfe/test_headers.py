@@ -43,7 +43,7 @@ struct Own { int a; };
 
 
 @pytest.mark.parametrize("header", BOOST, ids=lambda path: path.stem)
-def test_a_header_of_boost_stands_by_itself(tmp_path: Path, header: Path) -> None:
+def test_header_of_boost_compiles_alone_or_is_refused(tmp_path: Path, header: Path) -> None:
     said = complaints(tmp_path, f"#include <{header.relative_to(ROSCFE / 'boost')}>\n" * 2)
     if header.name in BOOST_REFUSED:
         assert "[library-outside]" in said
@@ -52,7 +52,7 @@ def test_a_header_of_boost_stands_by_itself(tmp_path: Path, header: Path) -> Non
 
 
 @pytest.mark.parametrize("name", LACKING)
-def test_a_header_of_boost_that_is_not_ours_is_refused(tmp_path: Path, name: str) -> None:
+def test_unsupported_header_of_boost_is_refused(tmp_path: Path, name: str) -> None:
     said = complaints(tmp_path, f"#include <boost/{name}.hpp>\n")
     assert "[library-outside]" in said or "No such file" in said
 
@@ -66,7 +66,7 @@ def test_a_header_of_boost_that_is_not_ours_is_refused(tmp_path: Path, name: str
         *("ros/service_traits", "roscfe/wire", "roscfe/fixed", "roscfe/message"),
     ],
 )
-def test_a_header_of_messages_stands_by_itself(tmp_path: Path, name: str, base: tuple[str, ...]) -> None:
+def test_header_of_messages_compiles_alone(tmp_path: Path, name: str, base: tuple[str, ...]) -> None:
     assert not complaints(tmp_path, f'#include "{name}.h"\n' * 2, base=base)
 
 
@@ -77,7 +77,7 @@ def test_depths_are_millimeters_or_meters(tmp_path: Path) -> None:
     assert subprocess.check_output([made], text=True) == "0 1 1.5 251 0\n0 1 2 3\n"
 
 
-def test_linear_math_has_the_guards_that_nodes_ask_for(tmp_path: Path) -> None:
+def test_linear_math_has_the_include_guards_used_by_nodes(tmp_path: Path) -> None:
     asked = ("TF_SCALAR_H", "TF_MATRIX3x3_H", "TF2_SCALAR_H", "TF2_MATRIX3x3_H")
     lines = "".join(f"#ifndef {guard}\n#error {guard}\n#endif\n" for guard in asked)
     assert not complaints(
@@ -86,7 +86,7 @@ def test_linear_math_has_the_guards_that_nodes_ask_for(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
-def test_all_messages_in_one_file(tmp_path: Path, profile: Profile) -> None:
+def test_all_messages_compile_in_one_file(tmp_path: Path, profile: Profile) -> None:
     services = [f"{package}/{name}" for package in LIBRARY.packages() for name in LIBRARY.names(package, "srv") or ()]
     made = write_headers([*all_types(), *services], tmp_path, profile, LIBRARY, capacities())
     assert len(made) > 1200
@@ -106,6 +106,6 @@ def test_all_messages_in_one_file(tmp_path: Path, profile: Profile) -> None:
         ("ros::message_traits::hasHeader<Own>()", ""),
     ],
 )
-def test_a_type_that_is_no_message_is_told_apart(tmp_path: Path, use: str, said: str) -> None:
+def test_type_that_is_not_a_message_is_refused(tmp_path: Path, use: str, said: str) -> None:
     text = complaints(tmp_path, f"{OWN}\nauto made = {use};\n")
     assert said in text if said else not text

@@ -49,13 +49,13 @@ def failures(lines: list[str]) -> list[str]:
 
 
 @pytest.mark.parametrize("case", ["aligned", "c", "too large"])
-def test_heap_gives_aligned_memory_or_none(run: Run, case: str) -> None:
+def test_heap_returns_aligned_memory_or_null(run: Run, case: str) -> None:
     lines = run(case)
     assert failures(lines) == []
     assert lines[-1] == "done"
 
 
-def test_full_arena_offers_null_and_then_ends_the_node(run: Run) -> None:
+def test_full_arena_returns_null_and_then_ends_the_node(run: Run) -> None:
     *before, last = run("full")
     assert failures(before) == []
     assert last == "refused: the node's arena is full: build it with a larger ROSCFE_ARENA_BYTES"
@@ -70,7 +70,7 @@ def test_exception_of_the_cpp_library_ends_the_node(run: Run) -> None:
     assert run("thrown")[-1] == "refused: exception: a function of the C++ library has thrown one"
 
 
-def test_strict_node_gets_no_memory_after_its_start(run: Run, profile: Profile) -> None:
+def test_strict_node_cannot_allocate_after_its_start(run: Run, profile: Profile) -> None:
     lines = run("sealed")[1:]
     if profile is Profile.POOL:
         assert lines == ["nothrow 1, counted 1", "malloc 1", "done"]

@@ -203,7 +203,7 @@ def equal(name: str, found: list[float], wanted: list[float]) -> bool:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("library", ["tf", "tf2"])
-def test_as_in_python(library: str, tmp_path: Path) -> None:
+def test_numbers_equal_python(library: str, tmp_path: Path) -> None:
     define = ["-DOF_TF"] if library == "tf" else []
     cases = inputs(CASES)
     lines = map(parsed, answers(compiled(tmp_path, [SOURCE], *STRICT, *define), cases))
@@ -217,7 +217,7 @@ def test_as_in_python(library: str, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("library", ["tf", "tf2"])
-def test_as_in_a_real_ros(library: str, tmp_path: Path) -> None:
+def test_numbers_equal_a_real_ros(library: str, tmp_path: Path) -> None:
     """Results are bitwise equal, optimised as in Debian's ROS, which turns the powers in ROS's code into products."""
     if not (REAL / library / "LinearMath").is_dir():
         pytest.skip(f"there is no lib{library}-dev on this computer; the comparison with Python has to do")
@@ -230,7 +230,7 @@ def test_as_in_a_real_ros(library: str, tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("options", [STRICT, ["-Wall", "-Wextra", "-Werror", "-pedantic"]])
-def test_both_libraries_in_one_node(options: list[str], tmp_path: Path) -> None:
+def test_both_libraries_may_be_in_one_node(options: list[str], tmp_path: Path) -> None:
     source = tmp_path / "both.cpp"
     names = [path.relative_to(HEADERS) for path in sorted(HEADERS.glob("tf*/LinearMath/*.h"))]
     assert len(names) == 14

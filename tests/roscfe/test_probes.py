@@ -13,5 +13,5 @@ pytestmark = [pytest.mark.slow, needs_cpp]
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_probe_prints_what_is_recorded(name: str, tmp_path: Path) -> None:
+def test_probe_prints_the_recorded_output(name: str, tmp_path: Path) -> None:
     assert fly(name, tmp_path) == (PROBES / f"{name}.txt").read_text(encoding="utf-8").splitlines()

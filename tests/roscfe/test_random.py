@@ -45,7 +45,7 @@ int main()
 """
 
 
-def test_numbers_are_those_of_glibc(tmp_path: Path) -> None:
+def test_random_numbers_equal_glibc(tmp_path: Path) -> None:
     source = tmp_path / "numbers.cpp"
     source.write_text(PROGRAM, encoding="utf-8")
     made = compile_program(tmp_path / "numbers", [source, ROSCFE / "src/random.cpp"])

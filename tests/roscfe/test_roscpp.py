@@ -40,7 +40,7 @@ def output(program: Path) -> str:
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_ours_prints_what_is_recorded(tmp_path: Path, name: str) -> None:
+def test_program_prints_the_recorded_output(tmp_path: Path, name: str) -> None:
     write_headers(PRINTED, tmp_path, Profile.HOST, LIBRARY)
     flags = (f"-I{tmp_path}", "-O1")
     made = compile_program(tmp_path / name, [FOLDER / f"{name}.cpp"], *flags, base=STRICT_FLAGS)
@@ -49,14 +49,14 @@ def test_ours_prints_what_is_recorded(tmp_path: Path, name: str) -> None:
 
 @needs_roscpp
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_what_is_recorded_is_what_roscpp_prints(tmp_path: Path, name: str) -> None:
+def test_recorded_output_equals_the_output_with_roscpp(tmp_path: Path, name: str) -> None:
     source, base = FOLDER / f"{name}.cpp", ("-std=c++17",)
     made = compile_program(tmp_path / name, [source], base=base, include=(), libraries=ROSCPP)
     assert output(made) == (FOLDER / f"{name}.txt").read_text(encoding="utf-8")
 
 
 @needs_roscpp
-def test_messages_go_through_both(tmp_path: Path) -> None:
+def test_messages_pass_between_cfepy_and_roscpp(tmp_path: Path) -> None:
     types = [name for name in all_types() if (SYSTEM / f"{name}.h").is_file()]
     assert len(types) >= 20
     theirs = Program(tmp_path, types, Profile.HOST, "-O1", roscpp=True)

@@ -60,7 +60,7 @@ class There:
         return done.stdout, done.stderr
 
 
-def test_what_is_recorded_of_roscpp(tmp_path: Path, target: Target) -> None:
+def test_program_prints_the_output_recorded_with_roscpp(tmp_path: Path, target: Target) -> None:
     there = There(tmp_path, target)
     for name in PROGRAMS:
         assert there.run(there.compile(name))[0] == (FOLDER / f"{name}.txt").read_text(encoding="utf-8"), name

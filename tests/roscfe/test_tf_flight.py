@@ -47,7 +47,7 @@ def package(folder: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_they_find_each_other(
+def test_nodes_in_cpp_and_python_exchange_transforms(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(tmp_path))

@@ -20,7 +20,7 @@ def printed(folder: Path, script: str, **env: str) -> list[str]:
     return run_nodes(folder / "mission", {"NODE": script}, nodes={"NODE": config}).printed["NODE"]
 
 
-def test_folders_of_pythonpath_come_after_the_scripts_own(tmp_path: Path) -> None:
+def test_folders_of_pythonpath_follow_the_folder_of_the_script(tmp_path: Path) -> None:
     (tmp_path / "one").mkdir()
     (tmp_path / "one" / "helper.py").write_text("import time\nwhere, now = 'one', time.time()", encoding="utf-8")
     script = "import helper, sys, time\nprint(helper.where, helper.now > 0, sys.path[1])"
@@ -28,7 +28,7 @@ def test_folders_of_pythonpath_come_after_the_scripts_own(tmp_path: Path) -> Non
     assert printed(tmp_path, script, PYTHONPATH=path) == [f"one True {path}"]
 
 
-def test_a_package_keeps_its_code_where_its_setup_says(tmp_path: Path) -> None:
+def test_package_code_is_found_in_the_folder_of_its_setup(tmp_path: Path) -> None:
     package = tmp_path / "ws" / "arm"
     (package / "python" / "arm").mkdir(parents=True)
     (package / "python" / "arm" / "__init__.py").write_text("JOINTS = 6", encoding="utf-8")
@@ -38,7 +38,7 @@ def test_a_package_keeps_its_code_where_its_setup_says(tmp_path: Path) -> None:
     assert printed(tmp_path, script, ROS_PACKAGE_PATH=str(tmp_path / "ws")) == ["6"]
 
 
-def test_stand_ins_are_found_when_nothing_else_is(tmp_path: Path) -> None:
+def test_stand_ins_are_used_when_no_package_is_found(tmp_path: Path) -> None:
     script = """
         from Cryptodome.Cipher import AES
         from Cryptodome.Random import get_random_bytes
@@ -57,7 +57,7 @@ def test_stand_ins_are_found_when_nothing_else_is(tmp_path: Path) -> None:
     ]
 
 
-def test_a_nodes_own_module_comes_before_a_stand_in(tmp_path: Path) -> None:
+def test_module_of_the_node_is_preferred_to_a_stand_in(tmp_path: Path) -> None:
     (tmp_path / "own").mkdir()
     (tmp_path / "own" / "gnupg.py").write_text("GPG = 'mine'", encoding="utf-8")
     assert printed(tmp_path, "import gnupg\nprint(gnupg.GPG)", PYTHONPATH=str(tmp_path / "own")) == ["mine"]
@@ -77,7 +77,7 @@ def test_catkin_finds_files_of_packages(tmp_path: Path) -> None:
     assert printed(tmp_path, script, ROS_PACKAGE_PATH=str(tmp_path / "ws")) == ["True arm/package.xml", "[] [] []"]
 
 
-def test_what_the_compiler_warns_of_is_in_the_output_of_the_node(tmp_path: Path) -> None:
+def test_compiler_warnings_are_in_the_output_of_the_node(tmp_path: Path) -> None:
     source = 'kind = "a"\nif kind is not "b":\n    print("runs")\n'
     for folder in ("once", "again"):
         (tmp_path / folder).mkdir()

@@ -105,7 +105,7 @@ def fly(folder: Path, tasks: str, *names: str) -> Run:
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_node_that_changes_everything_is_not_noticed(tmp_path: Path, tasks: str) -> None:
+def test_changes_of_a_node_are_invisible_to_others(tmp_path: Path, tasks: str) -> None:
     alone = fly(tmp_path / "alone", tasks, "WITNESS").printed
     together = fly(tmp_path / "together", tasks, "VANDAL", "WITNESS").printed
     assert "Traceback" not in str(together)
@@ -114,14 +114,14 @@ def test_a_node_that_changes_everything_is_not_noticed(tmp_path: Path, tasks: st
     assert len(alone["witness"]) == 14
 
 
-def test_two_copies_and_what_a_mission_leaves_behind(tmp_path: Path) -> None:
+def test_finished_mission_does_not_affect_the_next_one(tmp_path: Path) -> None:
     first = fly(tmp_path / "first", "thread", "WITNESS").printed["witness"]
     fly(tmp_path / "between", "thread", "VANDAL")  # its threads go back to a pool, and serve the next mission
     assert fly(tmp_path / "second", "thread", "WITNESS").printed["witness"] == first
 
 
 @pytest.mark.slow
-def test_fifty_nodes_of_one_script(tmp_path: Path) -> None:
+def test_fifty_nodes_of_one_script_share_no_state(tmp_path: Path) -> None:
     startup = "".join(f"CFE_APP, node.py, __main__, NODE{n}, 100, 16384, 0x0, 0;\n" for n in range(50))
     folder = write_mission(tmp_path, startup + "!\n", node=ONE_OF_MANY, mission_yaml="limits: {nodes: 50}\n")
     with Mission(folder, console=Console(quiet=True)) as mission:
@@ -132,7 +132,7 @@ def test_fifty_nodes_of_one_script(tmp_path: Path) -> None:
     assert [len({line[at] for line in lines}) for at in (5, 6, 7)] == [50, 50, 50]
 
 
-def test_the_environment_is_the_same_on_every_host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_environment_does_not_depend_on_the_host(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("USER", "somebody")
     monkeypatch.setenv("ROS_MASTER_URI", "http://elsewhere:11311")
     source = """

@@ -41,14 +41,14 @@ def world(kernel: Kernel) -> World:
     return World(kernel)
 
 
-def test_it_takes_its_time(world: World) -> None:
+def test_computation_takes_its_time(world: World) -> None:
     world.worker("a", 10 * MS, 50)
     world.kernel.run(20 * MS)
     assert world.noted == [("a begins", 0), ("a ends", 10 * MS)]
     assert world.kernel.now == 20 * MS
 
 
-def test_a_more_urgent_task_gets_in_when_its_time_has_come(world: World) -> None:
+def test_urgent_task_interrupts_a_computation(world: World) -> None:
     world.worker("slow", 10 * MS, 50)
     world.worker("urgent", 2 * MS, 10, delay_ns=3 * MS)
     world.kernel.run(20 * MS)
@@ -60,7 +60,7 @@ def test_a_more_urgent_task_gets_in_when_its_time_has_come(world: World) -> None
     ]
 
 
-def test_a_less_urgent_task_waits_for_it(world: World) -> None:
+def test_less_urgent_task_waits_for_the_computation(world: World) -> None:
     world.worker("later", 1 * MS, 90, delay_ns=3 * MS)
     world.worker("slow", 10 * MS, 50, delay_ns=1)
     world.kernel.run(20 * MS)
@@ -71,7 +71,7 @@ def test_a_less_urgent_task_waits_for_it(world: World) -> None:
     ]
 
 
-def test_equals_take_turns(world: World) -> None:
+def test_tasks_of_equal_priority_take_turns(world: World) -> None:
     for name in ("a", "b"):
         world.worker(name, 5 * MS, 50)
     world.kernel.run(20 * MS)
@@ -80,7 +80,7 @@ def test_equals_take_turns(world: World) -> None:
     assert times["b ends"] == 10 * MS
 
 
-def test_a_run_in_pieces_is_one_run(world: World) -> None:
+def test_computation_is_the_same_in_a_run_in_pieces(world: World) -> None:
     world.worker("a", 10 * MS, 50)
     for end in range(1, 21):
         world.kernel.run(end * MS)
@@ -88,7 +88,7 @@ def test_a_run_in_pieces_is_one_run(world: World) -> None:
     assert world.kernel.tasks == []
 
 
-def test_who_is_killed_while_it_computes_ends_there(world: World) -> None:
+def test_task_killed_while_it_computes_ends_at_once(world: World) -> None:
     world.worker("a", 10 * MS, 50)
 
     def killer() -> None:
@@ -101,14 +101,14 @@ def test_who_is_killed_while_it_computes_ends_there(world: World) -> None:
     assert world.kernel.tasks == []
 
 
-def test_no_time_is_no_time(world: World) -> None:
+def test_computation_of_0_ns_takes_no_time(world: World) -> None:
     world.worker("a", 0, 50)
     world.kernel.run(1)
     assert world.noted == [("a begins", 0), ("a ends", 0)]
 
 
 @pytest.mark.parametrize("time_ns", [-1, 1.5])
-def test_a_time_that_cannot_be(world: World, time_ns: float) -> None:
+def test_invalid_time_is_refused(world: World, time_ns: float) -> None:
     errors: list[Exception] = []
 
     def live() -> None:
@@ -123,7 +123,7 @@ def test_a_time_that_cannot_be(world: World, time_ns: float) -> None:
 
 
 @pytest.mark.parametrize("schedule", ["random:1", "pct:3:2", "random:5:hold=1ms"])
-def test_it_takes_its_time_under_any_schedule(schedule: str) -> None:
+def test_computation_takes_its_time_under_any_schedule(schedule: str) -> None:
     with make_kernel(policy=Schedule.parse(schedule).policy()) as kernel:
         world = World(kernel)
         world.worker("a", 10 * MS, 50)

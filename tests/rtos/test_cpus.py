@@ -26,7 +26,7 @@ def four_cpus_of_our_own(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cpus, "_shared", None)  # a task that an earlier test left behind keeps the seat of its kernel
 
 
-def test_processes_spread() -> None:
+def test_processes_use_different_cpus() -> None:
     first, second, third, fourth = MANY
     seats = [Seat() for _ in range(8)]
     chosen = [seat.choose(first) for seat in seats]
@@ -35,12 +35,12 @@ def test_processes_spread() -> None:
     assert Seat().choose(first) == third
 
 
-def test_the_one_that_the_host_is_on_is_taken() -> None:
+def test_current_cpu_of_the_host_is_chosen() -> None:
     seat = Seat()
     assert seat.choose(MANY[2]) == MANY[2] == seat.choose(MANY[2]) == seat.cpu
 
 
-def test_it_follows_the_host_to_one_that_is_free() -> None:
+def test_seat_follows_the_host_to_a_free_cpu() -> None:
     first, second, third = MANY[:3]
     one, other = Seat(), Seat()
     assert (one.choose(first), other.choose(second)) == (first, second)
@@ -49,7 +49,7 @@ def test_it_follows_the_host_to_one_that_is_free() -> None:
     assert other.choose(first) == first, "it was given back"
 
 
-def test_who_shares_one_moves_when_another_gets_free() -> None:
+def test_seat_on_a_shared_cpu_moves_to_a_free_one() -> None:
     seats = [Seat() for _ in range(5)]
     for seat in seats:
         seat.choose(MANY[0])
@@ -58,25 +58,25 @@ def test_who_shares_one_moves_when_another_gets_free() -> None:
     assert seats[4].choose(MANY[0]) == MANY[3]
 
 
-def test_it_is_given_back_with_the_last_reference() -> None:
+def test_cpu_is_released_with_the_last_reference() -> None:
     seat = Seat()
     seat.choose(MANY[0])
     del seat
     assert Seat().choose(MANY[0]) == MANY[0]
 
 
-def test_where_nothing_can_be_told_there_is_none() -> None:
+def test_unknown_cpu_gives_no_seat() -> None:
     assert Seat().choose(-1) == -1
 
 
 @pytest.mark.parametrize("wanted", ["", "on", "-1", "99", "1.0"])
-def test_words_that_mean_nothing(wanted: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_invalid_setting_is_refused(wanted: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(cpus.VARIABLE, wanted)
     with pytest.raises(UsageError, match=r"invalid CFEPY_PIN=.*expected auto, off or a CPU"):
         Seat().choose(MANY[0])
 
 
-def test_the_user_says(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_user_chooses_the_cpu_by_a_variable(monkeypatch: pytest.MonkeyPatch) -> None:
     other = Seat()
     other.choose(MANY[1])
     monkeypatch.setenv(cpus.VARIABLE, str(MANY[1]))
@@ -85,7 +85,7 @@ def test_the_user_says(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Seat().choose(MANY[0]) == -1
 
 
-def test_a_forked_process_takes_its_own() -> None:
+def test_forked_process_chooses_its_own_cpu() -> None:
     seat = process_seat()
     seat.choose(MANY[0])
     child = os.fork()
@@ -95,7 +95,7 @@ def test_a_forked_process_takes_its_own() -> None:
     assert seat.choose(MANY[0]) == MANY[0]
 
 
-def test_a_forked_process_does_not_keep_its_parents() -> None:
+def test_forked_process_does_not_keep_the_cpu_of_its_parent() -> None:
     seat = Seat()
     shared = process_seat()
     shared.choose(MANY[0])
@@ -115,7 +115,7 @@ def test_a_forked_process_does_not_keep_its_parents() -> None:
     assert chosen == MANY[0]
 
 
-def test_a_kernel_sits_while_it_has_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_kernel_holds_a_cpu_while_it_has_tasks(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cpus, "allowed_cpus", lambda: sorted(os.sched_getaffinity(0)))
     here: list[int] = []
     kernel = Kernel()
@@ -129,7 +129,7 @@ def test_a_kernel_sits_while_it_has_tasks(monkeypatch: pytest.MonkeyPatch) -> No
     assert process_seat().cpu == -1
 
 
-def test_processes_are_on_cpus_of_their_own() -> None:
+def test_processes_run_on_different_cpus() -> None:
     """Two processes at the same time each report the CPU of their tasks."""
     if len(os.sched_getaffinity(0)) < 2:
         pytest.skip("this computer has one CPU")

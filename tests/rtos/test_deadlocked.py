@@ -32,7 +32,7 @@ def world(kernel: Kernel) -> World:
     return World(kernel)
 
 
-def test_a_circle_is_told_once_and_who_waits_outside_it_is_not(world: World) -> None:
+def test_circle_is_reported_once_without_waiters_outside_it(world: World) -> None:
     for name, holder in (("outside", "b"), ("a", "b"), ("b", "c"), ("c", "a"), ("d", "e"), ("e", "")):
         world.add(name, holder)
     assert world.found() == [
@@ -44,30 +44,30 @@ def test_a_circle_is_told_once_and_who_waits_outside_it_is_not(world: World) -> 
     ]
 
 
-def test_a_wait_that_ends_by_itself_is_no_deadlock(world: World) -> None:
+def test_wait_with_a_time_limit_is_not_a_deadlock(world: World) -> None:
     world.add("a", "b")
     world.add("b", "a", 1_000_000)
     assert world.found() == []
 
 
-def test_a_task_may_wait_for_itself(world: World) -> None:
+def test_task_that_waits_for_itself_is_a_deadlock(world: World) -> None:
     world.add("a", "a")
     assert world.found() == [["a waits for lock of a, held by a"]]
 
 
-def test_a_task_that_waits_for_one_that_has_ended(world: World) -> None:
+def test_task_that_waits_for_an_ended_holder_is_a_deadlock(world: World) -> None:
     world.tasks["dead"] = world.kernel.spawn("dead", lambda: None)
     world.add("a", "dead")
     assert world.found() == [["a waits for lock of dead, held by dead, which has ended"]]
 
 
-def test_two_circles(world: World) -> None:
+def test_two_circles_are_both_reported(world: World) -> None:
     for name, holder in (("a", "b"), ("b", "a"), ("c", "d"), ("d", "c")):
         world.add(name, holder)
     assert [len(circle) for circle in world.found()] == [2, 2]
 
 
-def test_all_of_several_holders_have_to_let_go(world: World) -> None:
+def test_wait_for_several_holders_is_a_deadlock_when_one_of_them_is_blocked(world: World) -> None:
     world.add("a", "b c")
     world.add("b", "", 1_000_000)
     world.add("c", "a")

@@ -15,7 +15,7 @@ from cfepy.rtos.context import drain
 from tests.rtos.helpers import Log
 
 
-def test_a_killed_task_unwinds_before_kill_returns(kernel: Kernel, log: Log) -> None:
+def test_killed_task_unwinds_before_kill_returns(kernel: Kernel, log: Log) -> None:
     def victim() -> None:
         try:
             with pytest.raises(TaskExit) as caught:
@@ -33,7 +33,7 @@ def test_a_killed_task_unwinds_before_kill_returns(kernel: Kernel, log: Log) -> 
     assert kernel.now == 5
 
 
-def test_an_interrupted_task_goes_on(kernel: Kernel, log: Log) -> None:
+def test_interrupted_task_continues(kernel: Kernel, log: Log) -> None:
     def sleeper() -> None:
         try:
             kernel.delay(1000)
@@ -48,7 +48,7 @@ def test_an_interrupted_task_goes_on(kernel: Kernel, log: Log) -> None:
     assert log == ["interrupted", "1 at 5", "done at 15"]
 
 
-def test_an_interrupted_wait_leaves_its_list(kernel: Kernel, log: Log) -> None:
+def test_interrupted_wait_leaves_its_list(kernel: Kernel, log: Log) -> None:
     waits = WaitList("something")
 
     def waiter() -> None:
@@ -62,7 +62,7 @@ def test_an_interrupted_wait_leaves_its_list(kernel: Kernel, log: Log) -> None:
     assert log == ["0 waiting"]
 
 
-def test_a_preempted_task_can_be_interrupted(kernel: Kernel, log: Log) -> None:
+def test_preempted_task_can_be_interrupted(kernel: Kernel, log: Log) -> None:
     def urgent() -> None:
         kernel.delay(3)
         assert not kernel.is_waiting(task)
@@ -83,7 +83,7 @@ def test_a_preempted_task_can_be_interrupted(kernel: Kernel, log: Log) -> None:
     assert log == ["at 3"]
 
 
-def test_death_comes_before_an_interruption(kernel: Kernel, log: Log) -> None:
+def test_kill_has_precedence_over_an_interruption(kernel: Kernel, log: Log) -> None:
     def victim() -> None:
         try:
             kernel.delay(10)
@@ -97,7 +97,7 @@ def test_death_comes_before_an_interruption(kernel: Kernel, log: Log) -> None:
     assert task.done
 
 
-def test_a_task_killed_before_it_began_never_runs(kernel: Kernel, log: Log) -> None:
+def test_task_killed_before_it_began_never_runs(kernel: Kernel, log: Log) -> None:
     task = kernel.spawn("victim", log.writer("ran"))
     kernel.kill(task)
     kernel.run()
@@ -105,27 +105,27 @@ def test_a_task_killed_before_it_began_never_runs(kernel: Kernel, log: Log) -> N
     assert task.done
 
 
-def test_killing_oneself_does_not_return(kernel: Kernel, log: Log) -> None:
+def test_task_that_kills_itself_does_not_continue(kernel: Kernel, log: Log) -> None:
     kernel.spawn("suicide", lambda: (kernel.kill(kernel.current), log("alive")))
     kernel.run()
     assert log == []
 
 
-def test_killing_a_dead_task_does_nothing(kernel: Kernel) -> None:
+def test_kill_of_an_ended_task_does_nothing(kernel: Kernel) -> None:
     task = kernel.spawn("short", lambda: None)
     kernel.run()
     kernel.kill(task)
     assert task.done
 
 
-def test_a_killed_ready_task_is_taken_out_of_the_ready_queue(kernel: Kernel, log: Log) -> None:
+def test_killed_ready_task_leaves_the_ready_queue(kernel: Kernel, log: Log) -> None:
     task = kernel.spawn("victim", lambda: (kernel.yield_cpu(), log("victim")), 50)
     kernel.spawn("killer", lambda: kernel.kill(task), 50)
     kernel.run()
     assert log == []
 
 
-def test_a_killed_waiter_leaves_the_wait_list(kernel: Kernel) -> None:
+def test_killed_waiter_leaves_the_wait_list(kernel: Kernel) -> None:
     queue = Queue(kernel, 1)
     task = kernel.spawn("victim", queue.get)
     kernel.run(until_ns=1)
@@ -134,7 +134,7 @@ def test_a_killed_waiter_leaves_the_wait_list(kernel: Kernel) -> None:
     assert list(queue.items) == ["kept"]
 
 
-def test_waiting_in_a_finally_of_a_killed_task_is_refused(kernel: Kernel, log: Log) -> None:
+def test_wait_in_a_finally_of_a_killed_task_is_refused(kernel: Kernel, log: Log) -> None:
     def victim() -> None:
         try:
             kernel.delay(1000)
@@ -150,7 +150,7 @@ def test_waiting_in_a_finally_of_a_killed_task_is_refused(kernel: Kernel, log: L
     assert task.done
 
 
-def test_a_dying_task_may_still_wake_others(kernel: Kernel, log: Log) -> None:
+def test_dying_task_may_wake_others(kernel: Kernel, log: Log) -> None:
     queue = Queue(kernel, 1)
 
     def victim() -> None:
@@ -167,7 +167,7 @@ def test_a_dying_task_may_still_wake_others(kernel: Kernel, log: Log) -> None:
     assert log == ["last words"]
 
 
-def test_a_task_that_swallows_every_exit_is_left_behind(kernel: Kernel) -> None:
+def test_task_that_catches_every_exit_is_abandoned(kernel: Kernel) -> None:
     def stubborn() -> None:
         while True:
             try:
@@ -184,7 +184,7 @@ def test_a_task_that_swallows_every_exit_is_left_behind(kernel: Kernel) -> None:
     assert kernel.now == 100
 
 
-def test_an_error_in_a_task_comes_out_of_run(kernel: Kernel) -> None:
+def test_error_in_a_task_is_raised_by_run(kernel: Kernel) -> None:
     def faulty() -> None:
         kernel.delay(3)
         raise ValueError("broken")
@@ -198,7 +198,7 @@ def test_an_error_in_a_task_comes_out_of_run(kernel: Kernel) -> None:
     assert kernel.now == 100
 
 
-def test_an_error_hook_lets_the_run_go_on(kernel: Kernel) -> None:
+def test_error_hook_lets_the_run_continue(kernel: Kernel) -> None:
     seen: list[tuple[str, str]] = []
 
     def hook(task: Task, error: BaseException) -> bool:
@@ -215,7 +215,7 @@ def test_an_error_hook_lets_the_run_go_on(kernel: Kernel) -> None:
     assert isinstance(task.error, ValueError)
 
 
-def test_an_error_in_the_error_hook_comes_out_of_run(kernel: Kernel) -> None:
+def test_error_in_the_error_hook_is_raised_by_run(kernel: Kernel) -> None:
     def hook(task: Task, error: BaseException) -> bool:
         raise LookupError("in the hook")
 
@@ -228,7 +228,7 @@ def test_an_error_in_the_error_hook_comes_out_of_run(kernel: Kernel) -> None:
         kernel.run()
 
 
-def test_errors_of_two_tasks_at_once_both_come_out(kernel: Kernel) -> None:
+def test_errors_of_two_tasks_at_once_are_both_raised(kernel: Kernel) -> None:
     def faulty(text: str) -> None:
         raise ValueError(text)
 
@@ -255,7 +255,7 @@ def test_shutdown_unwinds_all_tasks_youngest_first(make_kernel: type[Kernel], lo
     assert not kernel.tasks
 
 
-def test_a_finished_task_keeps_nothing_alive(kernel: Kernel) -> None:
+def test_finished_task_keeps_nothing_alive(kernel: Kernel) -> None:
     class Payload:
         pass
 
@@ -268,7 +268,7 @@ def test_a_finished_task_keeps_nothing_alive(kernel: Kernel) -> None:
     assert gone() is None
 
 
-def test_garbage_is_collected_at_fixed_virtual_times_only(kernel: Kernel) -> None:
+def test_garbage_is_collected_only_at_fixed_virtual_times(kernel: Kernel) -> None:
     collected_at: list[int] = []
 
     class Cycle:
@@ -336,7 +336,7 @@ def test_idle_threads_of_the_pool_can_be_ended() -> None:
     assert threading.active_count() <= before
 
 
-def test_a_thousand_tasks(kernel: Kernel) -> None:
+def test_thousand_tasks_run(kernel: Kernel) -> None:
     done: list[int] = []
     for number in range(1000):
         kernel.spawn(f"t{number}", lambda number=number: (kernel.delay(1 + number % 7), done.append(number)))

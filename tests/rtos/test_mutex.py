@@ -24,7 +24,7 @@ def test_a_mutex_is_recursive(kernel: Kernel, log: Log) -> None:
     assert log == ["owned True", "owned False"]
 
 
-def test_only_the_owner_can_give(kernel: Kernel) -> None:
+def test_mutex_can_be_given_only_by_its_owner(kernel: Kernel) -> None:
     mutex = Mutex(kernel)
     given: list[bool] = []
 
@@ -39,7 +39,7 @@ def test_only_the_owner_can_give(kernel: Kernel) -> None:
     assert given == [False, True]
 
 
-def test_the_most_urgent_waiter_gets_it_next(kernel: Kernel, log: Log) -> None:
+def test_most_urgent_waiter_gets_the_mutex_next(kernel: Kernel, log: Log) -> None:
     mutex = Mutex(kernel)
 
     def owner() -> None:
@@ -60,7 +60,7 @@ def test_the_most_urgent_waiter_gets_it_next(kernel: Kernel, log: Log) -> None:
     assert log == ["a", "b", "c"]
 
 
-def test_no_priority_inversion(kernel: Kernel, log: Log) -> None:
+def test_mutex_prevents_priority_inversion(kernel: Kernel, log: Log) -> None:
     """The less urgent owner must not be held up by a middle task while an urgent one waits for it."""
     mutex = Mutex(kernel)
 
@@ -119,7 +119,7 @@ def test_inheritance_is_transitive(kernel: Kernel) -> None:
     assert seen == [[10, 10, 10], [200, 150, 100]]
 
 
-def test_with_two_mutexes_only_the_urgent_part_of_the_priority_goes(kernel: Kernel) -> None:
+def test_release_of_one_of_two_mutexes_lowers_only_its_share_of_the_priority(kernel: Kernel) -> None:
     first, second = Mutex(kernel), Mutex(kernel)
     seen: list[int] = []
 
@@ -145,7 +145,7 @@ def test_with_two_mutexes_only_the_urgent_part_of_the_priority_goes(kernel: Kern
     assert seen == [10, 50, 100]
 
 
-def test_a_waiter_that_is_killed_takes_its_urgency_along(kernel: Kernel) -> None:
+def test_killed_waiter_no_longer_raises_the_owner(kernel: Kernel) -> None:
     mutex = Mutex(kernel)
 
     def owner() -> None:
@@ -163,7 +163,7 @@ def test_a_waiter_that_is_killed_takes_its_urgency_along(kernel: Kernel) -> None
     assert mutex.owner is None
 
 
-def test_urgency_that_goes_leaves_the_whole_chain(kernel: Kernel) -> None:
+def test_lost_urgency_is_removed_from_the_whole_chain(kernel: Kernel) -> None:
     first, second = Mutex(kernel), Mutex(kernel)
 
     def holder(own: Mutex, wanted: Mutex | None) -> None:
@@ -182,7 +182,7 @@ def test_urgency_that_goes_leaves_the_whole_chain(kernel: Kernel) -> None:
     assert (low.priority, middle.priority) == (150, 150)
 
 
-def test_set_priority_does_not_undo_inheritance(kernel: Kernel) -> None:
+def test_set_priority_keeps_the_inherited_priority(kernel: Kernel) -> None:
     mutex = Mutex(kernel)
 
     def owner() -> None:
@@ -199,7 +199,7 @@ def test_set_priority_does_not_undo_inheritance(kernel: Kernel) -> None:
     assert low.priority == 150
 
 
-def test_raising_a_waiters_priority_is_inherited(kernel: Kernel) -> None:
+def test_raised_priority_of_a_waiter_is_inherited(kernel: Kernel) -> None:
     mutex = Mutex(kernel)
 
     def owner() -> None:
@@ -217,7 +217,7 @@ def test_raising_a_waiters_priority_is_inherited(kernel: Kernel) -> None:
     assert low.priority == 180
 
 
-def test_an_owner_that_ends_hands_the_mutex_on(kernel: Kernel, log: Log) -> None:
+def test_owner_that_ends_passes_the_mutex_on(kernel: Kernel, log: Log) -> None:
     mutex = Mutex(kernel)
     kernel.spawn("forgetful", lambda: (mutex.take(), kernel.delay(5)), 10)
     kernel.spawn("next", lambda: (mutex.take(), log(f"next@{kernel.now}")), 20)
@@ -225,7 +225,7 @@ def test_an_owner_that_ends_hands_the_mutex_on(kernel: Kernel, log: Log) -> None
     assert log == ["next@5"]
 
 
-def test_a_killed_owner_hands_the_mutex_on(kernel: Kernel, log: Log) -> None:
+def test_killed_owner_passes_the_mutex_on(kernel: Kernel, log: Log) -> None:
     mutex = Mutex(kernel)
     owner = kernel.spawn("owner", lambda: (mutex.take(), kernel.delay(1000)), 10)
     kernel.spawn("next", lambda: (mutex.take(), log(f"next@{kernel.now}")), 20)
@@ -235,7 +235,7 @@ def test_a_killed_owner_hands_the_mutex_on(kernel: Kernel, log: Log) -> None:
     assert log == ["next@7"]
 
 
-def test_an_urgent_task_that_waited_for_a_killed_owner_preempts_the_killer(kernel: Kernel, log: Log) -> None:
+def test_urgent_waiter_of_a_killed_owner_preempts_the_killer(kernel: Kernel, log: Log) -> None:
     mutex = Mutex(kernel)
     owner = kernel.spawn("owner", lambda: (mutex.take(), kernel.delay(1000)), 10)
     kernel.spawn("next", lambda: (mutex.take(), log("next")), 20)
@@ -258,7 +258,7 @@ def test_two_mutexes_taken_in_opposite_order_are_a_deadlock(kernel: Kernel) -> N
         kernel.run()
 
 
-def test_a_binary_semaphore_forgets_a_second_give(kernel: Kernel) -> None:
+def test_binary_semaphore_ignores_a_second_give(kernel: Kernel) -> None:
     semaphore = Semaphore(kernel, 0, 1)
     taken: list[bool] = []
     semaphore.give()
@@ -269,7 +269,7 @@ def test_a_binary_semaphore_forgets_a_second_give(kernel: Kernel) -> None:
     assert kernel.now == 5
 
 
-def test_flush_releases_all_and_keeps_the_count(kernel: Kernel, log: Log) -> None:
+def test_flush_releases_all_waiters_and_keeps_the_count(kernel: Kernel, log: Log) -> None:
     semaphore = Semaphore(kernel, 0, 1)
     for name in "abc":
         kernel.spawn(name, lambda name=name: log(f"{name} {semaphore.take()}"))

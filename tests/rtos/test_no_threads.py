@@ -11,7 +11,7 @@ from cfepy.rtos.context import drain
 from cfepy.status import UsageError
 
 
-def test_what_the_user_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_error_explains_how_to_allow_more_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(function: object, arguments: object) -> int:
         raise RuntimeError("can't start new thread")
 

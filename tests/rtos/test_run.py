@@ -25,7 +25,7 @@ def test_run_until_includes_that_instant_and_ends_at_it(kernel: Kernel, log: Log
     assert log == ["10", "20", "30"]
 
 
-def test_a_task_that_only_charges_stops_at_the_end_of_the_run(kernel: Kernel) -> None:
+def test_task_that_only_charges_stops_at_the_end_of_the_run(kernel: Kernel) -> None:
     def spinner() -> None:
         while True:
             kernel.charge(7)
@@ -56,7 +56,7 @@ def _periodic_program(kernel: Kernel) -> None:
 
 
 @pytest.mark.parametrize("board", [{}, {"switch_cost_ns": 2}, {"tick_ns": 10, "switch_cost_ns": 1}])
-def test_slices_of_a_run_are_the_same_as_one_run(make_kernel: type[Kernel], board: dict[str, int]) -> None:
+def test_run_in_pieces_has_the_digest_of_one_run(make_kernel: type[Kernel], board: dict[str, int]) -> None:
     digests = set()
     for pieces in ([1000], [1, 2, 3, 999, 1000], list(range(0, 1001, 50))):
         trace = Trace()
@@ -68,7 +68,7 @@ def test_slices_of_a_run_are_the_same_as_one_run(make_kernel: type[Kernel], boar
     assert len(digests) == 1
 
 
-def test_a_pause_leaves_no_record(make_kernel: type[Kernel]) -> None:
+def test_pause_leaves_no_record(make_kernel: type[Kernel]) -> None:
     records: list[bytes] = []
     trace = Trace(sink=records.extend)
     with make_kernel(trace=trace) as kernel:
@@ -98,14 +98,14 @@ def test_stop_ends_the_run_at_the_next_wait(kernel: Kernel, log: Log) -> None:
     assert log == ["after stop", "continued"]
 
 
-def test_deadlock_is_reported_with_what_everybody_waits_for(kernel: Kernel) -> None:
+def test_deadlock_is_reported_with_the_objects_waited_for(kernel: Kernel) -> None:
     queue = Queue(kernel, 1, "HK_PIPE")
     kernel.spawn("HK_APP", queue.get, 80)
     with pytest.raises(DeadlockError, match=r"HK_APP \(task 1, priority 80\) waits for queue HK_PIPE"):
         kernel.run()
 
 
-def test_a_run_with_an_end_is_no_deadlock(kernel: Kernel) -> None:
+def test_run_with_an_end_is_not_a_deadlock(kernel: Kernel) -> None:
     kernel.spawn("waiter", lambda: kernel.wait_on(WaitList("nothing"), FOREVER))
     kernel.run(until_ns=500)
     assert kernel.now == 500
@@ -117,14 +117,14 @@ def test_run_cannot_be_called_from_a_task(kernel: Kernel) -> None:
         kernel.run()
 
 
-def test_the_host_must_not_wait(kernel: Kernel) -> None:
+def test_host_cannot_wait(kernel: Kernel) -> None:
     with pytest.raises(RuntimeError, match="requires a task"):
         kernel.delay(1)
     with pytest.raises(RuntimeError, match="requires a task"):
         Queue(kernel, 1).get()
 
 
-def test_next_event_tells_when_something_will_happen(kernel: Kernel) -> None:
+def test_next_event_returns_the_time_of_the_next_action(kernel: Kernel) -> None:
     assert kernel.next_event() is None
     kernel.spawn("sleeper", lambda: kernel.delay(40))
     assert kernel.next_event() == 0

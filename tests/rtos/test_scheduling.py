@@ -13,14 +13,14 @@ def test_more_urgent_tasks_run_first(kernel: Kernel, log: Log) -> None:
     assert log == ["high", "middle", "low"]
 
 
-def test_equals_run_in_the_order_they_became_ready(kernel: Kernel, log: Log) -> None:
+def test_tasks_of_equal_priority_run_in_the_order_they_became_ready(kernel: Kernel, log: Log) -> None:
     for name in "abcd":
         kernel.spawn(name, log.writer(name), 50)
     kernel.run()
     assert log == ["a", "b", "c", "d"]
 
 
-def test_a_more_urgent_new_task_runs_before_spawn_returns(kernel: Kernel, log: Log) -> None:
+def test_more_urgent_new_task_runs_before_spawn_returns(kernel: Kernel, log: Log) -> None:
     def parent() -> None:
         kernel.spawn("urgent", log.writer("urgent"), 10)
         log("parent")
@@ -32,7 +32,7 @@ def test_a_more_urgent_new_task_runs_before_spawn_returns(kernel: Kernel, log: L
     assert log == ["urgent", "parent", "parent again", "lazy"]
 
 
-def test_a_wake_up_preempts_a_less_urgent_waker(kernel: Kernel, log: Log) -> None:
+def test_wake_up_preempts_a_less_urgent_waker(kernel: Kernel, log: Log) -> None:
     queue = Queue(kernel, 4)
 
     def reader() -> None:
@@ -51,7 +51,7 @@ def test_a_wake_up_preempts_a_less_urgent_waker(kernel: Kernel, log: Log) -> Non
     assert log == ["got 0", "put 0", "got 1", "put 1", "got 2", "put 2"]
 
 
-def test_a_wake_up_does_not_preempt_an_equal(kernel: Kernel, log: Log) -> None:
+def test_wake_up_does_not_preempt_a_task_of_equal_priority(kernel: Kernel, log: Log) -> None:
     queue = Queue(kernel, 4)
     kernel.spawn("reader", lambda: log(f"got {queue.get()}"), 20)
 
@@ -64,7 +64,7 @@ def test_a_wake_up_does_not_preempt_an_equal(kernel: Kernel, log: Log) -> None:
     assert log == ["put", "got x"]
 
 
-def test_a_preempted_task_stays_the_first_of_its_priority(kernel: Kernel, log: Log) -> None:
+def test_preempted_task_stays_first_of_its_priority(kernel: Kernel, log: Log) -> None:
     semaphore = Semaphore(kernel)
 
     def urgent() -> None:
@@ -82,7 +82,7 @@ def test_a_preempted_task_stays_the_first_of_its_priority(kernel: Kernel, log: L
     assert log == ["urgent", "first", "second"]
 
 
-def test_wake_all_makes_everybody_ready_before_anyone_runs(kernel: Kernel, log: Log) -> None:
+def test_wake_all_makes_all_tasks_ready_before_any_runs(kernel: Kernel, log: Log) -> None:
     waits = WaitList("signal")
 
     def waiter(name: str, priority: int) -> None:
@@ -112,7 +112,7 @@ def test_waiters_are_woken_by_priority_and_then_by_arrival(kernel: Kernel, log: 
     assert log == ["a0", "b1", "c2", "d3"]
 
 
-def test_yield_lets_equals_run_but_not_lesser_ones(kernel: Kernel, log: Log) -> None:
+def test_yield_lets_tasks_of_equal_priority_run_but_no_lower_ones(kernel: Kernel, log: Log) -> None:
     def polite() -> None:
         log("one")
         kernel.yield_cpu()
@@ -125,7 +125,7 @@ def test_yield_lets_equals_run_but_not_lesser_ones(kernel: Kernel, log: Log) -> 
     assert log == ["one", "equal", "two", "lesser"]
 
 
-def test_raising_another_tasks_priority_preempts(kernel: Kernel, log: Log) -> None:
+def test_raised_priority_of_another_task_preempts(kernel: Kernel, log: Log) -> None:
     def booster() -> None:
         kernel.set_priority(slow, 1)
         log("booster")
@@ -136,7 +136,7 @@ def test_raising_another_tasks_priority_preempts(kernel: Kernel, log: Log) -> No
     assert log == ["slow", "booster"]
 
 
-def test_lowering_ones_own_priority_gives_way(kernel: Kernel, log: Log) -> None:
+def test_task_that_lowers_its_priority_yields(kernel: Kernel, log: Log) -> None:
     def modest() -> None:
         kernel.set_priority(kernel.current, 100)
         log("modest")
@@ -147,7 +147,7 @@ def test_lowering_ones_own_priority_gives_way(kernel: Kernel, log: Log) -> None:
     assert log == ["other", "modest"]
 
 
-def test_changing_the_priority_of_a_waiter_moves_it_in_the_queue(kernel: Kernel, log: Log) -> None:
+def test_changed_priority_of_a_waiter_moves_it_in_the_queue(kernel: Kernel, log: Log) -> None:
     queue = Queue(kernel, 2)
     tasks = {name: kernel.spawn(name, lambda name=name: log(f"{name}{queue.get()}"), 50) for name in "ab"}
     kernel.run(until_ns=0)
@@ -158,7 +158,7 @@ def test_changing_the_priority_of_a_waiter_moves_it_in_the_queue(kernel: Kernel,
     assert log == ["b0", "a1"]
 
 
-def test_children_work_for_their_parents_owner(kernel: Kernel) -> None:
+def test_child_tasks_have_the_owner_of_their_parent(kernel: Kernel) -> None:
     owners: list[object] = []
     kernel.spawn("app", lambda: kernel.spawn("child", lambda: owners.append(kernel.current.owner)), owner="APP")
     kernel.run()

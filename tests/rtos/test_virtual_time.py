@@ -55,7 +55,7 @@ def test_tasks_due_at_the_same_time_run_by_priority_then_by_arming_order(kernel:
     assert log == ["a", "b", "c"]
 
 
-def test_a_wait_times_out_and_leaves_the_list(kernel: Kernel) -> None:
+def test_wait_that_times_out_leaves_the_list(kernel: Kernel) -> None:
     waits = WaitList("nothing")
     results: list[object] = []
 
@@ -69,7 +69,7 @@ def test_a_wait_times_out_and_leaves_the_list(kernel: Kernel) -> None:
     assert not waits
 
 
-def test_a_wake_up_in_time_cancels_the_time_out(kernel: Kernel) -> None:
+def test_wake_up_in_time_cancels_the_time_out(kernel: Kernel) -> None:
     queue = Queue(kernel, 1)
     results: list[object] = []
 
@@ -88,7 +88,7 @@ def test_a_wake_up_in_time_cancels_the_time_out(kernel: Kernel) -> None:
     assert results == ["in time", 1099]
 
 
-def test_a_put_at_the_very_deadline_does_not_lose_the_item(kernel: Kernel) -> None:
+def test_put_exactly_at_the_deadline_does_not_lose_the_item(kernel: Kernel) -> None:
     queue = Queue(kernel, 1)
     results: list[object] = []
     kernel.spawn("writer", lambda: (kernel.delay(100), queue.put("late")), 10)
@@ -101,7 +101,7 @@ def test_a_put_at_the_very_deadline_does_not_lose_the_item(kernel: Kernel) -> No
     assert results in (["late", EMPTY], [TIMEOUT, "late"])
 
 
-def test_a_poll_of_an_empty_queue_does_not_wait(kernel: Kernel) -> None:
+def test_poll_of_an_empty_queue_does_not_wait(kernel: Kernel) -> None:
     queue = Queue(kernel, 1)
     results: list[object] = []
     kernel.spawn("reader", lambda: results.append(queue.get(0)))
@@ -110,13 +110,13 @@ def test_a_poll_of_an_empty_queue_does_not_wait(kernel: Kernel) -> None:
     assert kernel.now == 0
 
 
-def test_a_full_queue_refuses(kernel: Kernel) -> None:
+def test_full_queue_refuses_a_put(kernel: Kernel) -> None:
     queue = Queue(kernel, 2)
     assert [queue.put(number) for number in range(3)] == [True, True, False]
     assert queue.peak == 2
 
 
-def test_used_cpu_time_moves_the_clock_and_lets_due_tasks_in(kernel: Kernel, log: Log) -> None:
+def test_used_cpu_time_moves_the_clock_and_wakes_due_tasks(kernel: Kernel, log: Log) -> None:
     def sleeper() -> None:
         kernel.delay(50)
         log(f"sleeper@{kernel.now}")
@@ -132,7 +132,7 @@ def test_used_cpu_time_moves_the_clock_and_lets_due_tasks_in(kernel: Kernel, log
     assert task.cpu_ns == 80
 
 
-def test_equals_take_turns_when_one_uses_the_cpu_for_long(kernel: Kernel) -> None:
+def test_tasks_of_equal_priority_take_turns_when_one_computes_for_long(kernel: Kernel) -> None:
     done: list[str] = []
 
     def spinner(name: str) -> None:

@@ -72,7 +72,7 @@ def spin_deep_down() -> None:
         step(), step(), step(), step(), step(), step(), step(), step(), step(), step()
 
 
-def test_a_task_that_never_gives_up_the_cpu_ends_the_run(kernel: Kernel) -> None:
+def test_task_that_never_gives_up_the_cpu_ends_the_run(kernel: Kernel) -> None:
     error = ended(kernel, spin)
     line = spin.__code__.co_firstlineno + 1
     assert error.summary.startswith("task spinning has not given up the CPU since 0.000000 s of virtual time, for 0.")
@@ -82,7 +82,7 @@ def test_a_task_that_never_gives_up_the_cpu_ends_the_run(kernel: Kernel) -> None
         kernel.run(20_000_000)
 
 
-def test_the_loop_is_named_and_not_what_it_calls(kernel: Kernel) -> None:
+def test_stall_names_the_loop_and_not_the_called_function(kernel: Kernel) -> None:
     def main() -> None:
         spin_deep_down()
 
@@ -91,7 +91,7 @@ def test_the_loop_is_named_and_not_what_it_calls(kernel: Kernel) -> None:
     assert error.lines[1].endswith(".main: spin_deep_down()")
 
 
-def test_calls_that_cost_nothing_do_not_help(kernel: Kernel) -> None:
+def test_calls_without_cost_do_not_prevent_a_stall(kernel: Kernel) -> None:
     def poll() -> None:
         while True:
             kernel.charge(0)
@@ -99,7 +99,7 @@ def test_calls_that_cost_nothing_do_not_help(kernel: Kernel) -> None:
     assert "has not given up the CPU" in ended(kernel, poll).summary
 
 
-def test_tasks_that_keep_each_other_going_stand_still_as_well(kernel: Kernel) -> None:
+def test_tasks_that_keep_each_other_running_are_a_stall(kernel: Kernel) -> None:
     def toss() -> None:
         while True:
             kernel.yield_cpu()
@@ -117,7 +117,7 @@ class SlowToLeave:
             pass
 
 
-def test_the_kernel_is_not_hit_while_it_takes_leave_of_a_task(kernel: Kernel) -> None:
+def test_stall_does_not_interrupt_the_kernel_while_it_ends_a_task(kernel: Kernel) -> None:
     def main() -> None:
         kernel.current.held.append(SlowToLeave())  # type: ignore[arg-type]  # it stands for a mutex
         spin()
@@ -125,7 +125,7 @@ def test_the_kernel_is_not_hit_while_it_takes_leave_of_a_task(kernel: Kernel) ->
     assert "has not given up the CPU" in ended(kernel, main).summary
 
 
-def test_a_task_that_swallows_everything_is_ended(kernel: Kernel) -> None:
+def test_task_that_catches_everything_is_ended(kernel: Kernel) -> None:
     def stubborn() -> None:
         number = 0
         while True:
@@ -138,9 +138,7 @@ def test_a_task_that_swallows_everything_is_ended(kernel: Kernel) -> None:
     assert "stubborn" in ended(kernel, stubborn).lines[0]
 
 
-def test_a_finalizer_that_the_collection_of_garbage_runs_is_ended(
-    kernel: Kernel, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_finalizer_run_by_the_garbage_collector_is_ended(kernel: Kernel, capsys: pytest.CaptureFixture[str]) -> None:
     class Spinning:
         def __init__(self) -> None:
             self.me = self
@@ -163,7 +161,7 @@ def test_a_finalizer_that_the_collection_of_garbage_runs_is_ended(
     assert capsys.readouterr().err == ""
 
 
-def test_a_finalizer_in_a_task_is_ended(kernel: Kernel) -> None:
+def test_finalizer_in_a_task_is_ended(kernel: Kernel) -> None:
     class Spinning:
         def __del__(self) -> None:
             while True:
@@ -176,7 +174,7 @@ def test_a_finalizer_in_a_task_is_ended(kernel: Kernel) -> None:
     assert "__del__" in ended(kernel, drop).lines[0]
 
 
-def test_a_task_that_does_not_end_is_made_to(kernel: Kernel) -> None:
+def test_task_that_does_not_end_is_forced_to(kernel: Kernel) -> None:
     def clings() -> None:
         try:
             kernel.delay(1_000_000_000)
@@ -202,7 +200,7 @@ def soon(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("soon")
-def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callable[[], Kernel]) -> None:
+def test_request_ends_tasks_with_and_without_calls(make_kernel: Callable[[], Kernel]) -> None:
     def poll(kernel: Kernel) -> None:
         while True:
             kernel.charge(1)
@@ -220,7 +218,7 @@ def test_a_wish_ends_what_makes_no_calls_and_what_makes_some(make_kernel: Callab
 
 
 @pytest.mark.usefixtures("soon")
-def test_a_wish_is_given_its_time_from_when_it_is_seen(make_kernel: Callable[[], Kernel]) -> None:
+def test_request_is_timed_from_when_it_is_seen(make_kernel: Callable[[], Kernel]) -> None:
     """Computation before the request does not count. Only afterwards, a task that spins is reported."""
     spins = threading.Event()
     clock, seen = [0.0], [False]
@@ -248,7 +246,7 @@ def test_a_wish_is_given_its_time_from_when_it_is_seen(make_kernel: Callable[[],
 
 
 @pytest.mark.usefixtures("soon")
-def test_a_wish_waits_while_other_programs_have_the_cpu(
+def test_request_waits_while_other_programs_use_the_cpu(
     make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for ready, used, broken in ((1.0, 0.0, False), (0.3, 0.7, True), (0.0, 0.0, True)):
@@ -264,7 +262,7 @@ def test_a_wish_waits_while_other_programs_have_the_cpu(
             watch.end()
 
 
-def test_who_waits_for_something_outside_is_told_once_and_left_alone(make_kernel: Callable[[], Kernel]) -> None:
+def test_task_that_waits_for_the_host_is_reported_once(make_kernel: Callable[[], Kernel]) -> None:
     reader, writer = os.pipe()
     told: list[str] = []
 
@@ -286,7 +284,7 @@ def test_who_waits_for_something_outside_is_told_once_and_left_alone(make_kernel
 
 
 @pytest.mark.usefixtures("soon")
-def test_what_cannot_be_struck_is_left_behind() -> None:
+def test_task_that_cannot_be_interrupted_is_abandoned() -> None:
     reader, writer = os.pipe()
     watch_limit_s = 0
     with Kernel("thread") as kernel:
@@ -308,7 +306,7 @@ def test_what_cannot_be_struck_is_left_behind() -> None:
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork a process")
-def test_a_watch_begins_anew_in_a_forked_process(make_kernel: Callable[[], Kernel]) -> None:
+def test_watch_restarts_in_a_forked_process(make_kernel: Callable[[], Kernel]) -> None:
     with make_kernel() as kernel:
         watch = watched(kernel)
         kernel.spawn("sleeper", lambda: kernel.delay(1000))
@@ -323,7 +321,7 @@ def test_a_watch_begins_anew_in_a_forked_process(make_kernel: Callable[[], Kerne
 
 
 @pytest.mark.parametrize("pieces", [1, 50])
-def test_many_pieces_have_one_thread(make_kernel: type[Kernel], pieces: int) -> None:
+def test_watch_of_many_pieces_has_one_thread(make_kernel: type[Kernel], pieces: int) -> None:
     before = threading.active_count()
     with make_kernel() as kernel:
         watch = StallWatch(kernel)
@@ -337,7 +335,7 @@ def test_many_pieces_have_one_thread(make_kernel: type[Kernel], pieces: int) -> 
 
 
 @pytest.mark.parametrize("waits", [False, True])
-def test_a_run_that_goes_on_while_it_is_looked_at_is_neither_ended_nor_told(
+def test_run_that_continues_during_the_check_is_not_ended(
     make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch, waits: bool
 ) -> None:
     """To look takes longer than many a piece of a run, so another piece may have begun."""
@@ -380,7 +378,7 @@ def test_a_run_that_goes_on_while_it_is_looked_at_is_neither_ended_nor_told(
     assert told == []
 
 
-def test_a_limit_of_none_ends_nothing(kernel: Kernel) -> None:
+def test_limit_of_0_disables_the_watch(kernel: Kernel) -> None:
     watch = watched(kernel)
     watch.limit_s = 0
     done = threading.Event()
@@ -397,7 +395,7 @@ def test_a_limit_of_none_ends_nothing(kernel: Kernel) -> None:
     assert kernel.broken is None
 
 
-def test_the_watch_does_not_hold_a_task_that_has_ended() -> None:
+def test_watch_does_not_hold_an_ended_task() -> None:
     """A task holds its application and with it a whole processor, which a reset is to leave behind."""
     with Kernel(context="thread") as kernel:
         watch = StallWatch(kernel)
@@ -420,7 +418,7 @@ def test_the_watch_does_not_hold_a_task_that_has_ended() -> None:
         assert held() is None
 
 
-def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_time_used_by_other_programs_counts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     told = {
         "1": "5 2000000000 7\n",
         "2": "5 500000000 7\n",
@@ -440,7 +438,7 @@ def test_time_in_which_others_have_the_cpu_counts(tmp_path: Path, monkeypatch: p
     assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
 
 
-def test_what_the_look_itself_takes_is_not_counted() -> None:
+def test_time_of_the_check_itself_is_not_counted() -> None:
     """On a computer so slow that looking takes a tenth of its time, a task that waits seemed to compute."""
     spent = Expenses()
     before, begun_s = spent().used_s, time.thread_time()
@@ -449,7 +447,7 @@ def test_what_the_look_itself_takes_is_not_counted() -> None:
     assert spent().used_s - before < 0.1
 
 
-def test_what_a_thread_was_counted_for_stays_when_it_ends(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_time_counted_for_an_ended_thread_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
 
     def tell(thread: str, ready_s: int) -> None:
@@ -475,7 +473,7 @@ def test_what_a_thread_was_counted_for_stays_when_it_ends(tmp_path: Path, monkey
     assert spent().ready_s == 11
 
 
-def test_a_piece_of_a_run_begins_with_nothing_seen(kernel: Kernel) -> None:
+def test_new_piece_of_a_run_starts_without_observations(kernel: Kernel) -> None:
     watch = watched(kernel)
     watch.limit_s = 1000  # so that its thread looks seldom
     kernel.spawn("task", lambda: watch._look(0.0, False, 0.0))
@@ -486,7 +484,7 @@ def test_a_piece_of_a_run_begins_with_nothing_seen(kernel: Kernel) -> None:
     watch.end()
 
 
-def test_code_that_belongs_to_no_line_is_told_with_that_of_its_function() -> None:
+def test_code_without_line_numbers_is_reported_with_the_line_of_its_function() -> None:
     def spin() -> None:
         while True:
             pass
@@ -496,7 +494,7 @@ def test_code_that_belongs_to_no_line_is_told_with_that_of_its_function() -> Non
     assert stalled.place == f"test_watchdog.py:{spin.__code__.co_firstlineno}"
 
 
-def test_what_the_process_had_is_asked_only_when_a_clock_stands_still(kernel: Kernel) -> None:
+def test_process_times_are_read_only_when_the_clock_stands_still(kernel: Kernel) -> None:
     """It takes time for each thread of the process, and each of many missions asks."""
     asked = list[int]()
 

@@ -41,14 +41,14 @@ def drain(bench: Bench, pipe: int) -> list[bytes]:
     return got
 
 
-def test_fifo_within_a_pipe(bench: Bench) -> None:
+def test_pipe_is_first_in_first_out(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     for number in range(4):
         bench.bus.transmit_msg(packet(MID, bytes([number])))
     assert [one[16] for one in drain(bench, pipe)] == [0, 1, 2, 3]
 
 
-def test_newest_subscriber_gets_it_first(bench: Bench) -> None:
+def test_newest_subscriber_gets_the_message_first(bench: Bench) -> None:
     order: list[str] = []
 
     def receiver(name: str) -> None:
@@ -64,7 +64,7 @@ def test_newest_subscriber_gets_it_first(bench: Bench) -> None:
     assert order == ["NEW", "MIDDLE", "OLD"]
 
 
-def test_origination_fills_in_sequence_and_time(bench: Bench) -> None:
+def test_origination_sets_sequence_count_and_time(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     for _ in range(2):
         bench.bus.transmit_msg(packet(MID, b"x"))
@@ -73,7 +73,7 @@ def test_origination_fills_in_sequence_and_time(bench: Bench) -> None:
     assert get_msg_time(second) == (1001000, 0x80000000)
 
 
-def test_origination_fills_in_a_command_checksum(bench: Bench) -> None:
+def test_origination_sets_the_checksum_of_a_command(bench: Bench) -> None:
     pipe = subscriber(bench, "A", msg_id=0x1882)
     bench.bus.transmit_msg(command(0x1882, 3, b"payload"))
     (got,) = drain(bench, pipe)
@@ -81,7 +81,7 @@ def test_origination_fills_in_a_command_checksum(bench: Bench) -> None:
     assert got[8:] == b"payload"
 
 
-def test_segmentation_flags_survive(bench: Bench) -> None:
+def test_segmentation_flags_are_kept(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     part = bytearray(packet(MID, b"part"))
     set_segmentation_flag(part, 1)
@@ -90,14 +90,14 @@ def test_segmentation_flags_survive(bench: Bench) -> None:
     assert got[2] >> 6 == part[2] >> 6 != 3
 
 
-def test_forwarded_packets_stay_as_they_are(bench: Bench) -> None:
+def test_forwarded_packets_are_unchanged(bench: Bench) -> None:
     pipe = subscriber(bench, "A", msg_id=0x1882)
     foreign = bytes(command(0x1882, 1))[:7] + b"\x55"
     bench.bus.transmit_msg(foreign, is_origination=False)
     assert drain(bench, pipe) == [foreign]
 
 
-def test_the_sender_keeps_its_buffer(bench: Bench) -> None:
+def test_sender_may_reuse_its_buffer(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     buffer = bytearray(packet(MID, b"one"))
     bench.bus.transmit_msg(buffer)
@@ -114,7 +114,7 @@ def test_message_limit(bench: Bench) -> None:
     assert (bench.bus.counters.msg_limit_error, bench.bus.counters.msg_send_error) == (1, 1)
 
 
-def test_a_message_of_an_older_subscription_makes_room_for_the_newer(bench: Bench) -> None:
+def test_read_message_of_an_older_subscription_frees_the_limit_of_the_newer(bench: Bench) -> None:
     """As on NASA's cFE 7.0.0, the limit counts by MsgId and pipe, for all subscriptions together."""
     pipe = subscriber(bench, "A", limit=1)
     bench.bus.transmit_msg(packet(MID, b"old"))
@@ -132,7 +132,7 @@ def test_a_message_of_an_older_subscription_makes_room_for_the_newer(bench: Benc
     assert [each[16:] for each in drain(bench, pipe)] == [b"last"]
 
 
-def test_pipe_overflow_does_not_keep_others_from_it(bench: Bench) -> None:
+def test_overflow_of_a_pipe_does_not_affect_others(bench: Bench) -> None:
     small = subscriber(bench, "SMALL", depth=1, limit=9)
     large = subscriber(bench, "LARGE", depth=9, limit=9)
     for _ in range(3):
@@ -143,7 +143,7 @@ def test_pipe_overflow_does_not_keep_others_from_it(bench: Bench) -> None:
     assert bench.bus.routes[MID].totals() == (4, 0, 0, 2)
 
 
-def test_a_pipe_that_keeps_the_newest_counts_what_it_drops(bench: Bench) -> None:
+def test_pipe_that_keeps_the_newest_counts_dropped_messages(bench: Bench) -> None:
     pipe = subscriber(bench, "A", depth=2, limit=4)
     found = bench.bus.find_pipe(pipe)
     assert found is not None
@@ -154,13 +154,13 @@ def test_a_pipe_that_keeps_the_newest_counts_what_it_drops(bench: Bench) -> None
     assert [each[16:] for each in drain(bench, pipe)] == [b"\7", b"\10"]
 
 
-def test_no_subscriber_is_an_event_and_no_error(bench: Bench) -> None:
+def test_message_without_a_subscriber_is_an_event_and_not_an_error(bench: Bench) -> None:
     bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
     assert bench.events.sent == [(14, "No subscribers for MsgId 0x881,sender SENDER")]
     assert bench.bus.counters.no_subscribers == 1
 
 
-def test_a_route_that_lost_its_subscribers_is_silent(bench: Bench) -> None:
+def test_route_that_lost_its_subscribers_causes_no_event(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     bench.do("A", lambda: bench.bus.unsubscribe(MID, pipe))
     bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID)))
@@ -177,14 +177,14 @@ def test_a_route_that_lost_its_subscribers_is_silent(bench: Bench) -> None:
         (b"\x20\x00" + bytes(14), CFE_SB_BAD_ARGUMENT, 21),
     ],
 )
-def test_what_cannot_be_sent(bench: Bench, what: bytes, status: int, event: int) -> None:
+def test_invalid_message_is_refused(bench: Bench, what: bytes, status: int, event: int) -> None:
     error = bench.do("SENDER", lambda: bench.bus.transmit_msg(what))
     assert isinstance(error, CfeError)
     assert error.status == status
     assert bench.events.ids() == [event]
 
 
-def test_the_buffer_pool_can_run_out() -> None:
+def test_exhausted_buffer_pool_is_an_error() -> None:
     bench = Bench(sb_buf_memory_bytes=2000)
     pipe = subscriber(bench, "A", depth=50, limit=50)
     results = [bench.do("SENDER", lambda: bench.bus.transmit_msg(packet(MID, bytes(400)))) for _ in range(6)]
@@ -209,7 +209,7 @@ def test_timeouts(bench: Bench) -> None:
     assert times == [0, 20_000_000, 21_000_000]
 
 
-def test_bad_receives(bench: Bench) -> None:
+def test_invalid_receives_are_refused(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     for bad_pipe, timeout in ((pipe + 1, POLL), (pipe, -2)):
         error = bench.do("A", lambda: bench.bus.receive_buffer(bad_pipe, timeout))  # noqa: B023  # called at once
@@ -220,7 +220,7 @@ def test_bad_receives(bench: Bench) -> None:
     assert bench.bus.counters.msg_receive_error == 2
 
 
-def test_a_reader_of_a_deleted_pipe_is_told(bench: Bench) -> None:
+def test_reader_of_a_deleted_pipe_gets_an_error(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     caught: list[int] = []
 
@@ -236,7 +236,7 @@ def test_a_reader_of_a_deleted_pipe_is_told(bench: Bench) -> None:
     assert caught == [CFE_SB_PIPE_RD_ERR]
 
 
-def test_a_pipe_that_goes_away_while_a_message_is_on_its_way(bench: Bench) -> None:
+def test_pipe_deleted_during_a_transmission_is_a_write_error(bench: Bench) -> None:
     doomed = subscriber(bench, "DOOMED")
 
     def deleter() -> None:
@@ -261,7 +261,7 @@ def test_a_message_for_a_waiting_reader_counts_for_the_peak(bench: Bench) -> Non
     assert bench.bus.pipes.get(pipe).peak == 1
 
 
-def test_send_errors_count_message_limits_alone(bench: Bench) -> None:
+def test_send_errors_exclude_message_limits(bench: Bench) -> None:
     limited, small = subscriber(bench, "LIMITED", limit=1), subscriber(bench, "SMALL", depth=1, limit=9)
     for _ in range(3):
         bench.bus.transmit_msg(packet(MID))
@@ -269,7 +269,7 @@ def test_send_errors_count_message_limits_alone(bench: Bench) -> None:
     assert [bench.bus.pipes.get(pipe).dropped for pipe in (limited, small)] == [2, 2]
 
 
-def test_ignoring_ones_own_messages(bench: Bench) -> None:
+def test_own_messages_are_ignored_on_request(bench: Bench) -> None:
     pipe = subscriber(bench, "A")
     bench.do("A", lambda: bench.bus.set_pipe_opts(pipe, 1))
     bench.do("A", lambda: bench.bus.transmit_msg(packet(MID, b"mine")))

@@ -11,7 +11,7 @@ from tests.sb.harness import Bench, packet
 MID = 0x0881
 
 
-def test_packets_are_handed_on_at_once_and_counted_as_delivered() -> None:
+def test_packets_are_passed_on_at_once_and_counted_as_delivered() -> None:
     bench, taken = Bench("thread"), []
     outlet = Outlet(bench.bus, MID, "out", taken.append)
     for number in range(1000):  # more than any pipe holds
@@ -26,7 +26,7 @@ def test_packets_are_handed_on_at_once_and_counted_as_delivered() -> None:
     bench.kernel.shutdown()
 
 
-def test_it_is_in_no_table_of_pipes() -> None:
+def test_outlet_is_not_in_the_table_of_pipes() -> None:
     bench = Bench("thread")
     one, two = (Outlet(bench.bus, MID, name, lambda packet: None) for name in ("one", "two"))
     assert len(bench.bus.pipes) == 0
@@ -34,7 +34,7 @@ def test_it_is_in_no_table_of_pipes() -> None:
     bench.kernel.shutdown()
 
 
-def test_a_bus_without_room_for_the_msgid_says_so() -> None:
+def test_bus_without_room_for_the_msg_id_is_an_error() -> None:
     bench = Bench("thread")
     for msg_id in range(0x0800, 0x0800 + bench.bus.config.sb_max_msg_ids):
         Outlet(bench.bus, msg_id, "out", lambda packet: None)

@@ -77,7 +77,7 @@ def written(bench: Bench, command: Command, name: str = "") -> bytes:
         (pk.WRITE_MAP_INFO, "cfe_sb_msgmap.dat"),
     ],
 )
-def test_bytes_are_nasas(bench: Bench, command: Command, golden: str) -> None:
+def test_files_match_nasas(bench: Bench, command: Command, golden: str) -> None:
     if command is pk.WRITE_PIPE_INFO:
         for row in PIPES:
             use(bench, row)
@@ -90,14 +90,14 @@ def test_bytes_are_nasas(bench: Bench, command: Command, golden: str) -> None:
     assert bench.files.write() == data[fs.HEADER_SIZE :]
 
 
-def test_what_is_told_at_the_end(bench: Bench) -> None:
+def test_event_at_the_end_has_size_and_entries(bench: Bench) -> None:
     before = bench.bus.counters.command
     written(bench, pk.WRITE_PIPE_INFO, "mine.dat")
     assert bench.events.sent[-1] == (39, f"/ram/mine.dat written:Size={60 * len(PIPES)},Entries=64")
     assert bench.bus.counters.command == before + 1
 
 
-def test_one_file_at_a_time(bench: Bench) -> None:
+def test_second_file_is_refused_while_one_is_written(bench: Bench) -> None:
     task = SbTask(bench.bus)
     task.process(pk.WRITE_MAP_INFO.packet(Filename="/ram/first"))
     before = bench.bus.counters.command_error
@@ -108,7 +108,7 @@ def test_one_file_at_a_time(bench: Bench) -> None:
     bench.files.write()
 
 
-def test_a_bad_name(bench: Bench) -> None:
+def test_invalid_file_name_is_refused(bench: Bench) -> None:
     SbTask(bench.bus).process(pk.WRITE_MAP_INFO.packet(Filename="/ram/"))
     assert bench.events.sent[-1] == (40, "Error creating file /ram/, stat=0xc6000002")
     assert not bench.files.waiting
@@ -121,13 +121,13 @@ def test_a_bad_name(bench: Bench) -> None:
         (FileWriteEvent.RECORD_WRITE_ERROR, 49, "File write,byte cnt err,file /ram/x,request=60,actual=-939524091"),
     ],
 )
-def test_what_goes_wrong_while_writing(bench: Bench, event: FileWriteEvent, event_id: int, text: str) -> None:
+def test_write_error_is_reported(bench: Bench, event: FileWriteEvent, event_id: int, text: str) -> None:
     SbTask(bench.bus).process(pk.WRITE_PIPE_INFO.packet(Filename="/ram/x"))
     bench.files.waiting.pop().on_event(event, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, 3, 60, 244)
     assert bench.events.sent[-1] == (event_id, text)
 
 
-def test_an_empty_bus_has_empty_files() -> None:
+def test_empty_bus_writes_empty_files() -> None:
     bench = Bench()
     for command in (pk.WRITE_ROUTING_INFO, pk.WRITE_PIPE_INFO, pk.WRITE_MAP_INFO):
         assert written(bench, command) == b""

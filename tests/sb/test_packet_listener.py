@@ -71,7 +71,7 @@ def bench_of(notes: Notes, context: str = "thread") -> Bench:
 
 
 @pytest.mark.parametrize("context", ["thread", "greenlet"])
-def test_an_urgent_receiver_gets_it_after_it_was_told(context: str) -> None:
+def test_urgent_receiver_runs_after_the_notification(context: str) -> None:
     notes = Notes()
     bench = bench_of(notes, context)
     bus = bench.bus
@@ -107,7 +107,7 @@ def test_an_urgent_receiver_gets_it_after_it_was_told(context: str) -> None:
     ]
 
 
-def test_what_does_not_get_in_and_what_must_leave() -> None:
+def test_refused_and_displaced_packets_are_dropped() -> None:
     notes = Notes()
     bench = bench_of(notes)
     bus = bench.bus
@@ -132,7 +132,7 @@ def test_what_does_not_get_in_and_what_must_leave() -> None:
     assert notes.open == set()
 
 
-def test_a_pipe_goes_with_what_is_in_it() -> None:
+def test_packets_of_a_deleted_pipe_are_released() -> None:
     notes = Notes()
     bench = bench_of(notes)
     bus = bench.bus
@@ -151,7 +151,7 @@ def test_a_pipe_goes_with_what_is_in_it() -> None:
     assert not +notes.held
 
 
-def test_nobody_hears_of_what_is_not_sent() -> None:
+def test_unsent_packets_cause_no_notification() -> None:
     notes = Notes()
     bench = bench_of(notes)
 
@@ -172,7 +172,7 @@ class FullQueue:
         return OS_QUEUE_FULL if pipe == "P" else None
 
 
-def test_puts_that_a_fault_refuses_are_drops() -> None:
+def test_puts_refused_by_a_fault_are_drops() -> None:
     notes = Notes()
     puts = Puts()
     puts.begin([FullQueue()])  # type: ignore[list-item]  # all that is asked of it
@@ -222,7 +222,7 @@ def wander(bench: Bench, seed: int) -> str:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_every_packet_that_was_put_leaves_once(seed: int) -> None:
+def test_each_put_packet_leaves_once(seed: int) -> None:
     notes = Notes()
     digest = wander(bench_of(notes), seed)
     assert len(notes.kept) > 20

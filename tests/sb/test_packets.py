@@ -8,7 +8,7 @@ from tests.layouts import assert_same
 from tests.sb.harness import Bench, packet
 
 
-def test_layouts_are_nasas() -> None:
+def test_layouts_match_nasas_structures() -> None:
     assert_same(pk.HOUSEKEEPING, "CFE_SB_HousekeepingTlm_Payload_t")
     assert_same(pk.STATISTICS, "CFE_SB_StatsTlm_Payload_t")
     assert_same(pk.PIPE_DEPTH_STATS, "CFE_SB_PipeDepthStats_t")
@@ -19,7 +19,7 @@ def test_layouts_are_nasas() -> None:
     assert (pk.ONESUB_TLM.length, pk.ALLSUBS_TLM.length) == (32, 268)
 
 
-def test_housekeeping_and_statistics_count_what_happened() -> None:
+def test_housekeeping_and_statistics_match_the_traffic() -> None:
     bench = Bench()
     task = SbTask(bench.bus)
     pipe = bench.do("A", lambda: bench.bus.create_pipe(2, "PIPE"))

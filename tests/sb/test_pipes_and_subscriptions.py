@@ -41,7 +41,7 @@ def status(result: object) -> int:
         (5, "N" * 20, CFE_SB_PIPE_CR_ERR, 4),
     ],
 )
-def test_pipes_that_cannot_be_made(bench: Bench, depth: int, name: str, code: int, event: int) -> None:
+def test_invalid_pipes_are_refused(bench: Bench, depth: int, name: str, code: int, event: int) -> None:
     bench.do("A", lambda: bench.bus.create_pipe(5, "TAKEN"))
     assert status(bench.do("A", lambda: bench.bus.create_pipe(depth, name))) == code
     assert bench.events.ids() == [event]
@@ -49,7 +49,7 @@ def test_pipes_that_cannot_be_made(bench: Bench, depth: int, name: str, code: in
 
 
 @pytest.mark.parametrize("name", ["TAKEN", "N" * 20])
-def test_a_refused_name_uses_up_an_id(bench: Bench, name: str) -> None:
+def test_refused_name_uses_up_an_id(bench: Bench, name: str) -> None:
     assert bench.do("A", lambda: bench.bus.create_pipe(5, "TAKEN")) == 0x160001
     bench.do("A", lambda: bench.bus.create_pipe(5, name))
     assert bench.do("A", lambda: bench.bus.create_pipe(5, "NEXT")) == 0x160003
@@ -58,7 +58,7 @@ def test_a_refused_name_uses_up_an_id(bench: Bench, name: str) -> None:
 
 
 @pytest.mark.parametrize("pipe", [0, 0x160009, 0x110001])
-def test_a_subscription_to_no_pipe_sends_two_events(bench: Bench, pipe: int) -> None:
+def test_subscription_of_an_unknown_pipe_sends_two_events(bench: Bench, pipe: int) -> None:
     assert status(bench.do("A", lambda: bench.bus.subscribe(0x1880, pipe))) == CFE_SB_BAD_ARGUMENT
     assert bench.events.sent == [
         (64, f"Pipe Id Error:Bad Argument,Id={pipe},Requestor A"),
@@ -84,7 +84,7 @@ def test_pipe_ids_and_names(bench: Bench) -> None:
     assert status(bench.do("A", lambda: bench.bus.get_pipe_id_by_name("Q"))) == CFE_SB_BAD_ARGUMENT
 
 
-def test_only_the_owner_deletes_and_subscribes(bench: Bench) -> None:
+def test_only_the_owner_can_delete_and_subscribe(bench: Bench) -> None:
     pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
     assert isinstance(pipe, int)
     for call in (
@@ -125,7 +125,7 @@ def test_msg_ids_out_of_range(bench: Bench, msg_id: int) -> None:
     assert bench.events.ids() == [6]
 
 
-def test_cleanup_takes_everything_of_an_app(bench: Bench) -> None:
+def test_cleanup_removes_all_pipes_and_subscriptions_of_an_app(bench: Bench) -> None:
     pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
     assert isinstance(pipe, int)
     bench.do("A", lambda: bench.bus.subscribe(0x801, pipe))
@@ -135,7 +135,7 @@ def test_cleanup_takes_everything_of_an_app(bench: Bench) -> None:
     assert status(bench.do("A", lambda: bench.bus.receive_buffer(pipe, 0))) == CFE_SB_BAD_ARGUMENT
 
 
-def test_a_full_pipe_table_is_found_before_a_bad_name(bench: Bench) -> None:
+def test_full_pipe_table_is_reported_before_an_invalid_name(bench: Bench) -> None:
     for number in range(3):
         bench.do("A", lambda: bench.bus.create_pipe(5, f"P{number}"))  # noqa: B023  # called at once
     assert status(bench.do("A", lambda: bench.bus.create_pipe(5, "N" * 20))) == CFE_SB_MAX_PIPES_MET
@@ -149,7 +149,7 @@ def test_index_of_a_pipe(bench: Bench) -> None:
         assert caught.value.status == CFE_ES_ERR_RESOURCEID_NOT_VALID
 
 
-def test_a_subscription_that_the_pool_has_no_room_for() -> None:
+def test_subscription_without_room_in_the_pool_is_refused() -> None:
     bench = Bench(sb_buf_memory_bytes=40)
     pipe = bench.do("A", lambda: bench.bus.create_pipe(5, "P"))
     assert isinstance(pipe, int)

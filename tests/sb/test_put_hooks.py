@@ -27,7 +27,7 @@ class Least(PutHook):
 
 
 @pytest.mark.parametrize("limits", [(1, 3), (3, 1)])
-def test_each_hook_counts_and_is_told(limits: tuple[int, int]) -> None:
+def test_each_hook_is_called(limits: tuple[int, int]) -> None:
     bench = Bench()
     bus = bench.bus
     inner = Least(limits[0], bus.put_hook)

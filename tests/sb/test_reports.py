@@ -32,7 +32,7 @@ def subscriber(bench: Bench) -> int:
     return pipe
 
 
-def test_each_subscription_is_told_while_reports_are_on(bench: Bench) -> None:
+def test_each_subscription_is_reported_while_reports_are_on(bench: Bench) -> None:
     net, pipe, task = listener(bench), subscriber(bench), SbTask(bench.bus)
     bench.do("A", lambda: bench.bus.subscribe(0x801, pipe))
     task.process(pk.ENABLE_SUB_REPORTING.packet())
@@ -49,7 +49,7 @@ def test_each_subscription_is_told_while_reports_are_on(bench: Bench) -> None:
     assert bench.bus.counters.command == 0, "these requests are not counted"
 
 
-def test_a_duplicate_is_told_again(bench: Bench) -> None:
+def test_duplicate_subscription_is_reported_again(bench: Bench) -> None:
     net, pipe = listener(bench), subscriber(bench)
     bench.bus.reporting = True
     for _ in range(2):
@@ -57,7 +57,7 @@ def test_a_duplicate_is_told_again(bench: Bench) -> None:
     assert [bench.bus.receive_buffer(net, POLL) is not None for _ in range(3)] == [True, True, False]
 
 
-def test_a_report_that_cannot_be_sent_is_told_in_the_event() -> None:
+def test_failed_report_is_mentioned_in_the_event() -> None:
     bench = Bench(sb_max_msg_size=31)
     pipe = subscriber(bench)
     bench.bus.reporting = True
@@ -67,7 +67,7 @@ def test_a_report_that_cannot_be_sent_is_told_in_the_event() -> None:
 
 
 @pytest.mark.parametrize(("count", "packets"), [(0, []), (3, [3]), (20, [20]), (45, [20, 20, 5])])
-def test_all_subscriptions(bench: Bench, count: int, packets: list[int]) -> None:
+def test_all_subscriptions_are_reported_in_packets(bench: Bench, count: int, packets: list[int]) -> None:
     net, pipe, task = listener(bench), subscriber(bench), SbTask(bench.bus)
     for number in range(count):
         bench.do("A", lambda: bench.bus.subscribe(0x1800 + number, pipe))  # noqa: B023  # called at once

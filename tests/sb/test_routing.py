@@ -25,7 +25,7 @@ def test_routes_keep_their_order(table: RoutingTable) -> None:
     assert table.value_to_route_id(1) == 2
 
 
-def test_a_full_table_and_bad_msg_ids_get_no_route(table: RoutingTable) -> None:
+def test_full_table_and_invalid_msg_ids_have_no_route(table: RoutingTable) -> None:
     assert table.add_route(0x0802) == INVALID_ROUTE_ID
     assert RoutingTable(3, 0x1FFF).add_route(0x2000) == INVALID_ROUTE_ID
     assert table.get_route_id(0x0802) == INVALID_ROUTE_ID
@@ -59,7 +59,7 @@ def test_destinations_can_be_replaced(table: RoutingTable) -> None:
 
 
 @pytest.mark.parametrize("route_id", [INVALID_ROUTE_ID, -1, 4])
-def test_ids_of_no_route(table: RoutingTable, route_id: int) -> None:
+def test_invalid_route_ids_are_refused(table: RoutingTable, route_id: int) -> None:
     table.increment_sequence_counter(route_id)
     table.set_dest_list_head_ptr(route_id, [])
     assert table.get_msg_id(route_id) == INVALID_MSG_ID
@@ -68,14 +68,14 @@ def test_ids_of_no_route(table: RoutingTable, route_id: int) -> None:
     assert not table.is_valid_route_id(route_id)
 
 
-def test_init_forgets_everything(table: RoutingTable) -> None:
+def test_init_removes_all_routes(table: RoutingTable) -> None:
     table.init()
     assert table.get_route_id(0x1803) == INVALID_ROUTE_ID
     assert table.add_route(0x1806) == 1
     assert table.is_valid_route_id(1)
 
 
-def test_the_totals_of_subscriptions_that_ended_take_no_room() -> None:
+def test_totals_of_ended_subscriptions_take_no_memory() -> None:
     kernel = Kernel("thread")
     route = Route(0x0801, 1)
     for number in range(100):
@@ -92,7 +92,7 @@ def test_the_totals_of_subscriptions_that_ended_take_no_room() -> None:
     kernel.shutdown()
 
 
-def test_what_is_read_after_the_end_of_a_subscription_counts() -> None:
+def test_message_read_after_the_end_of_a_subscription_counts() -> None:
     kernel = Kernel("thread")
     route = Route(0x0801, 1)
     late, other = (Destination(Pipe(kernel, 1, name, None), 4, 1) for name in ("A", "B"))

@@ -55,7 +55,7 @@ def status(result: object) -> int:
     return result.status
 
 
-def test_a_buffer_is_sent_like_a_message(bench: Bench, pipe: int) -> None:
+def test_buffer_is_sent_like_a_message(bench: Bench, pipe: int) -> None:
     buffer = filled(bench, 12, count=77)
     buffer[8:] = b"four"
     bench.do("A", lambda: bench.bus.transmit_buffer(buffer))
@@ -64,13 +64,13 @@ def test_a_buffer_is_sent_like_a_message(bench: Bench, pipe: int) -> None:
     assert (got[8:], msg.get_sequence_count(got), msg.validate_checksum(got)) == (b"four", 1, True)
 
 
-def test_without_origination_it_stays_as_it_is(bench: Bench, pipe: int) -> None:
+def test_buffer_without_origination_is_unchanged(bench: Bench, pipe: int) -> None:
     buffer = filled(bench, 12, count=1234)
     bench.do("A", lambda: bench.bus.transmit_buffer(buffer, is_origination=False))
     assert bench.bus.receive_buffer(pipe, POLL) == bytes(buffer)
 
 
-def test_only_as_much_as_the_header_says_is_sent(bench: Bench, pipe: int) -> None:
+def test_buffer_is_sent_up_to_the_size_in_its_header(bench: Bench, pipe: int) -> None:
     buffer = filled(bench, 100)
     msg.set_size(buffer, 20)
     bench.do("A", lambda: bench.bus.transmit_buffer(buffer))
@@ -79,7 +79,7 @@ def test_only_as_much_as_the_header_says_is_sent(bench: Bench, pipe: int) -> Non
     assert len(got) == msg.get_size(got) == 20
 
 
-def test_sent_and_released_buffers_are_somebody_elses(bench: Bench, pipe: int) -> None:
+def test_sent_and_released_buffers_are_invalid_for_their_former_owner(bench: Bench, pipe: int) -> None:
     sent, released = filled(bench, 12), filled(bench, 12)
     bench.do("A", lambda: bench.bus.transmit_buffer(sent))
     bench.do("A", lambda: bench.bus.release_message_buffer(released))
@@ -90,7 +90,7 @@ def test_sent_and_released_buffers_are_somebody_elses(bench: Bench, pipe: int) -
     assert bench.events.ids() == []
 
 
-def test_a_buffer_too_big_to_send_stays_with_its_owner(bench: Bench, pipe: int) -> None:
+def test_too_large_buffer_stays_with_its_owner(bench: Bench, pipe: int) -> None:
     buffer = filled(bench, 1000)
     msg.set_size(buffer, 1016)
     assert status(bench.do("A", lambda: bench.bus.transmit_buffer(buffer))) == CFE_SB_MSG_TOO_BIG
@@ -100,7 +100,7 @@ def test_a_buffer_too_big_to_send_stays_with_its_owner(bench: Bench, pipe: int) 
 
 
 @pytest.mark.parametrize(("size", "msg_id", "event"), [(60, MID, 13), (20, 0, 21), (20, 0x2000, 21)])
-def test_headers_that_cannot_be_sent(bench: Bench, size: int, msg_id: int, event: int) -> None:
+def test_buffer_with_an_invalid_header_is_refused(bench: Bench, size: int, msg_id: int, event: int) -> None:
     buffer = filled(bench, 20)
     buffer[:2] = msg_id.to_bytes(2, "big")
     msg.set_size(buffer, size)
@@ -109,7 +109,7 @@ def test_headers_that_cannot_be_sent(bench: Bench, size: int, msg_id: int, event
     assert bench.do("A", lambda: bench.bus.release_message_buffer(buffer)) is None
 
 
-def test_a_buffer_that_was_made_longer_is_not_sent(bench: Bench, pipe: int) -> None:
+def test_buffer_that_was_extended_is_not_sent(bench: Bench, pipe: int) -> None:
     buffer = filled(bench, 20)
     buffer.extend(bytes(20))
     msg.set_size(buffer, 40)
@@ -120,13 +120,13 @@ def test_a_buffer_that_was_made_longer_is_not_sent(bench: Bench, pipe: int) -> N
 
 
 @pytest.mark.parametrize("size", [1001, -1])
-def test_a_buffer_of_an_impossible_size(bench: Bench, size: int) -> None:
+def test_buffer_of_an_invalid_size_is_refused(bench: Bench, size: int) -> None:
     assert status(bench.do("A", lambda: bench.bus.allocate_message_buffer(size))) == CFE_SB_MSG_TOO_BIG
     text = f"Failed, requested size {size} larger than allowed 1000"
     assert bench.log.lines == [f"A CFE_SB_AllocateMessageBuffer: {text}"]
 
 
-def test_buffers_take_memory_of_the_pool(bench: Bench) -> None:
+def test_buffers_use_memory_of_the_pool(bench: Bench) -> None:
     first = allocate(bench, 1000)
     assert bench.bus.pool_use() == (1064, 1)
     assert status(bench.do("A", lambda: bench.bus.allocate_message_buffer(1000))) == CFE_SB_BUF_ALOC_ERR
@@ -135,7 +135,7 @@ def test_buffers_take_memory_of_the_pool(bench: Bench) -> None:
     assert bench.bus.peaks.memory == 1064
 
 
-def test_messages_have_what_buffers_leave(bench: Bench, pipe: int) -> None:
+def test_messages_share_the_pool_with_buffers(bench: Bench, pipe: int) -> None:
     allocate(bench, 1000)
     packet = bytes(msg.command(MID, 0, bytes(400)))
     results = [bench.do("A", lambda: bench.bus.transmit_msg(packet)) for _ in range(3)]
@@ -145,7 +145,7 @@ def test_messages_have_what_buffers_leave(bench: Bench, pipe: int) -> None:
     assert bench.bus.routes[MID].sequence == 1, "what is not sent is not counted"
 
 
-def test_buffers_go_back_when_their_application_ends(bench: Bench) -> None:
+def test_buffers_are_released_when_their_application_ends(bench: Bench) -> None:
     mine = allocate(bench, 100)
     other = bench.do("B", lambda: bench.bus.allocate_message_buffer(50))
     bench.bus.cleanup_app(bench.apps["A"].app_id)
@@ -194,7 +194,7 @@ def test_subscriptions_and_buffers_are_blocks_of_the_pool(bench: Bench, pipe: in
     assert pools.sizes == []
 
 
-def test_no_pool_no_bus(bench: Bench) -> None:
+def test_bus_does_not_start_without_its_pool(bench: Bench) -> None:
     bench.bus.ports.es = Pools(0)  # type: ignore[assignment]  # what SB asks of it
     with pytest.raises(CfeError):
         bench.bus.early_init()

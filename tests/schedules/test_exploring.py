@@ -105,7 +105,9 @@ CASES = [(lost_update, "", 1), (lock_order, "", 1), (urgent_reply, ":any", "unex
 
 
 @pytest.mark.parametrize(("program", "options", "bad"), CASES)
-def test_fifo_never_shows_it_and_each_policy_does(program: Program, options: str, bad: object, context: str) -> None:
+def test_race_is_hidden_under_fifo_and_found_by_each_policy(
+    program: Program, options: str, bad: object, context: str
+) -> None:
     assert fly(program, Schedule(), context)[0] != bad
     for text in ("random:{}", "pct:{}:2:10"):
         schedules = [Schedule.parse(text.format(seed) + options) for seed in range(60)]
@@ -117,7 +119,7 @@ def test_fifo_never_shows_it_and_each_policy_does(program: Program, options: str
 
 
 @pytest.mark.parametrize(("program", "options", "bad"), CASES)
-def test_the_search_finds_it_and_ends(program: Program, options: str, bad: object) -> None:
+def test_depth_first_search_finds_the_race_and_ends(program: Program, options: str, bad: object) -> None:
     search = DepthFirst(1, 1, Schedule.parse("at" + options))
     outcomes = {}
     while (schedule := search.next()) is not None:
@@ -132,7 +134,7 @@ def test_the_search_finds_it_and_ends(program: Program, options: str, bad: objec
     assert len(Schedule.parse(first).deviations) == 1
 
 
-def test_the_search_counts_preemptions_and_reorderings_apart() -> None:
+def test_depth_first_search_counts_preemptions_and_reorderings_separately() -> None:
     def three(kernel: Kernel) -> Callable[[], object]:
         order: list[str] = []
         for name in "abc":
@@ -153,7 +155,7 @@ def test_the_search_counts_preemptions_and_reorderings_apart() -> None:
     assert sorted(orders(0, 2)) == ["abc", "acb", "bac", "bca", "cab", "cba"]  # type: ignore[type-var]
 
 
-def test_a_search_may_be_given_results_in_any_order() -> None:
+def test_depth_first_search_accepts_results_in_any_order() -> None:
     search = DepthFirst(1, 0)
     first = search.next()
     assert first is not None
@@ -179,7 +181,7 @@ POLLED = [
 
 @pytest.mark.parametrize("text", POLLED)
 @pytest.mark.parametrize("setter", [80, 100])
-def test_a_task_that_polls_lets_the_one_it_polls_for_run(text: str, setter: int, context: str) -> None:
+def test_polled_task_gets_to_run(text: str, setter: int, context: str) -> None:
     def poll(kernel: Kernel) -> Callable[[], object]:
         box: list[int] = []
 
@@ -195,7 +197,7 @@ def test_a_task_that_polls_lets_the_one_it_polls_for_run(text: str, setter: int,
     assert fly(poll, Schedule.parse(text), context)[0] is True
 
 
-def test_a_more_urgent_task_is_never_kept_waiting_by_default() -> None:
+def test_urgent_task_never_waits_by_default() -> None:
     def ranks(kernel: Kernel) -> Callable[[], object]:
         seen: list[int] = []
 
@@ -216,7 +218,7 @@ def test_a_more_urgent_task_is_never_kept_waiting_by_default() -> None:
     assert not all(fly(ranks, Schedule("random", seed, any_priority=True))[0] for seed in seeds)
 
 
-def test_a_moment_tells_who_was_preempted_by_whom() -> None:
+def test_moment_names_the_preempted_task_and_its_successor() -> None:
     _, recorded, _ = fly(lost_update, Schedule.parse("at:1=1"))
     (moment,) = recorded.moments
     assert moment == (1, 1, 0, "a", "b", True, "")
@@ -225,7 +227,7 @@ def test_a_moment_tells_who_was_preempted_by_whom() -> None:
     assert len(recorded.choices) == len(recorded.widths) == len(recorded.running)
 
 
-def test_a_task_that_may_start_early_is_a_candidate_until_it_has_started() -> None:
+def test_task_that_may_start_early_is_a_candidate_until_its_start() -> None:
     log: list[str] = []
     recorded = NotingPolicy(Schedule.parse("at:0=1,2=1").policy())
     kernel = make_kernel(policy=recorded)
@@ -250,7 +252,7 @@ def test_a_task_that_may_start_early_is_a_candidate_until_it_has_started() -> No
     assert recorded.deviations == {0: 1, 2: 1}
 
 
-def test_under_fifo_a_task_that_may_start_early_starts_at_its_time() -> None:
+def test_task_that_may_start_early_starts_at_its_time_under_fifo() -> None:
     log: list[int] = []
     recorded = NotingPolicy()
     kernel = make_kernel(policy=recorded)

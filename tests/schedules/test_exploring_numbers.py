@@ -88,13 +88,13 @@ def about(found: int, odds: float, runs: int = SEEDS) -> bool:
     return abs(found - runs * odds) <= 4 * sqrt(runs * odds * (1 - odds))
 
 
-def test_random_takes_each_order_as_often() -> None:
+def test_random_chooses_each_order_equally_often() -> None:
     found = Counter(fly(walkers(1, 1, 1), Schedule.parse(f"random:{seed}").policy())[0] for seed in range(SEEDS))
     assert set(found) == words(1, 1, 1)
     assert all(about(count, 1 / 6) for count in found.values()), found
 
 
-def test_random_takes_each_choice_as_often() -> None:
+def test_random_chooses_each_option_equally_often() -> None:
     found: Counter[tuple[int, int]] = Counter()
     for seed in range(100):
         recorded = fly(walkers(3, 3, 3), Schedule.parse(f"random:{seed}").policy())[1]
@@ -105,7 +105,7 @@ def test_random_takes_each_choice_as_often() -> None:
         assert all(about(found[width, choice], 1 / width, runs) for choice in range(width)), found
 
 
-def test_random_holds_a_task_up_once_in_sixteen_times() -> None:
+def test_random_holds_a_task_once_in_sixteen_decisions() -> None:
     def program(kernel: Kernel, written: list[str]) -> None:
         def work() -> None:
             for _ in range(100):
@@ -129,7 +129,7 @@ def test_random_holds_a_task_up_once_in_sixteen_times() -> None:
 
 
 @pytest.mark.parametrize("depth", [1, 2, 3])
-def test_pct_finds_a_bug_of_its_depth_as_often_as_promised(depth: int) -> None:
+def test_pct_finds_a_bug_of_its_depth_at_the_guaranteed_rate(depth: int) -> None:
     """Two tasks with 5 + 5 steps: a bug of `depth` ordered events has odds of at least 1 / (n k^(d-1))."""
     program, steps = walkers(5, 5), {"a": 5, "b": 5}
     decisions = len(fly(program, None)[1].choices)
@@ -158,7 +158,7 @@ def all_words(steps: tuple[int, ...], most_preemptions: int, most_reorderings: i
 
 
 @pytest.mark.parametrize("steps", [(1, 1), (3, 3), (2, 5), (1, 1, 1), (2, 2, 2)])
-def test_the_search_without_bounds_gives_every_order_once(steps: tuple[int, ...]) -> None:
+def test_unbounded_search_gives_every_order_once(steps: tuple[int, ...]) -> None:
     found = all_words(steps, 99, 99)
     assert set(found) == words(*steps)
     assert len(found) == len(set(found))
@@ -166,7 +166,7 @@ def test_the_search_without_bounds_gives_every_order_once(steps: tuple[int, ...]
 
 @pytest.mark.parametrize("steps", [(4, 4), (2, 1, 1), (2, 2, 1)])
 @pytest.mark.parametrize("most", [0, 1, 2])
-def test_the_search_gives_every_order_within_its_bound(steps: tuple[int, ...], most: int) -> None:
+def test_bounded_search_gives_every_order_within_its_bound(steps: tuple[int, ...], most: int) -> None:
     found = all_words(steps, most, 99)
     counts = dict(zip("abcd", steps, strict=False))
     wanted = {word for word in words(*steps) if preemptions(word, counts) <= most}
@@ -174,7 +174,7 @@ def test_the_search_gives_every_order_within_its_bound(steps: tuple[int, ...], m
     assert len(found) == len(wanted)
 
 
-def test_who_gave_up_its_turn_is_told_once() -> None:
+def test_decision_names_the_task_that_yielded_once() -> None:
     told: list[str | None] = []
 
     class Listening(Policy):
@@ -195,7 +195,7 @@ def test_who_gave_up_its_turn_is_told_once() -> None:
 
 
 @pytest.mark.parametrize("options", ["", ":hold=1us"])
-def test_nobody_gets_in_while_a_task_ends(options: str, context: str) -> None:
+def test_ending_task_is_not_preempted(options: str, context: str) -> None:
     schedule = Schedule.parse("at:" + ",".join(f"{number}=1" for number in range(20)) + options)
 
     def program(kernel: Kernel, written: list[str]) -> None:
@@ -277,7 +277,7 @@ def plain(program: Program) -> tuple[str, str]:
 
 @settings(max_examples=30, deadline=None)
 @given(PROGRAMS, st.integers(0, 1000), st.sampled_from(["", ":any", ":hold=2us", ":from=2us"]))
-def test_any_program_is_fifos_without_deviations_and_any_run_can_be_given_again(
+def test_program_without_deviations_equals_fifo_and_any_run_can_be_reproduced(
     tasks: list[tuple[int, list[str]]], seed: int, options: str
 ) -> None:
     program = made_of(tasks)
@@ -291,7 +291,7 @@ def test_any_program_is_fifos_without_deviations_and_any_run_can_be_given_again(
         assert fly(program, schedule.policy(), "thread")[::2] == (written, digest)
 
 
-def test_a_choice_that_is_not_there_becomes_the_last_that_is() -> None:
+def test_choice_beyond_the_options_becomes_the_last_option() -> None:
     recorded = fly(walkers(1, 1, 1), Deviations({0: 9}))[1]
     assert recorded.choices[0] == 2
     assert recorded.deviations == {0: 2}
@@ -324,7 +324,7 @@ def crowd(count: int) -> Program:
     return program
 
 
-def test_random_has_long_stretches_where_there_are_points_between_calls() -> None:
+def test_random_switches_less_often_with_points_between_calls() -> None:
     def changes(text: str) -> int:
         words = [fly(walkers(8, 8), Schedule.parse(f"random:{seed}{text}").policy())[0] for seed in range(60)]
         return sum(before != after for word in words for before, after in pairwise(word))
@@ -334,7 +334,7 @@ def test_random_has_long_stretches_where_there_are_points_between_calls() -> Non
     assert words == {"aabb", "abab", "abba", "baab", "baba", "bbaa"}
 
 
-def test_random_starts_all_before_a_long_stretch() -> None:
+def test_random_starts_all_tasks_before_a_long_stretch() -> None:
     def program(kernel: Kernel, written: list[str]) -> None:
         started = [0]
 
@@ -360,7 +360,7 @@ def test_random_starts_all_before_a_long_stretch() -> None:
     assert often("") < 20
 
 
-def test_abreast_lets_equals_collide() -> None:
+def test_abreast_makes_equal_tasks_collide() -> None:
     found = Counter(fly(crowd(6), Schedule.parse(f"abreast:{seed}").policy())[0] for seed in range(100))
     assert found["666666"] > 10  # all are ready before the first one continues
     assert sum(word.startswith("1") for word in found) > 5
@@ -368,7 +368,7 @@ def test_abreast_lets_equals_collide() -> None:
     assert by_chance["666666"] < 3
 
 
-def test_abreast_reaches_every_order_of_two() -> None:
+def test_abreast_reaches_every_order_of_two_tasks() -> None:
     words = {fly(walkers(2, 2), Schedule.parse(f"abreast:{seed}").policy())[0] for seed in range(200)}
     assert words == {"aabb", "abab", "abba", "baab", "baba", "bbaa"}
 
@@ -404,14 +404,14 @@ def workers_and_reader(count: int) -> Program:
 
 
 @pytest.mark.slow
-def test_abreast_pairs_those_who_do_different_things() -> None:
+def test_abreast_pairs_tasks_with_different_code() -> None:
     schedules = [Schedule.parse(f"abreast:{seed}") for seed in range(300)]
     assert sum(fly(workers_and_reader(19), each.policy())[0] == "x" for each in schedules) > 5
     by_chance = [Schedule.parse(f"random:{seed}") for seed in range(300)]
     assert not any(fly(workers_and_reader(19), each.policy())[0] == "x" for each in by_chance)
 
 
-def test_abreast_lets_who_starts_many_go_on_beyond_its_time_slice() -> None:
+def test_abreast_lets_a_starting_task_continue_beyond_its_time_slice() -> None:
     """Otherwise it would count as polling, and the tasks that it has not started would never meet the others."""
     schedule = next(each for each in map("abreast:{}".format, range(100)) if _is_together(each, slice_us=0))
     assert _is_together(schedule, slice_us=20_000)
@@ -441,7 +441,7 @@ def _is_together(schedule: str, slice_us: int) -> bool:
     return "".join(written) == "111111222222"
 
 
-def test_who_polls_does_not_keep_others_away_for_ever() -> None:
+def test_polling_task_does_not_starve_others() -> None:
     def program(kernel: Kernel, written: list[str]) -> None:
         def poll() -> None:
             for name in "ab":

@@ -30,7 +30,7 @@ OWNER = type("Owner", (), {"name": "ODOMETER"})()
         ("a%2Bb%40%23%3D%3A%2C%7E%25=%C3%A9", Move("a+b@#=:,~%", "\N{LATIN SMALL LETTER E WITH ACUTE}")),
     ],
 )
-def test_a_move_has_a_text(text: str, move: Move) -> None:
+def test_move_is_written_and_parsed(text: str, move: Move) -> None:
     assert move.text() == text
     assert Move.parse(text) == move
     schedule = Schedule().by_moves([move, Move("Z", "Y")])
@@ -49,7 +49,7 @@ def test_a_move_has_a_text(text: str, move: Move) -> None:
         ("moves:A=B:C=D", "invalid schedule 'moves:A=B:C=D'; expected moves:TASK@MS/FUNCTION.CALL=TASK"),
     ],
 )
-def test_a_text_that_is_no_move(text: str, wrong: str) -> None:
+def test_invalid_move_is_refused(text: str, wrong: str) -> None:
     with pytest.raises(UsageError, match=wrong):
         Schedule.parse(text)
 
@@ -92,7 +92,7 @@ def edited(kernel: Kernel) -> list[str]:
 
 
 @pytest.mark.parametrize("program", [two_calls, edited])
-def test_places_and_names_mean_the_same_after_an_edit(program: Program) -> None:
+def test_moves_keep_their_meaning_after_an_edit(program: Program) -> None:
     schedule = Schedule.parse("moves:ODOMETER.left@0/publish.line=ODOMETER.left-2")
     policy = schedule.policy()
     assert policy is not None
@@ -101,12 +101,12 @@ def test_places_and_names_mean_the_same_after_an_edit(program: Program) -> None:
     assert policy.missed == policy.notes == ()
 
 
-def test_the_number_counts_occasions_on_which_the_other_could_run() -> None:
+def test_number_of_a_move_counts_occasions_of_the_other_task() -> None:
     said = flown(two_calls, Schedule.parse("moves:ODOMETER.left@0/3=ODOMETER.right").policy() or Policy())
     assert said[:2] == ["left1 looked", "right2 looked"]
 
 
-def test_what_was_not_possible_is_told() -> None:
+def test_impossible_moves_are_reported() -> None:
     schedule = Schedule.parse("moves:ODOMETER.left@0/publish.line=ODOMETER.right,ODOMETER.left@5=ODOMETER.right,X=Y")
     policy = NotingPolicy(schedule.policy())
     flown(two_calls, policy)
@@ -132,7 +132,7 @@ class Naming(AskingPolicy):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_the_moves_of_a_run_give_it_again(seed: int) -> None:
+def test_moves_of_a_run_reproduce_it(seed: int) -> None:
     naming = Naming(Schedule("random", seed).policy() or Policy())
     said = flown(two_calls, naming)
     policy = Schedule().by_moves(naming.moves).policy()
@@ -141,7 +141,7 @@ def test_the_moves_of_a_run_give_it_again(seed: int) -> None:
     assert not policy.missed
 
 
-def test_a_question_has_the_name_and_the_answer_that_it_has() -> None:
+def test_move_of_a_question_has_its_name_and_answer() -> None:
     question = Question("connection of /base to /arm on /enable", "slow connection", ("0s", "100ms"), "{}")
     policy = Schedule.parse("moves:connection+of+/base+to+/arm+on+/enable@0/2=100ms").policy()
     assert policy is not None
@@ -149,7 +149,7 @@ def test_a_question_has_the_name_and_the_answer_that_it_has() -> None:
     assert asked == [0, 1, 0]
 
 
-def test_a_task_with_the_name_of_no_task_is_told_apart() -> None:
+def test_task_named_like_a_keyword_gets_an_alias() -> None:
     with make_kernel(policy=Policy()) as kernel:
         made: list[Task] = [kernel.spawn(name, kernel.exit_task) for name in ("hold", "X-2", "X.2", "X", "X")]
         assert [task.alias for task in made] == ["hold-2", "X.2", "X.2-2", "X", "X-2"]

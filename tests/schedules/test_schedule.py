@@ -25,7 +25,7 @@ SCHEDULES = st.one_of(
 
 
 @given(SCHEDULES)
-def test_the_text_of_a_schedule_means_it(schedule: Schedule) -> None:
+def test_text_of_a_schedule_parses_to_it(schedule: Schedule) -> None:
     assert Schedule.parse(schedule.text()) == schedule
 
 
@@ -50,7 +50,7 @@ def test_the_text_of_a_schedule_means_it(schedule: Schedule) -> None:
         ("at:3=1:hold=500us", Schedule("at", deviations=((3, 1),), hold_ns=500_000)),
     ],
 )
-def test_what_a_person_writes(text: str, schedule: Schedule) -> None:
+def test_short_forms_of_a_schedule_are_parsed(text: str, schedule: Schedule) -> None:
     assert Schedule.parse(text, seed=5) == schedule
 
 
@@ -77,13 +77,13 @@ def test_what_a_person_writes(text: str, schedule: Schedule) -> None:
         ("random:1:hold=0s", "such as hold=500us"),
     ],
 )
-def test_another_text_is_refused_and_says_what_to_write(text: str, says: str) -> None:
+def test_invalid_schedule_is_refused_with_advice(text: str, says: str) -> None:
     with pytest.raises(UsageError, match="--schedule") as caught:
         Schedule.parse(text)
     assert says in str(caught.value)
 
 
-def test_each_kind_has_its_policy() -> None:
+def test_each_kind_of_schedule_has_its_policy() -> None:
     assert Schedule().policy() is None
     assert isinstance(Schedule.parse("random:1").policy(), SeededRandom)
     assert isinstance(Schedule.parse("pct:1").policy(), PCT)
@@ -93,12 +93,12 @@ def test_each_kind_has_its_policy() -> None:
     assert policy.hold_ns == 1000
 
 
-def test_deviations_keep_the_options_of_the_schedule_they_come_from() -> None:
+def test_deviations_keep_the_options_of_their_schedule() -> None:
     assert Schedule.parse("random:7:any:hold=1us").at({5: 1, 2: 3}).text() == "at:2=3,5=1:any:hold=1us"
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_pct_changes_at_its_decisions_and_at_no_other(seed: int) -> None:
+def test_pct_changes_only_at_its_decisions(seed: int) -> None:
     def answers(depth: int, steps: int) -> list[int]:
         policy = PCT(seed, depth, steps)
         return [policy.choose(Decision(number, 0, TASKS, False, False, None)) for number in range(4)]

@@ -58,7 +58,7 @@ def verdicts(outcome: Outcome) -> list[tuple[bool, float]]:
     return [(each.ok, round(each.at_s, 3)) for each in outcome.verdicts]
 
 
-def test_a_script_that_goes_well(folder: Path) -> None:
+def test_successful_script_has_only_good_verdicts(folder: Path) -> None:
     outcome = fly(
         folder,
         """
@@ -101,7 +101,7 @@ def test_a_script_that_goes_well(folder: Path) -> None:
         ('no console "answered" until 3', 2.25, 'there was "answered 7"'),
     ],
 )
-def test_a_failure_says_what_there_was_instead(folder: Path, expectation: str, at_s: float, detail: str) -> None:
+def test_failed_expectation_reports_the_actual_values(folder: Path, expectation: str, at_s: float, detail: str) -> None:
     outcome = fly(folder, f"at 2 send OWN_ASK Value=7 Name=seven\nsend CFE_ES_NOOP\nexpect {expectation}\n")
     verdict = outcome.verdicts[-1]
     assert not outcome.ok
@@ -110,7 +110,7 @@ def test_a_failure_says_what_there_was_instead(folder: Path, expectation: str, a
     assert outcome.text().splitlines()[-1] == "3 steps, 1 failed"
 
 
-def test_an_expectation_looks_back_to_the_last_thing_done(folder: Path) -> None:
+def test_expectation_includes_events_since_the_last_action(folder: Path) -> None:
     """Two expectations after one command may be met in any order. Events before the command do not count."""
     outcome = fly(
         folder,
@@ -126,17 +126,17 @@ def test_an_expectation_looks_back_to_the_last_thing_done(folder: Path) -> None:
     assert [each.ok for each in outcome.verdicts] == [True, True, True, True, True, False]
 
 
-def test_waiting_ends_as_soon_as_it_can(folder: Path) -> None:
+def test_wait_ends_as_soon_as_its_expectation_is_met(folder: Path) -> None:
     outcome = fly(folder, "at 2 send OWN_ASK Value=1\nexpect tlm OWN_ANSWER within 9\nsend CFE_ES_NOOP\n")
     assert verdicts(outcome)[1:] == [(True, 2.25), (True, 2.25)]
 
 
-def test_after_counts_from_the_step_before(folder: Path) -> None:
+def test_after_counts_from_the_previous_step(folder: Path) -> None:
     outcome = fly(folder, "at 2 send OWN_ASK Value=1\nafter 0.5 send OWN_ASK Value=2\nafter 1 end\n")
     assert verdicts(outcome) == [(True, 2.0), (True, 2.5), (True, 3.5)]
 
 
-def test_the_run_goes_on_after_a_failure_unless_it_shall_not(folder: Path) -> None:
+def test_run_continues_after_a_failure_by_default(folder: Path) -> None:
     text = "at 2 expect app NOBODY\nat 3 send CFE_ES_NOOP\nexpect event CFE_ES 3\n"
     assert verdicts(fly(folder, text)) == [(False, 2.0), (True, 3.0), (True, 3.0)]
     stopped = fly(folder, text, stop_on_failure=True)
@@ -144,7 +144,7 @@ def test_the_run_goes_on_after_a_failure_unless_it_shall_not(folder: Path) -> No
     assert stopped.verdicts[1].detail == "the run ended earlier"
 
 
-def test_what_must_not_come_is_watched_while_the_script_goes_on(folder: Path) -> None:
+def test_unexpected_events_are_watched_while_the_script_continues(folder: Path) -> None:
     outcome = fly(
         folder,
         """
@@ -159,14 +159,14 @@ def test_what_must_not_come_is_watched_while_the_script_goes_on(folder: Path) ->
     assert outcome.verdicts[1].detail == 'there was OWN 13 ERROR "no thirteens" at 4.250'
 
 
-def test_a_packet_that_the_bus_refuses_fails_its_step(folder: Path) -> None:
+def test_packet_refused_by_the_bus_fails_its_step(folder: Path) -> None:
     outcome = fly(folder, "at 2 send raw 1806c000\n")
     assert not outcome.ok
     assert "Bad input argument" in outcome.verdicts[0].detail
 
 
 @pytest.mark.parametrize("kind", ["processor", "power-on"])
-def test_a_script_goes_on_over_a_reset(folder: Path, kind: str) -> None:
+def test_script_continues_after_a_reset(folder: Path, kind: str) -> None:
     outcome = fly(
         folder,
         f"""
@@ -181,26 +181,26 @@ def test_a_script_goes_on_over_a_reset(folder: Path, kind: str) -> None:
     assert 2.0 < outcome.verdicts[1].at_s < 5
 
 
-def test_what_follows_a_reset_is_about_the_time_after_it(folder: Path) -> None:
+def test_step_after_a_reset_concerns_the_time_after_it(folder: Path) -> None:
     outcome = fly(folder, "at 2 reset processor\nexpect app OWN RUNNING within 3\nsend OWN_ASK Value=3\n")
     assert outcome.ok, outcome.text()
     reset_s, running_s, sent_s = (each.at_s for each in outcome.verdicts)
     assert 2 < reset_s < 2.1 < 2.4 < running_s == sent_s
 
 
-def test_a_reset_before_anybody_takes_commands_fails(folder: Path) -> None:
+def test_reset_without_a_subscriber_of_commands_fails(folder: Path) -> None:
     outcome = fly(folder, "at 0.01 reset processor\n")
     assert verdicts(outcome) == [(False, 0.01)]
     assert "MsgId 0x1806 has no subscriber" in outcome.text()
 
 
-def test_a_command_that_nobody_takes_fails_its_step(folder: Path) -> None:
+def test_command_without_a_subscriber_fails_its_step(folder: Path) -> None:
     outcome = fly(folder, "send CFE_ES_NOOP\nsend raw 1806c00000010020\nat 2 send CFE_ES_NOOP\n")
     assert verdicts(outcome) == [(False, 0), (True, 0), (True, 2)]
     assert outcome.verdicts[0].detail == "MsgId 0x1806 has no subscriber at this time"
 
 
-def test_an_app_that_dies_is_seen_to_come_back(folder: Path) -> None:
+def test_restart_of_a_dead_app_is_seen(folder: Path) -> None:
     outcome = fly(
         folder,
         """
@@ -214,7 +214,7 @@ def test_an_app_that_dies_is_seen_to_come_back(folder: Path) -> None:
     assert outcome.ok, outcome.text()
 
 
-def test_one_outcome_on_threads_and_greenlets(folder: Path) -> None:
+def test_outcome_is_the_same_on_threads_and_greenlets(folder: Path) -> None:
     pytest.importorskip("greenlet")
     text = "at 2 send OWN_ASK Value=13\nexpect tlm OWN_ANSWER\nexpect no event * ERROR until 4\nexpect app NOBODY\n"
     assert fly(folder, text, tasks="thread") == fly(folder, text, tasks="greenlet") == fly(folder, text)

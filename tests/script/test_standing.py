@@ -50,7 +50,7 @@ def told() -> Iterator[Told]:
         yield found
 
 
-def test_a_line_acts_at_once_whatever_others_wait_for(told: Told) -> None:
+def test_line_acts_at_once_while_others_wait(told: Told) -> None:
     told.run(1)
     told.add("expect event SAMPLE_APP 3 within 3")
     told.add("expect no event * CRITICAL")
@@ -71,7 +71,7 @@ def test_a_line_acts_at_once_whatever_others_wait_for(told: Told) -> None:
     assert guard.ok
 
 
-def test_what_is_given_up_is_told_no_more_but_guards_stay(told: Told) -> None:
+def test_abandoned_steps_are_not_reported_but_guards_are(told: Told) -> None:
     told.run(0.7)
     told.add("expect event NOBODY")
     told.add("expect no event CFE_ES 3")
@@ -85,13 +85,13 @@ def test_what_is_given_up_is_told_no_more_but_guards_stay(told: Told) -> None:
     assert told.script.end() == []
 
 
-def test_a_mistake_does_nothing(told: Told) -> None:
+def test_line_with_a_mistake_does_nothing(told: Told) -> None:
     with pytest.raises(UsageError, match="unknown command NOPE"):
         told.add("send CFE_ES_NOOP\nsend NOPE")
     assert told.verdicts == []
 
 
-def test_the_oldest_packets_are_forgotten_and_numbers_stay(told: Told) -> None:
+def test_oldest_packets_are_dropped_and_numbers_kept(told: Told) -> None:
     few = Collected(most=2)
     told.run(1)
     seen = told.scene.packets.since(0)[:5]

@@ -99,7 +99,7 @@ def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
         ("end now", "unexpected 'now'"),
     ],
 )
-def test_a_mistake_is_told_with_its_place(tmp_path: Path, line: str, said: str) -> None:
+def test_mistake_is_reported_with_its_line(tmp_path: Path, line: str, said: str) -> None:
     with pytest.raises(UsageError) as error:
         script(tmp_path, f"# first line\n{line}\n")
     assert str(error.value).startswith(f"{tmp_path / 'script.txt'}:2: {said}")
@@ -117,12 +117,12 @@ def test_all_wrong_steps_are_raised_together(tmp_path: Path) -> None:
     )
 
 
-def test_times_do_not_go_back(tmp_path: Path) -> None:
+def test_times_that_go_back_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="at 2 is earlier than a step before, at 3"):
         script(tmp_path, "at 3 send CFE_ES_NOOP\nat 2 send CFE_ES_NOOP\n")
 
 
-def test_a_file_that_is_no_script(tmp_path: Path) -> None:
+def test_invalid_script_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="has no steps; add at least one, such as `at 5 send CFE_ES_NOOP`"):
         script(tmp_path, "# nothing\n")
     spec = read_mission(write_mission(tmp_path, STARTUP))
@@ -142,7 +142,7 @@ def test_a_file_that_is_no_script(tmp_path: Path) -> None:
         ("at 2 expect app SAMPLE_APP RUNNING", 2),
     ],
 )
-def test_the_longest_time_that_a_script_takes(tmp_path: Path, text: str, longest_s: float) -> None:
+def test_longest_time_of_a_script_is_computed(tmp_path: Path, text: str, longest_s: float) -> None:
     assert script(tmp_path, text).longest_ns == longest_s * 10**9
 
 
@@ -161,7 +161,7 @@ def spec(tmp_path_factory: pytest.TempPathFactory) -> MissionSpec:
 
 @given(st.lists(st.lists(st.sampled_from(WORDS), max_size=8), min_size=1, max_size=4))
 @settings(max_examples=150, deadline=None)
-def test_any_words_are_a_script_or_a_mistake_with_its_place(spec: MissionSpec, lines: list[list[str]]) -> None:
+def test_any_words_are_a_script_or_a_mistake_with_its_line(spec: MissionSpec, lines: list[list[str]]) -> None:
     text = "\n".join(" ".join(words) for words in lines)
     said = [line for line in (line.partition("#")[0].strip() for line in text.split("\n")) if line]
     try:

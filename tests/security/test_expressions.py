@@ -42,7 +42,7 @@ def evaluated(text: str) -> str:
         ("str(int('7') << 2) + repr('a')", "28'a'"),
     ],
 )
-def test_what_roslaunch_evaluates(text: str, value: str) -> None:
+def test_expression_has_the_value_of_roslaunch(text: str, value: str) -> None:
     assert evaluated(text) == value
 
 
@@ -70,7 +70,7 @@ def test_what_roslaunch_evaluates(text: str, value: str) -> None:
         "max(map(len, [s * i for i in range(9999)]))",
     ],
 )
-def test_what_would_not_end_is_refused(text: str) -> None:
+def test_endless_expression_is_refused(text: str) -> None:
     with pytest.raises(SubstitutionError, match=r"\$\(eval"):
         evaluated(text)
 
@@ -89,12 +89,12 @@ def test_what_would_not_end_is_refused(text: str) -> None:
         "print(1)",
     ],
 )
-def test_what_is_not_allowed_is_refused(text: str) -> None:
+def test_forbidden_expression_is_refused(text: str) -> None:
     with pytest.raises(SubstitutionError):
         evaluated(text)
 
 
-def test_an_expression_is_held_to_its_limits() -> None:
+def test_expression_beyond_its_limits_is_refused() -> None:
     assert value_of(f"(1 << {EXPRESSION_BITS - 1}) > 0", {}) is True
     with pytest.raises(ExpressionError, match="bits"):
         value_of(f"1 << {EXPRESSION_BITS}", {})
@@ -104,7 +104,7 @@ def test_an_expression_is_held_to_its_limits() -> None:
         value_of("(" * 90 + "1" + ")" * 90 + "+ 1" * 70, {})
 
 
-def test_a_text_that_differs_from_run_to_run_is_refused() -> None:
+def test_text_that_differs_between_runs_is_refused() -> None:
     for text in ("{'a', 'b'}", "map(str, s)", "[len]", "env"):
         with pytest.raises(SubstitutionError, match="converts"):
             evaluated(text)

@@ -25,7 +25,7 @@ from dev.fuzz.sample_journal import sample, with_frames
 from ros_libraries.rosbag_storage import compression
 
 
-def test_a_file_of_another_kind_or_size_is_refused(tmp_path: Path) -> None:
+def test_file_of_another_kind_or_size_is_refused(tmp_path: Path) -> None:
     (tmp_path / "x").write_bytes(b"a\r\nb")
     assert read_limited(tmp_path / "x", 4) == b"a\r\nb"
     assert text_limited(tmp_path / "x", 4) == "a\nb"
@@ -37,7 +37,7 @@ def test_a_file_of_another_kind_or_size_is_refused(tmp_path: Path) -> None:
             read_limited(path, 3)
 
 
-def test_yaml_is_held_to_its_limits(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_yaml_beyond_its_limits_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cfepy.reading.plain_yaml.YAML_VALUES", 1000)
     assert len(plain_yaml("[" + "1," * 999 + "]")) == 999
     for text, said in (
@@ -53,7 +53,7 @@ def test_yaml_is_held_to_its_limits(monkeypatch: pytest.MonkeyPatch) -> None:
     assert plain_yaml("'" + "1" * 2000 + "'") == "1" * 2000, "a text may be as long as it likes"
 
 
-def test_the_limit_of_chunks_is_that_of_all_inputs() -> None:
+def test_limit_of_chunks_equals_the_limit_of_inputs() -> None:
     assert compression.LARGEST == BAG_CHUNK_BYTES
 
 
@@ -91,7 +91,7 @@ def test_tables_of_a_bag_are_written_into_their_folder() -> None:
         assert name.isprintable()
 
 
-def test_a_journal_is_unpacked_as_it_was(tmp_path: Path) -> None:
+def test_journal_is_unpacked_unchanged_and_removed(tmp_path: Path) -> None:
     (tmp_path / "run.cfepy").write_bytes(sample())
     found = read_journal(tmp_path / "run.cfepy")
     with staged(found) as stage:
@@ -126,7 +126,7 @@ def test_info_of_a_journal_runs_and_unpacks_nothing(tmp_path: Path, capsys: pyte
 
 
 @pytest.mark.slow
-def test_temporary_folders_go_after_sigterm(tmp_path: Path) -> None:
+def test_temporary_folders_are_removed_after_sigterm(tmp_path: Path) -> None:
     (tmp_path / "run.cfepy").write_bytes(sample())
     program = (
         "import sys, cfepy.journal.replay_files as stage\n"

@@ -231,7 +231,7 @@ def test_differing_traces_print_no_control_characters(tmp_path: Path, capsys: py
     assert FORBIDDEN.findall(text) == []
 
 
-def test_json_is_what_it_was(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_output_keeps_control_characters_escaped(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = str(bag(tmp_path))
     assert main(["rostopic", "list", file, "--json", "-"]) == 0
     text = capsys.readouterr().out
@@ -241,7 +241,7 @@ def test_json_is_what_it_was(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     assert json.loads(capsys.readouterr().out.splitlines()[0])["message"]["frame_id"] == NASTY
 
 
-def test_csv_in_a_pipe_is_what_it_was(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_csv_output_to_a_pipe_is_unchanged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = str(bag(tmp_path, ["/t"]))
     assert main(["export", "csv", file, "/t.frame_id"]) == 0
     assert NASTY in capsys.readouterr().out
@@ -273,7 +273,7 @@ DANGEROUS = re.compile("\x1b[^\\[]|\x1b\\[31m\x9b|[\x80-\x9f\u202a-\u202e\x07\x7
 """Not among what rich writes: other sequences than colours and movements."""
 
 
-def test_a_run_on_a_terminal_has_colours_of_nodes_and_nothing_else(tmp_path: Path) -> None:
+def test_run_on_a_terminal_prints_only_colours_of_nodes(tmp_path: Path) -> None:
     text = on_a_terminal(["run", str(node_file(tmp_path)), "--for", "1"])
     assert "\x1b[32mgreen\x1b[0m" in text
     assert DANGEROUS.findall(text) == []
@@ -287,7 +287,7 @@ def test_tables_on_a_terminal_are_safe(tmp_path: Path) -> None:
     assert "\x1b[" in text  # rich's own
 
 
-def test_a_table_takes_no_markup_of_rich_from_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_table_ignores_rich_markup_of_a_file(monkeypatch: pytest.MonkeyPatch) -> None:
     class Terminal(io.StringIO):
         def isatty(self) -> bool:
             return True

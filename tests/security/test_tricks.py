@@ -31,14 +31,14 @@ QUICKER = {
 
 
 @pytest.mark.parametrize("trick", TRICKS, ids=[trick.name for trick in TRICKS])
-def test_a_trick_does_nothing(
+def test_trick_has_no_effect(
     trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     check(trick, tmp_path, capsys, monkeypatch)
 
 
 @pytest.mark.parametrize("trick", PACKAGE_TRICKS[::3], ids=[trick.name for trick in PACKAGE_TRICKS[::3]])
-def test_a_trick_of_a_package_does_nothing(
+def test_trick_of_a_package_has_no_effect(
     trick: Trick, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     check(trick, tmp_path, capsys, monkeypatch)
@@ -82,7 +82,7 @@ print(os.waitstatus_to_exitcode(status), used.ru_maxrss)
 @pytest.mark.slow
 @pytest.mark.skipif(not hasattr(os, "wait4"), reason="what a process took is not told")
 @pytest.mark.parametrize("trick", PACKAGE_TRICKS, ids=[trick.name for trick in PACKAGE_TRICKS])
-def test_a_trick_of_a_package_takes_little_with_the_limits_as_they_are(trick: Trick, tmp_path: Path) -> None:
+def test_tricks_of_packages_stay_within_the_default_limits(trick: Trick, tmp_path: Path) -> None:
     """This runs all of them, in separate processes; the test above runs a third."""
     folder = tmp_path / "made"
     folder.mkdir()
@@ -97,6 +97,6 @@ def test_a_trick_of_a_package_takes_little_with_the_limits_as_they_are(trick: Tr
     assert memory < MEMORY
 
 
-def test_there_are_fifty() -> None:
+def test_suite_has_fifty_tricks() -> None:
     assert len(TRICKS) >= 50
     assert len({trick.name for trick in (*TRICKS, *PACKAGE_TRICKS)}) == len(TRICKS) + len(PACKAGE_TRICKS)

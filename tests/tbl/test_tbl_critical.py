@@ -40,7 +40,7 @@ def content(bench: Bench, handle: int) -> bytes:
 
 
 @pytest.mark.parametrize("options", [OPT_CRITICAL, OPT_CRITICAL | OPT_DBL_BUFFER], ids=["single", "double"])
-def test_a_critical_table_comes_back(options: int) -> None:
+def test_critical_table_is_restored_after_a_processor_reset(options: int) -> None:
     bench, handle = loaded(options)
     assert handle.status == CFE_SUCCESS
     before = bench.tbl.get_info(NAME)
@@ -53,7 +53,7 @@ def test_a_critical_table_comes_back(options: int) -> None:
     assert (before.critical, before.last_file_loaded, before.time_of_last_update) == (True, "/cf/t.tbl", NOW)
 
 
-def test_in_release_7_0_0_the_load_of_a_recovered_table_stays_in_progress() -> None:
+def test_load_of_a_recovered_table_stays_in_progress_in_7_0_0() -> None:
     bench, _ = loaded()
     after = Bench(bench.store, cfe_version="7.0.0")
     handle = after.tbl.register("T", 4, OPT_CRITICAL)
@@ -64,7 +64,7 @@ def test_in_release_7_0_0_the_load_of_a_recovered_table_stays_in_progress() -> N
     assert caught.value.status == CFE_TBL_ERR_LOAD_IN_PROGRESS
 
 
-def test_the_latest_image_is_kept() -> None:
+def test_latest_image_is_stored() -> None:
     bench, handle = loaded()
     bench.tbl.load(handle, b"2nd.")
     view, _ = bench.tbl.get_address(handle)
@@ -75,7 +75,7 @@ def test_the_latest_image_is_kept() -> None:
     assert content(after, again) == b"Xnd."
 
 
-def test_a_load_from_the_ground_is_kept_once_it_is_active() -> None:
+def test_load_from_the_ground_is_stored_when_it_is_activated() -> None:
     bench, handle = loaded()
     bench.put("/cf/n.tbl", NAME, b"new.")
     bench.ground(packets.LOAD, LoadFilename="/cf/n.tbl")
@@ -85,7 +85,7 @@ def test_a_load_from_the_ground_is_kept_once_it_is_active() -> None:
     assert bench.store.blocks[NAME] == b"new."
 
 
-def test_the_registry_has_the_layout_of_c() -> None:
+def test_registry_has_the_layout_of_c() -> None:
     bench, _ = loaded()
     data = bench.store.blocks[REGISTRY]
     assert len(data) == 4096
@@ -102,7 +102,7 @@ def never_loaded(bench: Bench, handle: TableHandle) -> bool:
 
 
 @pytest.mark.parametrize("broken", [NAME, REGISTRY])
-def test_damage_means_a_table_that_was_never_loaded(broken: str) -> None:
+def test_damaged_table_is_never_loaded(broken: str) -> None:
     bench, _ = loaded()
     bench.store.broken.add(broken)
     after = after_reset(bench)
@@ -112,7 +112,7 @@ def test_damage_means_a_table_that_was_never_loaded(broken: str) -> None:
     assert any("ailed to recover" in line for line in after.log)
 
 
-def test_a_table_that_was_never_loaded_does_not_come_back() -> None:
+def test_table_that_was_never_loaded_is_not_restored() -> None:
     bench = Bench()
     bench.tbl.register("T", 4, OPT_CRITICAL)
     after = after_reset(bench)
@@ -126,7 +126,7 @@ def test_a_table_that_was_never_loaded_does_not_come_back() -> None:
     assert caught.value.status == CFE_TBL_ERR_LOAD_IN_PROGRESS
 
 
-def test_another_size_is_another_table() -> None:
+def test_table_of_another_size_is_new() -> None:
     bench, _ = loaded()
     after = after_reset(bench)
     handle = after.tbl.register("T", 8, OPT_CRITICAL)
@@ -136,7 +136,7 @@ def test_another_size_is_another_table() -> None:
     assert third.tbl.register("T", 8, OPT_CRITICAL).status == CFE_SUCCESS
 
 
-def test_without_a_cds_tables_are_ordinary_ones() -> None:
+def test_tables_are_not_critical_without_a_cds() -> None:
     store = Store()
     store.is_there = False
     bench = Bench(store)

@@ -23,7 +23,7 @@ def test_rows_can_be_given_in_order_or_by_number(rows: Any) -> None:
     assert POINTS.pack(rows) == bytes.fromhex("00000000 01000200 00000000")
 
 
-def test_a_single_row_is_its_fields() -> None:
+def test_single_row_is_given_by_its_fields() -> None:
     assert SINGLE.pack({"Y": 3}) == bytes.fromhex("00000300") == SINGLE.pack([{"Y": 3}])
     assert SINGLE.pack({}) == bytes(4)
 
@@ -51,12 +51,12 @@ def test_image_is_ready_for_a_file() -> None:
         (POINTS, {2: {"X": 256}}, "rows[2].X"),
     ],
 )
-def test_what_does_not_fit(kind: TableType, rows: Any, field: str) -> None:
+def test_values_that_do_not_fit_are_refused(kind: TableType, rows: Any, field: str) -> None:
     with pytest.raises(UsageError) as caught:
         kind.pack(rows)
     assert caught.value.field == field
 
 
-def test_an_image_of_another_size() -> None:
+def test_image_of_another_size_is_refused() -> None:
     with pytest.raises(UsageError, match=r"must have 12 bytes for APP\.Points, not 11"):
         POINTS.unpack(bytes(11))

@@ -56,11 +56,11 @@ def loaded(bench: Bench) -> Bench:
     ],
     ids=["housekeeping", "registry packet", "registry record"],
 )
-def test_layouts_are_those_of_c(layout: Layout, struct: str) -> None:
+def test_layouts_match_nasas_structures(layout: Layout, struct: str) -> None:
     assert_same(layout, struct)
 
 
-def test_the_whole_way_of_a_load(loaded: Bench) -> None:
+def test_load_from_the_ground_updates_the_table(loaded: Bench) -> None:
     handle = loaded.handle  # type: ignore[attr-defined]
     load_file(loaded)
     where = "LoadFile,app=CFE_TBL,file=/cf/t.tbl,tbl=APP.T"
@@ -87,7 +87,7 @@ def test_the_whole_way_of_a_load(loaded: Bench) -> None:
     assert values["LastUpdateTime"] == {"Seconds": NOW[0], "Subseconds": NOW[1]}
 
 
-def test_bad_image_from_the_ground_never_gets_active(loaded: Bench) -> None:
+def test_invalid_image_from_the_ground_is_never_activated(loaded: Bench) -> None:
     loaded.put("/cf/bad.tbl", NAME, b"\xff...")
     load_file(loaded, "/cf/bad.tbl")
     validate(loaded, packets.INACTIVE_BUFFER)
@@ -103,7 +103,7 @@ def test_bad_image_from_the_ground_never_gets_active(loaded: Bench) -> None:
     assert loaded.send_hk()["NumFreeSharedBufs"] == 4
 
 
-def test_there_is_no_inactive_image(bench: Bench) -> None:
+def test_missing_inactive_image_is_reported(bench: Bench) -> None:
     bench.tbl.register("T", 4)
     validate(bench, packets.INACTIVE_BUFFER)
     bench.named(packets.ACTIVATE, NAME)
@@ -113,7 +113,7 @@ def test_there_is_no_inactive_image(bench: Bench) -> None:
     ]
 
 
-def test_table_without_validator_is_taken_as_valid(bench: Bench) -> None:
+def test_table_without_validator_is_valid(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4)
     bench.put("/cf/t.tbl", NAME, b"new.")
     load_file(bench)
@@ -128,19 +128,19 @@ def test_table_without_validator_is_taken_as_valid(bench: Bench) -> None:
 @pytest.mark.parametrize(
     "wish", [packets.SEND_REGISTRY, packets.ABORT_LOAD, packets.DUMP], ids=["reg", "abort", "dump"]
 )
-def test_unknown_tables(bench: Bench, wish: Command) -> None:
+def test_unknown_tables_are_reported(bench: Bench, wish: Command) -> None:
     bench.named(wish, "NO.SUCH")
     assert bench.take_events() == [(57, 3, "Unable to locate 'NO.SUCH' in Table Registry")]
 
 
 @pytest.mark.parametrize("wish", [packets.ACTIVATE, packets.VALIDATE], ids=["activate", "validate"])
-def test_unknown_tables_of_which_nothing_is_said(bench: Bench, wish: Command) -> None:
+def test_activation_and_validation_of_unknown_tables_cause_no_event(bench: Bench, wish: Command) -> None:
     bench.named(wish, "NO.SUCH")
     assert bench.take_events() == []
     assert bench.send_hk()["CommandErrorCounter"] == 1
 
 
-def test_ground_loads_that_cannot_be(loaded: Bench) -> None:
+def test_invalid_loads_from_the_ground_are_refused(loaded: Bench) -> None:
     loaded.put("/cf/x.tbl", "NO.SUCH", b"1234")
     load_file(loaded, "/cf/x.tbl")
     load_file(loaded, "/cf/none.tbl")
@@ -154,7 +154,7 @@ def test_ground_loads_that_cannot_be(loaded: Bench) -> None:
     ]
 
 
-def test_a_refused_file_stays_in_progress_until_it_is_given_up(loaded: Bench) -> None:
+def test_refused_file_stays_in_progress_until_it_is_aborted(loaded: Bench) -> None:
     loaded.files["/cf/t.tbl"] = loaded.files["/cf/t.tbl"][:-1]
     load_file(loaded)
     load_file(loaded)
@@ -166,7 +166,7 @@ def test_a_refused_file_stays_in_progress_until_it_is_given_up(loaded: Bench) ->
     assert (values["NumLoadPending"], values["NumFreeSharedBufs"]) == (0, 4)
 
 
-def test_the_ground_leaves_files_open_whose_headers_are_good(loaded: Bench) -> None:
+def test_valid_files_loaded_from_the_ground_stay_open(loaded: Bench) -> None:
     loaded.files["/cf/short.tbl"] = loaded.files["/cf/t.tbl"][:70]
     load_file(loaded, "/cf/short.tbl")
     load_file(loaded)
@@ -185,7 +185,7 @@ def test_shared_buffers_run_out() -> None:
     assert bench.take_events()[-1] == (60, 3, text)
 
 
-def test_a_single_buffered_table_can_be_dumped_from_its_second_load_on(loaded: Bench) -> None:
+def test_single_buffered_table_can_be_dumped_after_its_second_load(loaded: Bench) -> None:
     dump(loaded, packets.ACTIVE_BUFFER)
     values = loaded.send_hk()
     assert (loaded.take_events(), values["CommandErrorCounter"], values["NumFreeSharedBufs"]) == ([], 1, 4)
@@ -195,7 +195,7 @@ def test_a_single_buffered_table_can_be_dumped_from_its_second_load_on(loaded: B
     assert read(loaded.files["/ram/t.tbl"]).data == b"2nd."
 
 
-def test_dumps_that_failed_keep_their_places(loaded: Bench) -> None:
+def test_failed_dumps_occupy_their_dump_slots(loaded: Bench) -> None:
     for _ in range(4):
         dump(loaded, packets.ACTIVE_BUFFER)
     loaded.take_events()
@@ -247,7 +247,7 @@ def test_dump_of_a_dump_only_table_waits_for_its_owner(bench: Bench) -> None:
     assert "had stale dump request pending" in bench.log[-1]
 
 
-def test_dumps_that_cannot_be(loaded: Bench) -> None:
+def test_invalid_dumps_are_refused(loaded: Bench) -> None:
     dump(loaded, packets.INACTIVE_BUFFER)
     dump(loaded, 7)
     loaded.tbl.load(loaded.handle, b"2nd.")  # type: ignore[attr-defined]
@@ -292,7 +292,7 @@ def test_notification_of_the_owner(loaded: Bench) -> None:
     assert loaded.sent[-1] == bytes(command(0x1882, 5, (0xCAFE).to_bytes(4, "little")))
 
 
-def test_active_image_can_be_validated_too(loaded: Bench) -> None:
+def test_active_image_can_be_validated(loaded: Bench) -> None:
     handle = loaded.handle  # type: ignore[attr-defined]
     validate(loaded, packets.ACTIVE_BUFFER)
     loaded.tbl.manage(handle)
@@ -312,7 +312,7 @@ def test_registry_packet_is_sent_once(loaded: Bench) -> None:
     assert len(loaded.sent) == 1
 
 
-def test_the_registry_packet_of_a_table_that_is_gone_is_the_last_one(loaded: Bench) -> None:
+def test_registry_packet_of_a_removed_table_is_empty(loaded: Bench) -> None:
     loaded.named(packets.SEND_REGISTRY, NAME)
     loaded.tbl.cleanup_app(0x110006)
     loaded.send_hk()
@@ -338,7 +338,7 @@ def test_registry_file(loaded: Bench) -> None:
     assert (record["Name"], record["LoadInProgress"], record["NumUsers"]) == (NAME, -1, 1)
 
 
-def test_other_commands(bench: Bench) -> None:
+def test_other_commands_are_counted(bench: Bench) -> None:
     bench.ground(packets.NOOP)
     bench.receive(bytes(command(packets.CMD_MID, 99)))
     bench.receive(bytes(command(packets.CMD_MID, 0, b"x")))
@@ -368,7 +368,7 @@ def test_pool_is_made_at_early_init(bench: Bench) -> None:
 
 
 @pytest.mark.parametrize(("version", "told"), [("7.0.0", b"Xld."), ("7.0.1", b"old.")])
-def test_the_crc_of_a_validation(version: str, told: bytes) -> None:
+def test_validation_reports_the_crc(version: str, told: bytes) -> None:
     loaded = Bench(cfe_version=version)
     handle = loaded.tbl.register("T", 4, 0, lambda image: 0)
     loaded.tbl.load(handle, b"old.")

@@ -31,7 +31,7 @@ def test_faults_of_rows_name_row_and_field() -> None:
 
 
 @pytest.mark.parametrize("name", ["", "Table", "APP." + "x" * 36])
-def test_names_that_no_table_has(name: str) -> None:
+def test_invalid_table_names_are_refused(name: str) -> None:
     with pytest.raises(UsageError) as caught:
         build(TableImage(name, b"1"))
     assert caught.value.field == "name"
@@ -42,7 +42,7 @@ def test_image_without_data() -> None:
         build(TableImage("APP.T", b""))
 
 
-def test_written_beside_its_definition(tmp_path: Path) -> None:
+def test_table_file_is_written_next_to_its_definition(tmp_path: Path) -> None:
     image = TableImage("APP.T", b"1234", "a table")
     path = write_beside(str(tmp_path / "t.py"), image)
     assert path == tmp_path / "t.tbl"
@@ -50,12 +50,12 @@ def test_written_beside_its_definition(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["hk_cpy_tbl", "sample_app_tbl", "sch_lab_table", "to_lab_sub"])
-def test_files_of_elf2cfetbl_are_built_to_the_byte(name: str) -> None:
+def test_files_equal_files_of_elf2cfetbl(name: str) -> None:
     data = (DATA / f"{name}.tbl").read_bytes()
     assert build(read(data)) == data
 
 
-def test_a_mark_is_the_reserved_word_and_nothing_else() -> None:
+def test_mark_changes_only_the_reserved_word() -> None:
     plain = build(TableImage("APP.T", b"1234", "a table"))
     marked = with_mark(plain)
     assert (mark_in(plain), mark_in(marked)) == (0, MARK_TAG | crc16(plain))
@@ -64,7 +64,7 @@ def test_a_mark_is_the_reserved_word_and_nothing_else() -> None:
     assert with_mark(marked) == marked
 
 
-def test_which_files_are_intact() -> None:
+def test_intact_files_are_distinguished_from_damaged_ones() -> None:
     marked = with_mark(build(TableImage("APP.T", b"1234")))
     assert is_intact(build(TableImage("APP.T", b"1234")))
     assert is_intact(marked)

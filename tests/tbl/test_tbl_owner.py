@@ -68,7 +68,7 @@ def failure(call: object, *args: object, **more: object) -> int:
     return caught.value.status
 
 
-def test_first_load_goes_straight_to_the_active_buffer(bench: Bench) -> None:
+def test_first_load_updates_the_active_buffer(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4)
     assert failure(bench.tbl.get_address, handle) == CFE_TBL_ERR_NEVER_LOADED
     bench.put("/cf/t.tbl", "APP.T", b"abcd")
@@ -121,7 +121,7 @@ def test_duplicates(bench: Bench) -> None:
     assert failure(bench.tbl.register, "T", 4) == CFE_TBL_ERR_DUPLICATE_NOT_OWNED
 
 
-def test_limits_leave_nothing_behind() -> None:
+def test_full_limits_leave_no_entries() -> None:
     shared, small = 4 * (32 + 16384), 32 + 48
     bench = Bench(tbl_max_num_tables=2, tbl_max_num_handles=3, tbl_buf_memory_bytes=shared + 2 * small)
     bench.tbl.register("A", 40)
@@ -132,7 +132,7 @@ def test_limits_leave_nothing_behind() -> None:
     assert failure(bench.tbl.share, "APP.A") == CFE_TBL_ERR_HANDLES_FULL
 
 
-def test_who_may_do_what(bench: Bench) -> None:
+def test_access_to_a_table_depends_on_the_application(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4)
     bench.tbl.load(handle, b"1234")
     bench.as_app("OTHER")
@@ -155,7 +155,7 @@ def test_who_may_do_what(bench: Bench) -> None:
     assert failure(bench.tbl.register, "T", 4) == CFE_ES_ERR_RESOURCEID_NOT_VALID
 
 
-def test_shared_table_outlives_its_owner_until_given_back(bench: Bench) -> None:
+def test_shared_table_exists_until_its_last_user_unregisters(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4)
     bench.tbl.load(handle, b"1234")
     bench.as_app("OTHER")
@@ -182,7 +182,7 @@ FILE_FAULTS = [
 
 
 @pytest.mark.parametrize(("path", "status", "event_id", "text"), FILE_FAULTS)
-def test_bad_files(bench: Bench, path: str, status: int, event_id: int, text: str) -> None:
+def test_invalid_files_are_refused(bench: Bench, path: str, status: int, event_id: int, text: str) -> None:
     bench.put("/cf/good.tbl", "APP.T", b"abcd")
     good = bench.files["/cf/good.tbl"]
     bench.files |= {
@@ -201,7 +201,7 @@ def test_bad_files(bench: Bench, path: str, status: int, event_id: int, text: st
     assert bench.tbl.load(handle, "/cf/good.tbl") == CFE_SUCCESS
 
 
-def test_short_and_partial_files_keep_the_rest(bench: Bench) -> None:
+def test_short_and_partial_files_keep_the_remaining_bytes(bench: Bench) -> None:
     handle = bench.tbl.register("T", 6)
     bench.put("/cf/short.tbl", "APP.T", b"ab")
     bench.put("/cf/part.tbl", "APP.T", b"XY", offset=3)
@@ -212,7 +212,7 @@ def test_short_and_partial_files_keep_the_rest(bench: Bench) -> None:
     assert failure(bench.tbl.load, handle, b"12") == CFE_TBL_ERR_LOAD_INCOMPLETE
 
 
-def test_validator_refuses(bench: Bench) -> None:
+def test_validator_can_refuse_an_image(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4, 0, lambda image: -7 if image[0] == 0xFF else 0)
     bench.tbl.load(handle, b"good")
     bench.take_events()
@@ -224,13 +224,13 @@ def test_validator_refuses(bench: Bench) -> None:
     assert not bench.tbl.registry.by_name("APP.T").is_loading
 
 
-def test_positive_result_of_a_validator_is_a_fault_of_its_own(bench: Bench) -> None:
+def test_positive_result_of_a_validator_is_a_failure(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4, 0, lambda image: 1)
     assert failure(bench.tbl.load, handle, b"1234") == CFE_STATUS_VALIDATION_FAILURE
     assert [event[0] for event in bench.take_events()] == [93, 96]
 
 
-def test_validator_that_raises_leaves_the_table_alone(bench: Bench) -> None:
+def test_validator_that_raises_does_not_change_the_table(bench: Bench) -> None:
     def broken(image: memoryview) -> int:
         raise ZeroDivisionError
 
@@ -286,7 +286,7 @@ def test_single_buffer_waits_for_the_reader(bench: Bench) -> None:
     assert bench.tbl.update(handle) == CFE_TBL_INFO_NO_UPDATE_PENDING
 
 
-def test_modified_tells_the_others(bench: Bench) -> None:
+def test_modified_table_is_reported_to_other_users(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4)
     bench.tbl.load(handle, b"1234")
     content(bench, handle)
@@ -322,7 +322,7 @@ def test_table_at_an_address_of_the_app(bench: Bench) -> None:
     assert failure(bench.tbl.load, handle, mine) == CFE_TBL_ERR_DUMP_ONLY
 
 
-def test_several_addresses_are_all_or_none(bench: Bench) -> None:
+def test_several_addresses_are_returned_together_or_not_at_all(bench: Bench) -> None:
     first, second = bench.tbl.register("A", 1), bench.tbl.register("B", 1)
     bench.tbl.load(first, b"a")
     assert failure(bench.tbl.get_addresses, [first, second]) == CFE_TBL_ERR_NEVER_LOADED
@@ -342,7 +342,7 @@ def test_handle_ids(bench: Bench) -> None:
     assert bench.tbl.handle_id_is_equal(handle, bench.tbl.handle_id_as_int(handle))
 
 
-def test_files_for_others_are_refused_where_that_is_configured() -> None:
+def test_files_for_other_spacecraft_are_refused_when_configured() -> None:
     bench = Bench(tbl_valid_scid=(0x42, 0x43), tbl_valid_prid=(1,))
     handle = bench.tbl.register("T", 4)
     bench.put("/cf/t.tbl", "APP.T", b"abcd")
@@ -359,7 +359,7 @@ def test_files_for_others_are_refused_where_that_is_configured() -> None:
     ]
 
 
-def test_a_file_with_a_wrong_mark_is_refused(bench: Bench) -> None:
+def test_file_with_a_wrong_mark_is_refused(bench: Bench) -> None:
     handle = bench.tbl.register("T", 4)
     good = with_mark(build(TableImage("APP.T", b"abcd")))
     bench.files["/cf/t.tbl"] = good
@@ -371,7 +371,7 @@ def test_a_file_with_a_wrong_mark_is_refused(bench: Bench) -> None:
     assert bench.take_events() == [(61, 3, f"LoadFile,app=APP,file=/cf/t.tbl,tbl=APP.T:{text}")]
 
 
-def test_addresses_of_several_tables_as_c_has_them(bench: Bench) -> None:
+def test_addresses_of_several_tables_are_returned_as_in_c(bench: Bench) -> None:
     first, second, third = (bench.tbl.register(name, 1) for name in ("A", "B", "C"))
     bench.tbl.load(first, b"a")
     bench.tbl.load(third, b"c", address=0x1234)
@@ -382,13 +382,13 @@ def test_addresses_of_several_tables_as_c_has_them(bench: Bench) -> None:
     assert bench.tbl.get_addresses_in_c([second, third])[1] == CFE_TBL_ERR_NEVER_LOADED
 
 
-def test_a_source_that_is_neither_a_file_nor_an_address(bench: Bench) -> None:
+def test_unknown_source_type_is_refused(bench: Bench) -> None:
     table = bench.tbl.register("A", 1)
     assert failure(bench.tbl.load, table, b"a", source_type=-1) == CFE_TBL_ERR_ILLEGAL_SRC_TYPE
     assert "Attempted to load from illegal source type=-1" in bench.events[-1][2]
 
 
-def test_tables_keep_copies_of_memory_that_leaves(bench: Bench) -> None:
+def test_tables_keep_copies_of_memory_that_is_freed(bench: Bench) -> None:
     single = bench.tbl.register("A", 1)
     own = bytearray(b"mine")
     user = bench.tbl.register("B", 4, OPT_USR_DEF_ADDR)

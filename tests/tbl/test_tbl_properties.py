@@ -64,7 +64,7 @@ def test_every_flipped_bit_of_the_headers_is_found_or_harmless() -> None:
 
 
 @pytest.mark.parametrize("by_ground", [False, True], ids=["owner", "ground"])
-def test_with_a_mark_every_flipped_bit_is_found(by_ground: bool) -> None:
+def test_every_flipped_bit_of_a_marked_file_is_found(by_ground: bool) -> None:
     bench, handle = loaded_bench()
     marked = with_mark(GOOD)
     for bit in range(len(marked) * 8):
@@ -99,7 +99,7 @@ def test_any_bytes_as_a_file(data: bytes) -> None:
     offset=st.integers(0, 2**32 - 1),
     time=st.tuples(st.integers(0, 2**32 - 1), st.integers(0, 2**32 - 1)),
 )
-def test_image_goes_there_and_back(
+def test_image_survives_a_round_trip(
     name: str, data: bytes, description: str, offset: int, time: tuple[int, int]
 ) -> None:
     image = TableImage(name, data, description, offset, time=time)

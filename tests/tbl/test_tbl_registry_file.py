@@ -29,7 +29,7 @@ def test_records_are_packed_to_the_byte() -> None:
         assert pk.REGISTRY_RECORD.pack(pk.REGISTRY_RECORD.unpack(GOLDEN, at)) == GOLDEN[at : at + SIZE]
 
 
-def test_the_file_is_that_of_nasa(tmp_path: Path) -> None:
+def test_registry_file_matches_nasas(tmp_path: Path) -> None:
     with Mission(write_mission(tmp_path, STARTUP, mission_yaml=RECORDED_WITH), console=Console(quiet=True)) as mission:
         mission.run_for(3)
         packet = pk.DUMP_REGISTRY.packet()

@@ -40,7 +40,7 @@ def validate(bench: Bench, which: int, name: str = NAME) -> None:
     bench.ground(packets.VALIDATE, ActiveTableFlag=which, TableName=name)
 
 
-def test_no_table_can_be_loaded_from_the_ground() -> None:
+def test_load_from_the_ground_is_refused_in_7_0_0() -> None:
     bench, _ = make_bench("7.0.0")
     bench.ground(packets.LOAD, LoadFilename="/cf/t.tbl")
     assert texts(bench) == [
@@ -52,7 +52,7 @@ def test_no_table_can_be_loaded_from_the_ground() -> None:
     assert bench.send_hk()["CommandErrorCounter"] == 2
 
 
-def test_a_load_that_waits_for_a_lock_takes_a_file_of_the_ground() -> None:
+def test_load_that_waits_for_a_lock_accepts_a_file_from_the_ground() -> None:
     bench, handle = make_bench("7.0.0")
     bench.tbl.get_address(handle)
     bench.tbl.load(handle, b"wait")
@@ -99,7 +99,7 @@ def test_validations() -> None:
     assert texts(bench) == [(96, "APP validation failed for APP.T 'active', Status=0x00000000")]
 
 
-def test_a_request_that_was_replaced_is_never_answered() -> None:
+def test_replaced_request_is_never_answered() -> None:
     bench, handle = make_bench("7.0.0")
     for _ in range(10):
         validate(bench, packets.ACTIVE_BUFFER)
@@ -110,7 +110,7 @@ def test_a_request_that_was_replaced_is_never_answered() -> None:
     assert [bench.send_hk()["ValidationCounter"] for _ in range(2)] == [1, 1]
 
 
-def test_a_request_while_one_is_pending_is_told_of_in_7_0_1() -> None:
+def test_repeated_request_is_reported_in_7_0_1() -> None:
     bench, _ = make_bench("7.0.1")
     for _ in range(2):
         validate(bench, packets.ACTIVE_BUFFER)
@@ -149,7 +149,7 @@ def test_activations() -> None:
         ("7.0.1", 81, "Activate,app=,tbl=APP.T:Cannot activate table, Inactive image not Validated"),
     ],
 )
-def test_what_cannot_be_activated(version: str, event_id: int, text: str) -> None:
+def test_invalid_activation_is_refused(version: str, event_id: int, text: str) -> None:
     bench, handle = make_bench(version)
     bench.tbl.register("D", 4, OPT_DUMP_ONLY)
     if event_id == 81:
@@ -180,7 +180,7 @@ def test_the_notification_of_an_owner(version: str, size: int) -> None:
     assert (len(packet), get_size(packet), get_fcn_code(packet.ljust(8, b"\0"))) == (size, size, 5)
 
 
-def test_a_handle_that_is_none_is_not_told_of() -> None:
+def test_invalid_handle_causes_no_event_in_7_0_0() -> None:
     bench, _ = make_bench("7.0.0")
     with pytest.raises(CfeError):
         bench.tbl.load(99, b"data")
@@ -200,7 +200,7 @@ def test_an_end_beyond_32_bits(version: str, event_id: int) -> None:
 
 
 @pytest.mark.parametrize(("version", "told"), [("7.0.0", []), ("7.0.1", [101])])
-def test_a_path_that_is_too_long(version: str, told: list[int]) -> None:
+def test_too_long_path_is_reported_only_in_7_0_1(version: str, told: list[int]) -> None:
     bench, handle = make_bench(version)
     bench.too_long = "/cf/" + "x" * 80
     with pytest.raises(CfeError):

@@ -127,7 +127,7 @@ def suite(pytester: pytest.Pytester, missions: Path) -> Suite:
 
 def told_command(result: pytest.RunResult) -> str:
     """Return the last command that a run prints for its repetition."""
-    found = re.findall(r"the same again: (pytest .*)", result.stdout.str())
+    found = re.findall(r"to reproduce: (pytest .*)", result.stdout.str())
     assert found, result.stdout.str()
     return str(found[-1])
 

@@ -29,7 +29,7 @@ TEST = ["-m", "pytest", "-q", "-p", "no:randomly", "-p", "cfepy.testing.plugin",
 
 @pytest.mark.parametrize("tasks", ["auto", "thread", "greenlet"])
 @pytest.mark.parametrize("command", [RUN, [*TEST, "--cfepy-tasks"], [*TEST, "-n2", "--cfepy-tasks"]])
-def test_every_line_that_ran_is_counted(command: list[str], tasks: str, tmp_path: Path) -> None:
+def test_every_executed_line_is_counted(command: list[str], tasks: str, tmp_path: Path) -> None:
     for name, text in FILES.items():
         path = tmp_path / name
         path.parent.mkdir(exist_ok=True)

@@ -15,7 +15,7 @@ EXAMPLES = re.findall(r"^```python\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 
 
 @pytest.mark.slow
-def test_its_examples_pass(pytester: pytest.Pytester, loaded: None) -> None:
+def test_examples_of_the_page_pass(pytester: pytest.Pytester, loaded: None) -> None:
     tests = pytester.path / "tests"
     shutil.copytree(PROBE / "mission", pytester.path / "mission")
     tests.mkdir()
@@ -26,7 +26,7 @@ def test_its_examples_pass(pytester: pytest.Pytester, loaded: None) -> None:
     assert len(EXAMPLES) >= 6
 
 
-def test_what_it_names_is_there(pytester: pytest.Pytester) -> None:
+def test_names_of_the_page_exist(pytester: pytest.Pytester) -> None:
     for name in re.findall(r"`flight\.(\w+)", TEXT):
         assert hasattr(Flight, name) or name in ("mission",), name
     told = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--help").stdout.str()

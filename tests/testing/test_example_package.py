@@ -12,7 +12,7 @@ PROBE = ROOT / "examples" / "probe"
 
 
 @pytest.mark.parametrize("tasks", [pytest.param(each, marks=pytest.mark.slow) for each in ("thread", "greenlet")])
-def test_its_tests_pass(pytester: pytest.Pytester, loaded: None, tasks: str) -> None:
+def test_tests_of_the_example_package_pass(pytester: pytest.Pytester, loaded: None, tasks: str) -> None:
     shutil.copytree(PROBE, pytester.path / "probe", ignore=shutil.ignore_patterns("__pycache__", ".*"))
     result = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--cfepy-tasks", tasks, "probe")
     outcomes = result.parseoutcomes()

@@ -28,17 +28,17 @@ def test_total(mission):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_race_is_found_and_shrunk_and_found_again(suite: Suite, missions: Path, tasks: str) -> None:
+def test_race_is_found_shrunk_and_reproduced(suite: Suite, missions: Path, tasks: str) -> None:
     result = suite(RACE.format(policy="random", shrink=200), "--cfepy-tasks", tasks, "--cfepy-record", "kept")
     result.assert_outcomes(failed=1)
     text = result.stdout.str()
-    assert re.search(r"failed under the \d+\. of 60 schedules, random:\d+", text)
+    assert re.search(r"failed under schedule \d+ of 60, random:\d+", text)
     shortest = re.search(r"the shortest schedule that fails in this way, after \d+ runs: moves:(\S+)", text)
     assert shortest is not None
     assert shortest[1].count("=") <= 3
     assert 1 <= len(re.findall("=== (?:PREEMPTED|NOT FIRST|AFTER)", text)) <= shortest[1].count("=")
     assert re.search(r"time, s +.*RACY", text)
-    assert re.findall("the same again: (.*)", text) == [told_command(result)] * 2  # with the error and at the end
+    assert re.findall("to reproduce: (.*)", text) == [told_command(result)] * 2  # with the error and at the end
     check_command(text, told_command(result), missions)
     check_journal(missions / "kept", shortest[1])
 
@@ -60,18 +60,18 @@ def check_journal(folder: Path, moves: str) -> None:
 
 
 @pytest.mark.slow
-def test_pct_finds_it_too_and_need_not_be_shrunk(suite: Suite) -> None:
+def test_pct_finds_the_race_without_shrinking(suite: Suite) -> None:
     result = suite(RACE.format(policy="pct", shrink=0))
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["failed under the *. of 60 schedules, pct:*", "*--cfepy-schedule pct:*"])
-    expected = re.search(r"of 60 schedules, pct:\d+:3:(\d+)", result.stdout.str())
+    result.stdout.fnmatch_lines(["failed under schedule * of 60, pct:*", "*--cfepy-schedule pct:*"])
+    expected = re.search(r"of 60, pct:\d+:3:(\d+)", result.stdout.str())
     assert expected is not None  # a test has its own length, and not the 1000 decisions of a schedule's default
     assert int(expected[1]) < 200
     result.stdout.no_fnmatch_line("*the shortest schedule*")
 
 
 @pytest.mark.slow
-def test_races_let_a_test_fail_that_went_well(suite: Suite) -> None:
+def test_data_race_fails_a_test_that_would_pass(suite: Suite) -> None:
     test = RACE.format(policy="random", shrink=10).replace("explore(", "explore(races=True, ")
     result = suite(test, "--cfepy-schedules", "1")
     result.assert_outcomes(failed=1)
@@ -84,7 +84,7 @@ def test_fifo_is_the_first_schedule_and_finds_nothing(suite: Suite) -> None:
     suite(RACE.format(policy="random", shrink=10), "--cfepy-schedule", "fifo").assert_outcomes(passed=1)
 
 
-def test_each_schedule_has_fixtures_of_its_own(suite: Suite) -> None:
+def test_each_schedule_has_its_own_fixtures(suite: Suite) -> None:
     result = suite(
         """
         import re
@@ -162,7 +162,7 @@ def test_failures_other_than_of_the_call(suite: Suite) -> None:
     result.assert_outcomes(errors=2, skipped=1, xfailed=1, passed=1)
 
 
-def test_a_test_that_explores_nothing_is_told(suite: Suite) -> None:
+def test_that_explores_nothing_fails(suite: Suite) -> None:
     result = suite(
         """
         import pytest
@@ -181,7 +181,7 @@ def test_a_test_that_explores_nothing_is_told(suite: Suite) -> None:
     result.stdout.fnmatch_lines(["*@explore: the test must boot a mission under the schedules*"])
 
 
-def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
+def test_several_missions_have_the_schedule_of_the_test(suite: Suite) -> None:
     result = suite(
         """
         def test_it(mission):
@@ -195,7 +195,7 @@ def test_several_missions_have_the_schedule_all(suite: Suite) -> None:
     result.assert_outcomes(passed=1)
 
 
-def test_wrong_arguments() -> None:
+def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(UsageError, match="unknown policy 'fancy'; expected all, random, pct or abreast"):
         explore(policy="fancy")
     with pytest.raises(UsageError, match="seeds"):
@@ -226,7 +226,7 @@ def test_a_misspelt_option_of_a_mission_gets_the_nearest_one(suite: Suite) -> No
     )
 
 
-def test_a_decorator_without_parentheses_is_told() -> None:
+def test_decorator_without_parentheses_is_refused() -> None:
     bare: Any = explore
     with pytest.raises(UsageError, match=r"@explore: requires parentheses: write @explore\(\)"):
         bare(lambda mission: None)
@@ -243,7 +243,7 @@ def test_options_of_schedules() -> None:
     ]
 
 
-def test_the_default_is_that_of_the_command() -> None:
+def test_default_policy_equals_the_default_of_the_command() -> None:
     """As many kinds by turns as `cfepy explore` has, and PCT counts on as many decisions as the longest run had."""
     lengths = iter([40, 60, *[50] * 6])
     choice = explore(seeds=8).args[0]
@@ -261,12 +261,12 @@ def test_the_default_is_that_of_the_command() -> None:
 
 
 @pytest.mark.slow
-def test_explore_of_the_command_line_shrinks_to_the_same(suite: Suite, missions: Path) -> None:
+def test_explore_command_shrinks_to_the_same_schedule(suite: Suite, missions: Path) -> None:
     """It is the same function with the same budget: `cfepy explore` on the schedule under which the test failed."""
     result = suite(RACE.format(policy="random", shrink=None))
     result.assert_outcomes(failed=1)
     text = result.stdout.str()
-    failed = re.search(r"failed under the (\d+)\. of 60 schedules, (random:\d+)", text)
+    failed = re.search(r"failed under schedule (\d+) of 60, (random:\d+)", text)
     told = re.search(r"in this way, after (\d+) runs: (moves:\S+)", text)
     assert failed is not None
     assert told is not None

@@ -25,7 +25,7 @@ def test_small(mission, message, schedule):
 
 
 @pytest.mark.slow
-def test_the_failing_example_is_small_and_can_be_given_on(suite: Suite, missions: Path) -> None:
+def test_failing_example_is_small_and_can_be_repeated(suite: Suite, missions: Path) -> None:
     result = suite(BIG)
     result.assert_outcomes(failed=1)
     text = result.stdout.str()
@@ -36,7 +36,7 @@ def test_the_failing_example_is_small_and_can_be_given_on(suite: Suite, missions
     assert "--cfepy-example" in command
     again = given_verbatim(command, missions)
     assert again.returncode == 1
-    assert f"the same again: {command}" in again.stdout
+    assert f"to reproduce: {command}" in again.stdout
     said = [re.findall(r"E +instead: .*", each) for each in (text, again.stdout)]
     assert said[0] == said[1] != []
 
@@ -61,7 +61,7 @@ def test_a_journal_of_the_failing_example_is_kept(suite: Suite, missions: Path) 
     assert [each.name for each in (missions / "kept").iterdir()] == ["test_it.py-test_it.cfepy"]
 
 
-def test_a_folder_for_journals_that_cannot_be(suite: Suite, missions: Path) -> None:
+def test_invalid_folder_for_journals_is_refused(suite: Suite, missions: Path) -> None:
     (missions / "kept").write_text("", encoding="utf-8")
     result = suite("def test_it(mission):\n    mission('talk')\n", "--cfepy-record", "kept")
     result.assert_outcomes(errors=1)
@@ -92,7 +92,7 @@ def test_each_example_has_its_own_missions(suite: Suite) -> None:
     result.assert_outcomes(passed=2)
 
 
-def test_an_example_that_is_none(suite: Suite) -> None:
+def test_invalid_example_is_refused(suite: Suite) -> None:
     suite(BIG, "--cfepy-example", "nonsense").stdout.fnmatch_lines(
         ["*not a valid example; copy the string printed with the failure*"]
     )

@@ -43,7 +43,7 @@ def test_a_mission_flies(suite: Suite) -> None:
     ).assert_outcomes(passed=1)
 
 
-def test_a_failure_says_what_there_was_instead(suite: Suite) -> None:
+def test_failed_expectation_reports_the_actual_values(suite: Suite) -> None:
     result = suite(WAITS.format(act="flight.publish('/jump', data=76)"))
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(
@@ -52,7 +52,7 @@ def test_a_failure_says_what_there_was_instead(suite: Suite) -> None:
             "*instead: * messages, the last: data: * at *",
             "*console until 1.*",
             "*talker*talking*",
-            "*the same again: pytest test_it.py::test_it --cfepy-seed 0 --cfepy-schedule fifo",
+            "*to reproduce: pytest test_it.py::test_it --cfepy-seed 0 --cfepy-schedule fifo",
         ]
     )
 
@@ -70,7 +70,7 @@ turns = 0
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_task_that_does_not_give_up_the_cpu_fails_its_test_alone(
+def test_task_that_does_not_give_up_the_cpu_fails_its_own_test_only(
     suite: Suite, tasks: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(watchdog.Expenses, "__call__", lambda self: Spent(turns / 1e5, turns / 1e5, 0.0))
@@ -101,7 +101,7 @@ def test_a_task_that_does_not_give_up_the_cpu_fails_its_test_alone(
 
 
 @pytest.mark.slow
-def test_the_command_fails_in_the_same_way(suite: Suite, missions: Path) -> None:
+def test_replay_command_fails_in_the_same_way(suite: Suite, missions: Path) -> None:
     result = suite(
         WAITS.format(act="flight.set_param('/talker/step', 7)"), "--cfepy-seed", "3", "--cfepy-tasks", "thread"
     )
@@ -114,21 +114,21 @@ def test_the_command_fails_in_the_same_way(suite: Suite, missions: Path) -> None
     assert said[0] == said[1] != []
 
 
-def test_a_test_that_only_looks_on_is_a_run_of_the_command_line(
+def test_without_actions_equals_a_run_of_the_command_line(
     suite: Suite, missions: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     text = WAITS.format(act="pass") + "\ndef test_trace(mission):\n    flight = mission('talk')\n"
     text += "    flight.run_until(1.5)\n    open('trace', 'w').write(flight.results.trace)\n"
     result = suite(text, "--cfepy-seed", "5", "--cfepy-schedule", "random:2")
     result.assert_outcomes(failed=1, passed=1)
-    commands = re.findall(r"the same again: cfepy (run .*)", result.stdout.str())
+    commands = re.findall(r"to reproduce: cfepy (run .*)", result.stdout.str())
     assert commands == ["run --for 1.100001 --seed 5 --schedule random:2 talk"]
     monkeypatch.chdir(missions)
     assert main([*commands[0].replace("1.100001", "1.5").split(), "--quiet"]) == 0
     assert capsys.readouterr().out.split()[-1] == (missions / "trace").read_text(encoding="utf-8")
 
 
-def test_missions_are_closed_and_no_thread_is_left(suite: Suite) -> None:
+def test_missions_are_closed_and_threads_ended(suite: Suite) -> None:
     before = {each for each in threading.enumerate() if "cfepy" not in each.name}
     result = suite(
         """
@@ -164,7 +164,7 @@ def test_missions_are_closed_and_no_thread_is_left(suite: Suite) -> None:
     assert {each for each in threading.enumerate() if "cfepy" not in each.name} == before
 
 
-def test_the_failure_of_an_assertion_has_the_console_too(suite: Suite) -> None:
+def test_failed_assertion_shows_the_console(suite: Suite) -> None:
     result = suite(
         """
         def test_it(mission):
@@ -173,10 +173,10 @@ def test_the_failure_of_an_assertion_has_the_console_too(suite: Suite) -> None:
             assert not flight.messages('/count')
         """
     )
-    result.stdout.fnmatch_lines(["*cfepy*", "console until 1.000:", "*the same again: pytest test_it.py::test_it *"])
+    result.stdout.fnmatch_lines(["*cfepy*", "console until 1.000:", "*to reproduce: pytest test_it.py::test_it *"])
 
 
-def test_paths_are_seen_from_the_test_file(pytester: pytest.Pytester, missions: Path) -> None:
+def test_paths_are_relative_to_the_test_file(pytester: pytest.Pytester, missions: Path) -> None:
     inner = pytester.mkdir("tests")
     (inner / "test_deep.py").write_text(
         "def test_it(mission):\n    assert mission('../talk').plan.words == ('talk',)\n", encoding="utf-8"
@@ -193,11 +193,11 @@ def test_paths_are_seen_from_the_test_file(pytester: pytest.Pytester, missions: 
         ("mission('talk').expect_event('CFE_ES', 999, within=1)", "*ExpectationError*"),
     ],
 )
-def test_what_a_test_does_wrong_shows_its_own_line(line: str, says: str, suite: Suite) -> None:
+def test_mistake_in_a_test_shows_its_own_line(line: str, says: str, suite: Suite) -> None:
     result = suite(f"def test_it(mission):\n    {line}\n")
     result.stdout.fnmatch_lines([f">*{line}", f"E  *{says}"])
     shown = result.stdout.str().split("= FAILURES")[1].split("short test summary")[0]
-    assert own_files(re.sub(r"replay: .*|the same again: .*", "", shown)) == []
+    assert own_files(re.sub(r"replay: .*|to reproduce: .*", "", shown)) == []
     assert "contextlib.py" not in shown
 
 
@@ -214,12 +214,12 @@ def test_journals_of_failed_tests_are_kept_and_replay(suite: Suite, missions: Pa
 
 
 @pytest.mark.skipif(sys.flags.optimize > 1, reason="python -OO leaves docstrings out")
-def test_the_fixture_tells_what_it_is(pytester: pytest.Pytester) -> None:
+def test_fixture_has_a_description(pytester: pytest.Pytester) -> None:
     result = pytester.runpytest_inprocess("-p", "cfepy.testing.plugin", "--fixtures")
     result.stdout.fnmatch_lines(["mission [[]session scope[]]*", "*Boot missions*"])
 
 
-def test_other_suites_import_nothing() -> None:
+def test_plugin_imports_nothing_for_other_suites() -> None:
     code = "import pytest, sys; before = set(sys.modules); import cfepy.testing.plugin as plugin"
     code += "; print(*sorted(set(sys.modules) - before))"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
@@ -232,12 +232,12 @@ def test_other_suites_import_nothing() -> None:
     ]
 
 
-def test_the_plugin_knows_the_mark_of_explored_tests() -> None:
+def test_plugin_defines_the_mark_of_explored_tests() -> None:
     assert plugin.EXPLORE_MARK == exploration.EXPLORE_MARK
 
 
 @pytest.mark.slow
-def test_a_suite_without_missions_loads_nothing_more(pytester: pytest.Pytester) -> None:
+def test_suite_without_missions_loads_no_further_module(pytester: pytest.Pytester) -> None:
     pytester.makepyfile(
         "import sys\n\ndef test_it():\n    print(*(name for name in sys.modules if name.startswith('cfepy.')))\n"
     )
@@ -248,7 +248,7 @@ def test_a_suite_without_missions_loads_nothing_more(pytester: pytest.Pytester) 
     assert "cfepy.testing cfepy.testing.plugin\n" in done.stdout
 
 
-def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> None:
+def test_problems_are_reported_with_every_failure(suite: Suite, missions: Path) -> None:
     stuck = """
     import threading
     import rospy
@@ -280,7 +280,7 @@ def test_problems_are_told_with_every_failure(suite: Suite, missions: Path) -> N
 
 
 @pytest.mark.slow
-def test_pytest_finds_it_by_itself_where_it_is_installed(pytester: pytest.Pytester) -> None:
+def test_installed_plugin_is_found_by_pytest(pytester: pytest.Pytester) -> None:
     points = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["entry-points"]["pytest11"]
     installed = pytester.mkdir("cfepy-0.dist-info")
     (installed / "METADATA").write_text("Metadata-Version: 2.1\nName: cfepy\nVersion: 0\n", encoding="utf-8")

@@ -65,7 +65,7 @@ def test_messages_shrink() -> None:
     assert (found.name, found.header.frame_id, found.header.stamp.secs) == ([], "", 0)
 
 
-def test_messages_that_there_are_not() -> None:
+def test_unknown_message_types_are_refused() -> None:
     with pytest.raises(UsageError, match="no_msgs/Nothing"):
         messages("no_msgs/Nothing")
     with pytest.raises(UsageError, match="date: unknown field of std_msgs/String; did you mean data"):
@@ -104,7 +104,7 @@ def test_malformed_packets_have_a_mistake(packet: bytes) -> None:
     assert len(packet) != declared.length or packet[6] == 0x7F
 
 
-def test_packets_that_there_are_not() -> None:
+def test_unknown_packets_are_refused() -> None:
     with pytest.raises(
         UsageError, match="unknown command or telemetry packet SAMPLE_APP_NOP; did you mean SAMPLE_APP_NOOP"
     ):
@@ -117,20 +117,20 @@ def test_packets_that_there_are_not() -> None:
 
 @quick
 @given(rows=tables("HK.CopyTable", fields={"NumBytes": st.integers(1, 4)}))
-def test_tables_fit_their_definition(rows: list[dict[str, Any]]) -> None:
+def test_tables_match_their_definition(rows: list[dict[str, Any]]) -> None:
     kind = COPY_TABLE
     assert kind.unpack(kind.pack(rows))[: len(rows)] == rows
     assert all(1 <= row["NumBytes"] <= 4 for row in rows)
 
 
-def test_tables_that_there_are_not() -> None:
+def test_unknown_tables_are_refused() -> None:
     with pytest.raises(UsageError, match=r"unknown table 'HK\.Copy'; did you mean HK\.CopyTable"):
         tables("HK.Copy")
 
 
 @quick
 @given(schedule=schedules())
-def test_schedules_are_ones(schedule: str) -> None:
+def test_schedules_are_valid(schedule: str) -> None:
     assert Schedule.parse(schedule).text() == schedule
 
 
@@ -141,7 +141,7 @@ def test_schedules_shrink_to_the_deviations_that_matter() -> None:
 
 @quick
 @given(faults=fault_plans(messages=["/odom"], apps=["ARM"]))
-def test_fault_plans_are_ones(faults: dict[str, Any]) -> None:
+def test_fault_plans_are_valid(faults: dict[str, Any]) -> None:
     assert len(FaultPlan.from_dict(faults).faults) == len(faults["faults"])
 
 
@@ -152,7 +152,7 @@ def test_fault_plans_shrink() -> None:
 
 
 @pytest.mark.slow
-def test_fault_plans_of_a_mission_strike_what_is_there() -> None:
+def test_fault_plans_of_a_mission_target_its_applications() -> None:
     faults = find(fault_plans(PROBE / "mission"), lambda faults: any("crash" in each for each in faults["faults"]))
     assert faults["faults"][0]["crash"] in ("HEATER", "COUNTER")
     with pytest.raises(UsageError, match="missing target of faults"):

@@ -24,7 +24,7 @@ READY = "cFE TIME Initialized: CFE_TIME v7.0.1+dev0 (Draco) v7.0.1 Official Rele
 FLY_OFF, FLY_ON = (21, "Stop FLYWHEEL"), (20, "Start FLYWHEEL")
 
 
-def test_before_it_starts_time_counts_from_the_epoch() -> None:
+def test_time_counts_from_the_epoch_before_the_start() -> None:
     kernel = Kernel()
     time = TimeServices(kernel, Ports(), PlatformConfig())
     assert time.text() == "1980-001-00:00:00.00000"
@@ -32,7 +32,7 @@ def test_before_it_starts_time_counts_from_the_epoch() -> None:
     assert time.text() == "1980-001-00:11:16.54969"
 
 
-def test_it_starts_at_a_met_of_1000_s(world: World) -> None:
+def test_clock_starts_at_a_met_of_1000_s(world: World) -> None:
     time = world.time
     assert time.get_met() == (1000, 0)
     assert time.get_stcf() == (1_000_000, 0)
@@ -60,7 +60,7 @@ def test_met_follows_virtual_time_exactly(make: Callable[..., World], start_ns: 
     assert world.jumps == jumps
 
 
-def test_the_stamp_is_made_once_an_instant(world: World) -> None:
+def test_stamp_is_computed_once_an_instant(world: World) -> None:
     time, clock = world.time, world.time.clock
     world.run(0.5)
     assert time.stamp() == 1_001_000 << 16 | 0x8000
@@ -74,7 +74,7 @@ def test_spacecraft_time_of_a_met(world: World) -> None:
     assert world.time.met2sc_time((5, 7)) == SysTime(1_000_005, 7)
 
 
-def test_the_arithmetic_is_there_for_apps(world: World) -> None:
+def test_arithmetic_is_available_to_apps(world: World) -> None:
     time = world.time
     assert time.compare(time.add((1, 0), (1, 0)), time.subtract((3, 0), (1, 0))) == 0
     assert time.sub2micro_secs(time.micro2sub_secs(7)) == 7
@@ -84,7 +84,7 @@ def test_the_arithmetic_is_there_for_apps(world: World) -> None:
 # -- tone ----------------------------------------------------------------------------------------------------------
 
 
-def test_the_first_tone_ends_flywheel_mode_and_it_stays_so(world: World) -> None:
+def test_first_tone_ends_flywheel_mode(world: World) -> None:
     world.start()
     world.run(0.9)
     assert world.events == [(1, READY)]
@@ -97,7 +97,7 @@ def test_the_first_tone_ends_flywheel_mode_and_it_stays_so(world: World) -> None
     assert world.time.get_clock_info() == 0x33E0
 
 
-def test_a_second_leaves_its_marks_in_the_performance_log(world: World) -> None:
+def test_second_has_its_marks_in_the_performance_log(world: World) -> None:
     """Marks are NASA's, negative at the end of a piece of code: 10 and 11 tasks, 8 local signal, 7 tone, 6 CFE_TIME."""
     world.start()
     world.run(1.5)
@@ -106,7 +106,7 @@ def test_a_second_leaves_its_marks_in_the_performance_log(world: World) -> None:
     assert world.perf == [10, -10, 6, 8, -8, 7, 11, -11, -7, -6, 6, -6, 6, -6, 6, -6]
 
 
-def test_every_second_tells_signal_request_and_data(world: World) -> None:
+def test_every_second_has_signal_request_and_data(world: World) -> None:
     world.start()
     world.run(1.5)
     assert [get_msg_id(packet) for packet in world.packets] == [0x1811, 0x1810, 0x1862, 0x1860]
@@ -124,7 +124,7 @@ def test_every_second_tells_signal_request_and_data(world: World) -> None:
     }
 
 
-def test_without_data_the_clock_flies_after_two_seconds_and_comes_back(world: World) -> None:
+def test_clock_enters_flywheel_after_two_seconds_without_data_and_recovers(world: World) -> None:
     world.start()
     world.run(3.5)
     world.events.clear()
@@ -140,7 +140,7 @@ def test_without_data_the_clock_flies_after_two_seconds_and_comes_back(world: Wo
     assert world.time.get_met() == (1010, 0x80000000)
 
 
-def test_a_flying_clock_renews_its_reference(world: World) -> None:
+def test_clock_in_flywheel_renews_its_reference(world: World) -> None:
     world.start()
     world.lost.add(pk.DATA_CMD_MID)
     world.run(30.5)
@@ -148,7 +148,7 @@ def test_a_flying_clock_renews_its_reference(world: World) -> None:
     assert world.time.get_met() == (1030, 0x80000000)
 
 
-def test_late_data_is_no_pair(world: World) -> None:
+def test_late_data_does_not_match_its_tone(world: World) -> None:
     world.start()
     world.run(5.5)
     matches = world.time.tone.counters.tone_match
@@ -158,7 +158,7 @@ def test_late_data_is_no_pair(world: World) -> None:
     assert world.time.tone.counters.tone_match_error == 1
 
 
-def test_a_tone_at_the_wrong_moment_is_not_good(world: World) -> None:
+def test_tone_at_the_wrong_time_is_not_accepted(world: World) -> None:
     world.start()
     world.run(5.5)
     world.time.external_tone()
@@ -168,7 +168,7 @@ def test_a_tone_at_the_wrong_moment_is_not_good(world: World) -> None:
     assert world.time.get_clock_info() & 0x20
 
 
-def test_a_1_hz_message_from_the_ground_makes_a_tone_of_now(world: World) -> None:
+def test_1_hz_message_from_the_ground_makes_a_tone_of_the_current_time(world: World) -> None:
     """NASA's takes the time when the message comes: neither this tone nor the next is a second after the one before.
 
     The clock misses a pair, flies for a moment, and is right again with the next one.
@@ -188,7 +188,7 @@ def test_a_1_hz_message_from_the_ground_makes_a_tone_of_now(world: World) -> Non
     assert world.time.tone.virtual_met == 1009
 
 
-def test_a_board_may_give_the_local_signal_itself(world: World) -> None:
+def test_board_may_send_the_local_signal(world: World) -> None:
     world.start()
     world.run(0.5)
     world.call(lambda: world.time.local1hz_isr())
@@ -197,7 +197,7 @@ def test_a_board_may_give_the_local_signal_itself(world: World) -> None:
     assert get_msg_id(world.packets[0]) == pk.ONEHZ_CMD_MID
 
 
-def test_a_processor_reset_keeps_the_time(make: Callable[..., World]) -> None:
+def test_processor_reset_keeps_the_time(make: Callable[..., World]) -> None:
     world = make()
     world.start()
     world.run(3.25)
@@ -235,7 +235,7 @@ def test_reset_variables_that_are_damaged_are_not_used(make: Callable[..., World
 # -- callbacks -----------------------------------------------------------------------------------------------------
 
 
-def test_a_callback_is_called_at_every_good_tone(world: World) -> None:
+def test_callback_is_called_at_every_accepted_tone(world: World) -> None:
     calls: list[str] = []
     first, second = lambda: calls.append("first"), lambda: calls.append("second")
     world.call(lambda: world.time.register_synch_callback(second), OTHER_ID)
@@ -249,7 +249,7 @@ def test_a_callback_is_called_at_every_good_tone(world: World) -> None:
     assert calls == ["first", "second"]
 
 
-def test_a_callback_may_take_another_one_away(world: World) -> None:
+def test_callback_may_remove_another_one(world: World) -> None:
     calls: list[str] = []
     world.call(lambda: world.time.register_synch_callback(lambda: world.time.cleanup_app(OTHER_ID)), APP_ID)
     world.call(lambda: world.time.register_synch_callback(lambda: calls.append("other")), OTHER_ID)
@@ -258,7 +258,7 @@ def test_a_callback_may_take_another_one_away(world: World) -> None:
     assert calls == []
 
 
-def test_an_app_has_one_callback(world: World) -> None:
+def test_app_has_at_most_one_callback(world: World) -> None:
     time = world.time
 
     def status(call: Callable[[], object]) -> int:

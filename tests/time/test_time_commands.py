@@ -50,7 +50,7 @@ def test_declarations_are_complete_and_as_recorded() -> None:
         (pk.RESET_VARS, "CFE_TIME_ResetVars_t"),
     ],
 )
-def test_layouts_are_those_of_c(layout: Layout, c_name: str) -> None:
+def test_layouts_match_nasas_structures(layout: Layout, c_name: str) -> None:
     assert_same(layout, c_name)
 
 
@@ -74,7 +74,7 @@ OK_COMMANDS = [
 
 
 @pytest.mark.parametrize(("code", "payload", "event_id", "text"), OK_COMMANDS)
-def test_a_command_is_done_counted_and_confirmed(
+def test_valid_command_is_executed_counted_and_confirmed(
     running: World, code: int, payload: bytes, event_id: int, text: str
 ) -> None:
     running.command(code, payload)
@@ -102,7 +102,7 @@ BAD_COMMANDS = [
 
 
 @pytest.mark.parametrize(("code", "payload", "event_id", "text"), BAD_COMMANDS)
-def test_a_bad_command_is_refused_counted_and_told_of(
+def test_invalid_command_is_refused_counted_and_reported(
     running: World, code: int, payload: bytes, event_id: int, text: str
 ) -> None:
     before = running.time.get_time()
@@ -112,7 +112,7 @@ def test_a_bad_command_is_refused_counted_and_told_of(
     assert running.time.get_time() == before
 
 
-def test_a_strange_message_is_told_of_but_not_counted(running: World) -> None:
+def test_unknown_message_is_reported_but_not_counted(running: World) -> None:
     running.command(0, msg_id=0x1899)
     assert running.events == [(26, "Invalid message ID -- ID = 0x1899")]
     assert running.command_counters()[1] == 0
@@ -125,12 +125,12 @@ def test_a_request_for_housekeeping_may_have_any_length(running: World) -> None:
     assert running.command_counters() == (0, 0)
 
 
-def test_a_short_message_about_the_tone_does_no_harm(running: World) -> None:
+def test_short_tone_message_is_refused(running: World) -> None:
     running.command(0, msg_id=pk.DATA_CMD_MID)
     assert running.events == [(49, "Invalid msg length: ID = 0x1860,  CC = 0, Len = 8, Expected = 28")]
 
 
-def test_setting_the_time_changes_stcf_only(running: World) -> None:
+def test_set_time_changes_only_the_stcf(running: World) -> None:
     running.command(pk.SET_TIME_CC, u32(2_000_000, 250_000))
     assert running.time.get_time() == (2_000_000, 0x40000000)
     assert running.time.get_met() == (1003, 0x80000000)
@@ -138,7 +138,7 @@ def test_setting_the_time_changes_stcf_only(running: World) -> None:
     assert running.time.get_time() == (2_000_010, 0x40000000)
 
 
-def test_a_met_that_was_set_is_counted_on_in_tones(running: World) -> None:
+def test_met_continues_from_its_new_value_with_each_tone(running: World) -> None:
     running.command(pk.SET_MET_CC, u32(7000, 0))
     assert running.time.get_met() == (7000, 0)
     running.run(0.5)
@@ -155,7 +155,7 @@ def test_stcf_is_set_and_adjusted(running: World) -> None:
     assert running.time.get_clock_info() & 0x300 == 0x100
 
 
-def test_stcf_drifts_with_every_second_when_told_to(running: World) -> None:
+def test_stcf_drifts_every_second_after_an_adjustment_command(running: World) -> None:
     running.command(pk.SUB_ONE_HZ_ADJUSTMENT_CC, u32(0, 0x10000000))
     running.run(4)
     assert running.time.get_stcf() == (999_999, 0xC0000000)
@@ -163,7 +163,7 @@ def test_stcf_drifts_with_every_second_when_told_to(running: World) -> None:
     assert running.time.get_clock_info() & 0x300 == 0x200
 
 
-def test_forced_flywheel_ignores_tones_until_told_otherwise(running: World) -> None:
+def test_forced_flywheel_ignores_tones_until_the_state_is_set(running: World) -> None:
     running.command(pk.SET_STATE_CC, i16(1))
     running.run(20)
     assert running.events == [(7, "Set Clock State = FLYWHEEL")]
@@ -189,7 +189,7 @@ def test_housekeeping(running: World) -> None:
     }
 
 
-def test_housekeeping_has_the_bytes_of_the_real_one(running: World) -> None:
+def test_housekeeping_matches_the_bytes_of_nasas_packet(running: World) -> None:
     """All bytes except time stamp and MET are from a packet of the real system."""
     running.housekeeping()
     real = bytes.fromhex(
@@ -220,7 +220,7 @@ def test_diagnostics(running: World) -> None:
     assert fields["VirtualMET"] == 1003
 
 
-def test_diagnostics_have_the_bytes_of_the_real_ones(running: World) -> None:
+def test_diagnostics_match_the_bytes_of_nasas_packet(running: World) -> None:
     """All that does not hang on the host's clock: configuration, states, STCF, flags, and the sums that hold within."""
     packets = json.loads((DATA / "packets.json").read_text(encoding="utf-8"))["telemetry"]
     (real,) = (bytes.fromhex(packet["hex"]) for packet in packets if packet["mid"] == pk.DIAG_TLM_MID)
@@ -241,7 +241,7 @@ def test_diagnostics_have_the_bytes_of_the_real_ones(running: World) -> None:
         assert packet["VirtualMET"] == time["AtToneMET"].seconds
 
 
-def test_the_version_counts_updates_of_the_reference(make: Callable[..., World]) -> None:
+def test_version_counts_updates_of_the_reference(make: Callable[..., World]) -> None:
     """Two at the start, one at every tone, one for every command that sets something."""
     world = make()
     assert world.diagnostic()["VersionCounter"] == 2

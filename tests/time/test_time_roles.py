@@ -51,7 +51,7 @@ def client(make: Make) -> World:
 # -- clients -------------------------------------------------------------------------------------------------------
 
 
-def test_a_client_takes_all_of_the_servers_time(client: World) -> None:
+def test_client_accepts_the_complete_time_of_the_server(client: World) -> None:
     assert client.time.get_clock_info() & 0x40 == 0
     tell(client, 5000)
     time = client.time
@@ -65,7 +65,7 @@ def test_a_client_takes_all_of_the_servers_time(client: World) -> None:
     assert time.get_clock_info() == 0xB3A0
 
 
-def test_a_client_tells_how_the_server_is(client: World) -> None:
+def test_client_reports_the_state_of_the_server(client: World) -> None:
     tell(client, 5000, CLOCK_FLYWHEEL)
     assert client.time.get_clock_state() == CLOCK_FLYWHEEL
     assert client.time.get_clock_info() & 0xC800 == 0x8800
@@ -74,7 +74,7 @@ def test_a_client_tells_how_the_server_is(client: World) -> None:
     assert client.time.get_clock_info() & 0xC800 == 0
 
 
-def test_a_client_does_not_tell_the_time_to_others(client: World) -> None:
+def test_client_does_not_send_the_time_to_others(client: World) -> None:
     tell(client, 5000)
     tell(client, 5001)
     client.transmit_msg(pk.SEND_CMD.packet())
@@ -84,7 +84,7 @@ def test_a_client_does_not_tell_the_time_to_others(client: World) -> None:
     assert [get_msg_id(packet) for packet in client.packets].count(pk.TONE_CMD_MID) == 1
 
 
-def test_a_client_corrects_for_the_way_of_the_tone(client: World) -> None:
+def test_client_corrects_for_the_delay_of_the_tone(client: World) -> None:
     tell(client, 5000)
     time_command(client, pk.ADD_DELAY_CC, 1, 500_000)
     assert client.events[-1] == (11, "Set Tone Delay -- secs = 1, usecs = 500000, ssecs = 0x80000000, dir = 1")
@@ -97,7 +97,7 @@ def test_a_client_corrects_for_the_way_of_the_tone(client: World) -> None:
     assert client.diagnostic()["AtToneDelay"] == time_of(0, HALF)
 
 
-def test_a_client_without_tones_flies_and_the_delay_counts_once(client: World) -> None:
+def test_client_without_tones_enters_flywheel_and_its_delay_counts_once(client: World) -> None:
     tell(client, 5000)
     time_command(client, pk.ADD_DELAY_CC, 1)
     client.events.clear()
@@ -125,7 +125,7 @@ def test_a_client_without_tones_flies_and_the_delay_counts_once(client: World) -
         (pk.SUB_ONE_HZ_ADJUSTMENT_CC, bytes(8), 48, "1Hz Adjust"),
     ],
 )
-def test_a_clients_time_is_not_set_by_command(
+def test_time_of_a_client_cannot_be_set_by_command(
     client: World, code: int, payload: bytes, event_id: int, what: str
 ) -> None:
     client.command(code, payload)
@@ -134,7 +134,7 @@ def test_a_clients_time_is_not_set_by_command(
     assert client.command_counters() == (0, 1)
 
 
-def test_a_client_with_a_simulated_tone_keeps_its_own_seconds(make: Make) -> None:
+def test_client_with_a_simulated_tone_keeps_its_own_seconds(make: Make) -> None:
     client = make(time_cfg_client=True)
     client.start()
     client.run(1.05)
@@ -148,7 +148,7 @@ def test_a_client_with_a_simulated_tone_keeps_its_own_seconds(make: Make) -> Non
 
 
 @pytest.mark.parametrize(("pause", "matches"), [(0, 1), (0.2, 1), (0.200001, 0), (1.1, 0)])
-def test_a_message_must_come_soon_after_its_tone(client: World, pause: float, matches: int) -> None:
+def test_message_must_follow_its_tone_within_the_window(client: World, pause: float, matches: int) -> None:
     client.call(client.time.external_tone)
     client.run(pause)
     client.transmit_msg(pk.DATA_CMD.packet(AtToneMET=time_of(5000)))
@@ -157,7 +157,7 @@ def test_a_message_must_come_soon_after_its_tone(client: World, pause: float, ma
     assert (counters.tone_match, counters.tone_match_error) == (matches, 1 - matches)
 
 
-def test_a_message_does_not_count_twice(client: World) -> None:
+def test_message_counts_once(client: World) -> None:
     tell(client, 5000)
     client.transmit_msg(pk.DATA_CMD.packet(AtToneMET=time_of(7000)))
     client.run(0.01)
@@ -166,7 +166,7 @@ def test_a_message_does_not_count_twice(client: World) -> None:
 
 
 @pytest.mark.parametrize(("micros", "good"), [(980_001, True), (980_000, False), (1_019_999, True), (1_020_000, False)])
-def test_a_good_tone_comes_a_second_after_the_last(client: World, micros: int, good: bool) -> None:
+def test_tone_is_accepted_a_second_after_the_last(client: World, micros: int, good: bool) -> None:
     client.call(client.time.external_tone)
     client.run(micros / 1e6)
     client.call(client.time.external_tone)
@@ -198,7 +198,7 @@ def test_an_external_met(make: Make) -> None:
 
 
 @pytest.mark.parametrize(("new_met", "sent"), [(2001, 2001), (2002, 2000), (1999, 2000)])
-def test_a_set_clock_does_not_believe_everything(make: Make, new_met: int, sent: int) -> None:
+def test_set_clock_refuses_a_time_beyond_its_limit(make: Make, new_met: int, sent: int) -> None:
     """The limit is half a second. Beyond it, the server sends its own time."""
     world = source(make, "met")
     world.call(lambda: world.time.external_met((2000, 0)))
@@ -212,7 +212,7 @@ def test_a_set_clock_does_not_believe_everything(make: Make, new_met: int, sent:
     assert world.time.get_met_seconds() == 2001
 
 
-def test_an_external_source_can_be_switched_off(make: Make) -> None:
+def test_external_source_can_be_disabled(make: Make) -> None:
     world = source(make, "met")
     world.command(pk.SET_SOURCE_CC, b"\1\0")
     assert world.events == [(8, "Set Time Source = INTERNAL")]
@@ -233,7 +233,7 @@ def test_gps_time_sets_stcf_and_leap_seconds(make: Make) -> None:
     assert world.time.get_met_seconds() == 1000
 
 
-def test_another_time_sets_stcf_alone(make: Make) -> None:
+def test_external_time_sets_only_the_stcf(make: Make) -> None:
     world = source(make, "time")
     world.call(lambda: world.time.external_time((3_001_000, 0)))
     world.run(0.01)
@@ -241,7 +241,7 @@ def test_another_time_sets_stcf_alone(make: Make) -> None:
     assert world.time.get_leap_seconds() == 37
 
 
-def test_external_utc_has_its_leap_seconds_put_back(make: Make) -> None:
+def test_leap_seconds_are_added_to_external_utc(make: Make) -> None:
     world = source(make, "time", time_cfg_default_utc=True)
     world.call(lambda: world.time.external_time((3_001_000, 0)))
     world.run(0.5)
@@ -250,14 +250,14 @@ def test_external_utc_has_its_leap_seconds_put_back(make: Make) -> None:
 
 
 @pytest.mark.parametrize("call", ["external_met", "external_gps", "external_time"])
-def test_without_an_external_source_there_is_nothing_to_tell(world: World, call: str) -> None:
+def test_external_time_without_a_source_is_not_implemented(world: World, call: str) -> None:
     more = (5,) if call == "external_gps" else ()
     with pytest.raises(CfeError) as caught:
         getattr(world.time, call)((1000, 0), *more)
     assert caught.value.status == CFE_TIME_NOT_IMPLEMENTED
 
 
-def test_the_tone_signal_can_be_switched_and_stays_so_over_a_reset(make: Make) -> None:
+def test_tone_signal_can_be_switched_and_keeps_its_setting_over_a_reset(make: Make) -> None:
     world = make(time_cfg_signal=True)
     world.command(pk.SET_SIGNAL_CC, b"\2\0")
     assert world.events == [(9, "Set Tone Source = REDUNDANT")]
@@ -271,7 +271,7 @@ def test_the_tone_signal_can_be_switched_and_stays_so_over_a_reset(make: Make) -
 # -- foretold tones, UTC, contradictions ---------------------------------------------------------------------------
 
 
-def test_a_message_may_foretell_the_tone(make: Make) -> None:
+def test_message_may_announce_the_tone(make: Make) -> None:
     world = make(time_at_tone_will_be=True, time_cfg_fake_tone=False)
     world.start()
     world.run(0.9)
@@ -315,7 +315,7 @@ def test_spacecraft_time_can_be_utc(make: Make) -> None:
         ({"time_at_tone_will_be": True}, "fake_tone"),
     ],
 )
-def test_a_configuration_must_not_contradict_itself(config: dict[str, bool], field: str) -> None:
+def test_contradictory_configuration_is_refused(config: dict[str, bool], field: str) -> None:
     with pytest.raises(UsageError) as caught:
         TimeSettings.of(PlatformConfig(**config))  # type: ignore[arg-type]
     assert caught.value.field == f"limits.time_cfg_{field}"

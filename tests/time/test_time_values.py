@@ -44,7 +44,7 @@ def test_add(first: tuple[int, int], second: tuple[int, int], total: tuple[int, 
 
 
 @given(TIMES, TIMES)
-def test_subtracting_undoes_adding(first: SysTime, second: SysTime) -> None:
+def test_subtraction_reverses_addition(first: SysTime, second: SysTime) -> None:
     assert subtract(add(first, second), second) == first
     assert add(subtract(first, second), second) == first
     assert add(first, second) == add(second, first)
@@ -69,18 +69,18 @@ def test_compare(first: tuple[int, int], second: tuple[int, int], result: int) -
 @given(TIMES, TIMES)
 @example(SysTime(0, 0), SysTime(0x80000000, 0))
 @example(SysTime(0, 0), SysTime(0x80000001, 0))
-def test_comparing_the_other_way_gives_the_opposite(first: SysTime, second: SysTime) -> None:
+def test_swapped_comparison_gives_the_opposite(first: SysTime, second: SysTime) -> None:
     assert compare(first, second) == -compare(second, first)
     assert (compare(first, second) == EQUAL) == (first == second)
 
 
 @given(TIMES, st.integers(1, 0x7FFFFFFF << 32))
-def test_a_time_is_earlier_than_one_that_follows_it(time: SysTime, later_by: int) -> None:
+def test_time_is_earlier_than_a_later_one(time: SysTime, later_by: int) -> None:
     assert compare(time, add(time, from_ticks(later_by))) == A_LT_B
 
 
 @given(TIMES, TIMES, TIMES)
-def test_adding_has_no_order(first: SysTime, second: SysTime, third: SysTime) -> None:
+def test_addition_is_commutative(first: SysTime, second: SysTime, third: SysTime) -> None:
     assert add(add(first, second), third) == add(first, add(second, third))
 
 
@@ -90,7 +90,7 @@ def test_a_copy_is_equal(time: SysTime) -> None:
 
 
 @given(TIMES)
-def test_ticks_stand_for_a_time(time: SysTime) -> None:
+def test_ticks_convert_back_to_the_time(time: SysTime) -> None:
     assert from_ticks(to_ticks(time)) == time
 
 
@@ -122,37 +122,37 @@ def test_micro2sub_secs(micros: int, subseconds: int) -> None:
 
 
 @given(st.integers(0, 999_999))
-def test_microseconds_survive_the_way_to_subseconds_and_back(micros: int) -> None:
+def test_microseconds_survive_conversion_to_subseconds_and_back(micros: int) -> None:
     assert sub2micro_secs(micro2sub_secs(micros)) == micros
 
 
 @given(U32, U32)
-def test_more_subseconds_are_not_fewer_microseconds(first: int, second: int) -> None:
+def test_microseconds_grow_with_subseconds(first: int, second: int) -> None:
     less, more = sorted((first, second))
     assert sub2micro_secs(less) <= sub2micro_secs(more)
 
 
 @given(st.integers(0, 1_100_000), st.integers(0, 1_100_000))
-def test_more_microseconds_are_not_fewer_subseconds(first: int, second: int) -> None:
+def test_subseconds_grow_with_microseconds(first: int, second: int) -> None:
     less, more = sorted((first, second))
     assert micro2sub_secs(less) <= micro2sub_secs(more)
 
 
 @given(U32)
-def test_subseconds_come_back_from_microseconds_within_one(subseconds: int) -> None:
+def test_subseconds_survive_conversion_to_microseconds_within_one_microsecond(subseconds: int) -> None:
     """A microsecond is 4294.97 subseconds, so the loss is less than that."""
     assert 0 <= subseconds - micro2sub_secs(sub2micro_secs(subseconds)) + 1 <= 4295
 
 
 @given(st.integers(0, 2**62))
-def test_nanoseconds_survive_the_way_to_ticks_and_back(duration_ns: int) -> None:
+def test_nanoseconds_survive_conversion_to_ticks_and_back(duration_ns: int) -> None:
     assert ticks_of_ns(duration_ns) * 10**9 >> 32 == duration_ns
 
 
 @pytest.mark.parametrize(
     "convert", [lambda: sub2micro_secs(-1), lambda: sub2micro_secs(1 << 32), lambda: micro2sub_secs(-1)]
 )
-def test_conversions_refuse_what_is_no_fraction_of_a_second(convert: object) -> None:
+def test_conversions_refuse_values_beyond_a_second(convert: object) -> None:
     with pytest.raises(CfeError) as caught:
         convert()  # type: ignore[operator]
     assert caught.value.status == CFE_TIME_BAD_ARGUMENT
@@ -178,12 +178,12 @@ def test_print(time: tuple[int, int], text: str) -> None:
 
 
 @given(U32)
-def test_print_knows_the_calendar(seconds: int) -> None:
+def test_print_uses_the_calendar(seconds: int) -> None:
     date = datetime(1980, 1, 1) + timedelta(seconds=seconds)
     assert print_((seconds, 0)) == f"{date:%Y-%j-%H:%M:%S}.00000"
 
 
 @given(TIMES, TIMES)
-def test_a_later_time_is_not_an_earlier_text(first: SysTime, second: SysTime) -> None:
+def test_later_time_has_no_earlier_text(first: SysTime, second: SysTime) -> None:
     earlier, later = sorted((first, second))
     assert print_(earlier) <= print_(later)

@@ -21,18 +21,18 @@ def differences_from(record: Record) -> list[str]:
 
 
 @pytest.mark.parametrize("record", [each for each in records() if each[2] <= SHORT])
-def test_a_short_script_answers_as_the_real_cfe_did(record: Record) -> None:
+def test_short_script_has_the_recorded_answers_of_nasas_cfe(record: Record) -> None:
     assert differences_from(record) == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("record", LONG_ONES)
-def test_a_long_script_answers_as_the_real_cfe_did(record: Record) -> None:
+def test_long_script_has_the_recorded_answers_of_nasas_cfe(record: Record) -> None:
     assert differences_from(record) == []
 
 
 @pytest.mark.slow
-def test_a_new_script_answers_as_the_real_cfe_does() -> None:
+def test_new_script_has_the_answers_of_nasas_cfe() -> None:
     built = real.installed()
     if built is None:
         pytest.skip(f"{real.VARIABLE} names no real cFE")
@@ -40,12 +40,12 @@ def test_a_new_script_answers_as_the_real_cfe_does() -> None:
     assert differences(script, real.play(built, script), twin.play(script, real.release(built))) == []
 
 
-def test_there_are_short_and_long_records() -> None:
+def test_short_and_long_records_exist() -> None:
     assert LONG_ONES
     assert len(records()) > len(LONG_ONES)
 
 
-def test_a_difference_is_found() -> None:
+def test_difference_is_found() -> None:
     script = ["A ES_GetAppID @1", "A OS_TaskGetId"]
     real_answers = ["1 0 #110007", "E CFE_SB 5 1 'x", "2 0 #10008", "end"]
     assert differences(script, real_answers, ["1 0 #110007", "E CFE_SB 5 1 'x", "2 0 #1000b", "end"]) == []
@@ -56,7 +56,7 @@ def test_a_difference_is_found() -> None:
 
 
 @pytest.mark.parametrize("group", list(dict.fromkeys(GROUPS)), ids=lambda group: group.__name__)
-def test_scripts_follow_from_the_seed_and_name_calls_that_exist(group) -> None:
+def test_scripts_depend_only_on_the_seed_and_call_existing_functions(group) -> None:
     first, second = Writer(5), Writer(5)
     for writer in (first, second):
         for _ in range(20):

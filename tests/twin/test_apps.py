@@ -24,7 +24,7 @@ needs_apps = pytest.mark.skipif(
 ENOUGH = 1500  # steps that include every command
 
 
-def test_every_command_is_flown() -> None:
+def test_every_command_is_sent() -> None:
     wanted = {(app.commands_mid, command.code) for app in FLIGHT_APPS for command in app.commands}
     packets = [packet for step in islice(AppsCommander(1).steps(), ENOUGH) for packet in step.packets]
     flown = {(msg.get_msg_id(each), each[6]) for each in packets if len(each) >= 8}
@@ -32,13 +32,13 @@ def test_every_command_is_flown() -> None:
     assert wanted <= flown
 
 
-def test_a_seed_says_all() -> None:
+def test_commands_depend_only_on_the_seed() -> None:
     first, second = (list(islice(AppsCommander(5, ["CF", "FM"]).steps(), 100)) for _ in range(2))
     assert first == second
     assert {step.service for step in first} == {"CF", "FM"}
 
 
-def test_a_difference_is_seen() -> None:
+def test_difference_is_found() -> None:
     packet = bytes(msg.telemetry(0x8A7, bytes(range(40))))
     other = packet[:20] + b"\xff" + packet[21:]
     assert differences(Observed((packet,), {}), Observed((packet,), {})) == []
@@ -55,7 +55,7 @@ def test_lists_of_files_are_compared_in_any_order() -> None:
     assert of_packet(one) == of_packet(other)
 
 
-def test_files_are_compared_but_for_their_times() -> None:
+def test_files_are_compared_without_their_times() -> None:
     def file(subtype: int, seconds: int, content: bytes) -> bytes:
         return FileHeader("x", subtype, time_seconds=seconds).pack() + content
 
@@ -70,7 +70,7 @@ def test_files_are_compared_but_for_their_times() -> None:
     assert of_file("/ram/x", b"text", of_packet) == b"text"
 
 
-def test_a_list_in_itself_is_as_long_as_it_was() -> None:
+def test_size_of_a_list_in_its_own_listing_is_ignored() -> None:
     def listed(name: bytes, size: int) -> bytes:
         return FileHeader("x", FM_FILE).pack() + bytes(72) + struct.pack("<64sIII", name, size, 0, 6)
 
@@ -79,7 +79,7 @@ def test_a_list_in_itself_is_as_long_as_it_was() -> None:
         assert (one == other) == is_same
 
 
-def test_names_with_a_time_are_alike() -> None:
+def test_names_with_a_time_are_equal() -> None:
     one, other = (f"/ram/power1980012140{at}.dat" for at in (357, 432))
     assert differences(Observed((), {one: b"1"}), Observed((), {other: b"1"})) == []
     assert differences(Observed((), {one: b"1"}), Observed((), {other: b"2"})) != []
@@ -94,6 +94,6 @@ def test_the_checksum_of_cfdp() -> None:
 
 @needs_apps
 @pytest.mark.slow
-def test_commands_flown_beside_nasas() -> None:
+def test_commands_give_the_answers_of_nasas_applications() -> None:
     assert BUILT is not None
     assert [flown for flown in apps_flight.fly(BUILT, 2, 60, []) if flown.lines] == []

@@ -104,7 +104,7 @@ def test_events_to_the_letter(flown: Simulated, name: str) -> None:
 
 
 @needs_real
-def test_the_letters_are_nasas() -> None:
+def test_recorded_events_equal_nasas() -> None:
     built = installed()
     assert built is not None
     with real(built) as computer:
@@ -124,7 +124,7 @@ def fly_again(release: str, flight: recorded.Flight) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
-def test_the_first_commands_on_record(release: str) -> None:
+def test_first_recorded_commands_give_the_recorded_answers(release: str) -> None:
     flight = recorded.load(recorded.of_release(release))[0][:ORDINARY]
     assert len(flight) == ORDINARY
     assert fly_again(release, flight) == []
@@ -132,11 +132,11 @@ def test_the_first_commands_on_record(release: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("release", "number"), FLIGHTS)
-def test_all_commands_on_record(release: str, number: int) -> None:
+def test_all_recorded_commands_give_the_recorded_answers(release: str, number: int) -> None:
     assert fly_again(release, recorded.load(recorded.of_release(release))[number]) == []
 
 
-def test_a_difference_is_seen() -> None:
+def test_difference_is_found() -> None:
     """A comparison that cannot fail would prove nothing: another text, a packet less, another file."""
     flight = recorded.load(recorded.of_release("7.0.0"))[0]
     step, observed = next(pair for pair in flight if any(map(masks.is_event, pair[1].packets)))
@@ -153,7 +153,7 @@ def test_a_difference_is_seen() -> None:
 
 @needs_real
 @pytest.mark.slow
-def test_commands_flown_beside_nasas() -> None:
+def test_commands_give_the_answers_of_nasas_cfe() -> None:
     built = installed()
     assert built is not None
     assert [flown for flown in fly(built, 1, 40) if flown.lines] == []

@@ -33,7 +33,7 @@ SAID = re.compile(r"^CFE_PSP: .*ID.*$|CI_LAB listening on UDP port: \d+$| \d+/\d
     ],
     ids=str,
 )
-def test_ids_are_told_as_nasas_executable_tells_them(ids: Mapping[str, int], tmp_path: Path) -> None:
+def test_ids_are_printed_as_by_nasas_executable(ids: Mapping[str, int], tmp_path: Path) -> None:
     built = installed()
     assert built is not None
     words = [word for name, number in ids.items() for word in (IDENTITIES[name], str(number))]

@@ -29,19 +29,19 @@ def fly_again(release: str, number: int, count: int | None = None) -> list[str]:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
-def test_the_first_steps_on_record(release: str) -> None:
+def test_first_recorded_steps_give_the_recorded_answers(release: str) -> None:
     assert fly_again(release, 0, ORDINARY) == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("release", RELEASES)
-def test_all_steps_on_record(release: str) -> None:
+def test_all_recorded_steps_give_the_recorded_answers(release: str) -> None:
     flights = len(recorded.load(recorded.of_release(release, "lives")))
     assert [line for number in range(flights) for line in fly_again(release, number)] == []
 
 
 @pytest.mark.parametrize("release", RELEASES)
-def test_the_record_has_all_kinds_of_steps(release: str) -> None:
+def test_record_has_all_kinds_of_steps(release: str) -> None:
     """Both kinds of resets, ends of every lab application, tones, blocks of the CDS."""
     flights = recorded.load(recorded.of_release(release, "lives"))
     sent = b"".join(packet for flight in flights for step, _ in flight for packet in step.packets)
@@ -52,7 +52,7 @@ def test_the_record_has_all_kinds_of_steps(release: str) -> None:
         assert app in sent
 
 
-def test_steps_follow_from_the_seed() -> None:
+def test_steps_depend_only_on_the_seed() -> None:
     first, second = (list(itertools.islice(LivesCommander(7).steps(), 60)) for _ in range(2))
     assert first == second
     assert first != list(itertools.islice(LivesCommander(8).steps(), 60))

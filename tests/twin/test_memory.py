@@ -20,7 +20,7 @@ needs_ram = pytest.mark.skipif(BUILT is None, reason=f"{memory_flight.VARIABLE} 
 ALL_OF_MM = {*range(2, 10)}
 
 
-def test_every_command_with_an_address_is_flown() -> None:
+def test_every_command_with_an_address_is_sent() -> None:
     packets = [packet for step in islice(MemoryCommander(1, ADDRESS).steps(), 400) for packet in step.packets]
     flown = {(msg.get_msg_id(each), each[6]) for each in packets}
     assert {(MM.commands_mid, code) for code in ALL_OF_MM} <= flown
@@ -28,13 +28,13 @@ def test_every_command_with_an_address_is_flown() -> None:
     assert {(CS.commands_mid, code) for code in (2, 3, 16, 20, 23, 27, 30, 36)} <= flown
 
 
-def test_a_seed_says_all() -> None:
+def test_commands_depend_only_on_the_seed() -> None:
     first, second = (list(islice(MemoryCommander(5, ADDRESS).steps(), 50)) for _ in range(2))
     assert first == second
     assert first != list(islice(MemoryCommander(6, ADDRESS).steps(), 50))
 
 
-def test_files_to_load_have_their_checksum_but_for_one() -> None:
+def test_files_to_load_have_their_checksum_except_one() -> None:
     good = []
     for path in LOADS:
         content = files(ADDRESS)[path][HEADER_SIZE:]
@@ -46,6 +46,6 @@ def test_files_to_load_have_their_checksum_but_for_one() -> None:
 
 @needs_ram
 @pytest.mark.slow
-def test_memory_flown_beside_nasas() -> None:
+def test_commands_for_memory_give_the_answers_of_nasas_applications() -> None:
     assert BUILT is not None
     assert [flown for flown in memory_flight.fly(BUILT, 1, 60) if flown.lines] == []

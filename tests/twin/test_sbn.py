@@ -113,7 +113,7 @@ def said_by_client(folder: Path, code: list[Path]) -> list[tuple[int, bytes | in
 
 @needs_sbn
 @pytest.mark.slow
-def test_nasas_sbn_as_compiled_code_says_what_cfepys_says(tmp_path: Path) -> None:
+def test_nasas_compiled_sbn_sends_the_same_messages_as_cfepys(tmp_path: Path) -> None:
     """The same shared objects as above, in virtual time.
 
     The only difference is that cfepy's sends its subscriptions once more.
@@ -142,7 +142,7 @@ def of_mission() -> list[dict[str, object]]:
 
 
 @pytest.mark.slow
-def test_a_client_takes_the_time_from_another_processor() -> None:
+def test_client_takes_the_time_from_another_processor() -> None:
     told = of_mission()
     states = [each["ClockStateAPI"] for each in told]
     assert states[: len(TOLD)] == [VALID, VALID, VALID, FLYWHEEL, INVALID, VALID]
@@ -152,7 +152,7 @@ def test_a_client_takes_the_time_from_another_processor() -> None:
 
 @needs_sbn
 @pytest.mark.slow
-def test_a_client_mission_follows_nasas_server(tmp_path: Path) -> None:
+def test_client_mission_follows_nasas_server(tmp_path: Path) -> None:
     assert SERVER is not None
     with real_sbn(SERVER, tmp_path, 1, ((2, time.ONEHZ_CMD.msg_id, NOWHERE),)) as real, in_network_of(real.inside):
         peer = RealPeer(2)
@@ -174,7 +174,7 @@ def test_a_client_mission_follows_nasas_server(tmp_path: Path) -> None:
 
 @needs_client
 @pytest.mark.slow
-def test_nasas_client_takes_it_alike(tmp_path: Path) -> None:
+def test_nasas_client_follows_the_mission_in_the_same_way(tmp_path: Path) -> None:
     assert CLIENT is not None
     with real_sbn(CLIENT, tmp_path, 2, TO_SERVER) as real, in_network_of(real.inside):
         peer = RealPeer()

@@ -31,11 +31,11 @@ def differences(version: str, count: int | None) -> list[str]:
 
 
 @pytest.mark.parametrize("version", ["7.0.0", "7.0.1"])
-def test_the_first_steps_on_record(version: str) -> None:
+def test_first_recorded_steps_give_the_recorded_answers(version: str) -> None:
     assert differences(version, ORDINARY) == []
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("version", ["7.0.0", "7.0.1"])
-def test_all_steps_on_record(version: str) -> None:
+def test_all_recorded_steps_give_the_recorded_answers(version: str) -> None:
     assert differences(version, None) == []

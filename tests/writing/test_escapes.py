@@ -60,7 +60,7 @@ def test_visible_line_is_one_line() -> None:
 
 
 @given(st.text(st.characters(categories=["Cc", "Cf", "Zl", "Zp", "Lu"])))
-def test_visible_has_no_controls_and_stays_when_repeated(text: str) -> None:
+def test_visible_text_has_no_controls_and_is_idempotent(text: str) -> None:
     shown = visible(text)
     assert not re.search("[\x00-\x08\x0b-\x0c\x0e-\x1f\x7f-\x9f]", shown)
     assert "\r" not in shown.replace("\r\n", "")
@@ -79,7 +79,7 @@ def test_visible_has_no_controls_and_stays_when_repeated(text: str) -> None:
         ("[/n] ends\r", "[/n] ends", "[/n] ends"),
     ],
 )
-def test_console_line_keeps_colours_of_nodes_on_a_terminal_alone(line: str, coloured: str, plain: str) -> None:
+def test_console_line_keeps_colours_of_nodes_only_on_a_terminal(line: str, coloured: str, plain: str) -> None:
     assert console_line(line, colours=True) == coloured
     assert console_line(line, colours=False) == plain
 
@@ -88,7 +88,7 @@ def test_node_text_without_escapes_is_visible() -> None:
     assert node_text("a\x07", colours=True) == r"a\x07"
 
 
-def test_safe_stream_escapes_and_passes_on_all_else() -> None:
+def test_safe_stream_escapes_writes_and_forwards_other_calls() -> None:
     stream = io.StringIO()
     kept = safe(stream)
     print("a\x1b", file=kept)
@@ -100,14 +100,14 @@ def test_safe_stream_escapes_and_passes_on_all_else() -> None:
     assert not kept.isatty()
 
 
-def test_data_goes_to_a_pipe_as_it_is_and_to_a_terminal_escaped() -> None:
+def test_data_is_unchanged_for_a_pipe_and_escaped_for_a_terminal() -> None:
     pipe, terminal = io.StringIO(), Terminal()
     for_data(safe(pipe)).write("\x1b")
     for_data(safe(terminal)).write("\x1b")
     assert (pipe.getvalue(), terminal.getvalue()) == ("\x1b", r"\x1b")
 
 
-def test_safe_output_puts_the_streams_back(capsys: pytest.CaptureFixture[str]) -> None:
+def test_safe_output_restores_the_streams(capsys: pytest.CaptureFixture[str]) -> None:
     before = sys.stdout, sys.stderr
     with safe_output():
         with safe_output():
@@ -117,7 +117,7 @@ def test_safe_output_puts_the_streams_back(capsys: pytest.CaptureFixture[str]) -
     assert capsys.readouterr() == ("a\\x1b\n", "b\\x1b\n")
 
 
-def test_safe_output_keeps_a_stream_that_another_has_set(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_safe_output_keeps_a_stream_set_by_others(monkeypatch: pytest.MonkeyPatch) -> None:
     other: TextIO = io.StringIO()
     monkeypatch.setattr(sys, "stdout", sys.stdout)
     with safe_output():
@@ -140,7 +140,7 @@ def test_rich_escapes_texts_and_keeps_its_own_colours() -> None:
     assert "\x1b[32m" in out
 
 
-def test_a_bar_of_rich_leaves_the_output_safe(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_progress_bar_of_rich_leaves_the_output_safe(monkeypatch: pytest.MonkeyPatch) -> None:
     from rich.progress import Progress
 
     stream = Terminal()
@@ -152,7 +152,7 @@ def test_a_bar_of_rich_leaves_the_output_safe(monkeypatch: pytest.MonkeyPatch) -
     assert sys.stdout is stream
 
 
-def test_console_keeps_lines_as_they_are_and_shows_escapes() -> None:
+def test_console_keeps_lines_unchanged_and_shows_escapes() -> None:
     stream = io.StringIO()
     console = Console(stream)
     console.write(f"a{TITLE}\n[/n] \x1b[31mred")
@@ -168,6 +168,6 @@ def test_errors_as_strings_have_no_control_characters() -> None:
     assert str(ExpectationError("no \x1b")) == r"no \x1b"
 
 
-def test_byte_of_a_name_that_is_no_text_is_visible() -> None:
+def test_byte_of_a_name_that_is_not_text_is_visible() -> None:
     assert visible(os.fsdecode(b"a\xff")) == "a\\xff"
     assert visible("\ud800") == "\\ud800"

@@ -113,7 +113,7 @@ def task_of(words: Sequence[str], environ: Mapping[str, str]) -> ConversionTask:
     else:
         task = _of_launch(*launch_file(words), environ)
     if not task.nodes:
-        why = "; ".join(task.notes) or "none of its nodes is C++ whose sources are here"
+        why = "; ".join(task.notes) or "no node has C++ sources on this computer"
         raise UsageError(f"has no node that can be converted: {why}", file=task.made_from)
     return task
 

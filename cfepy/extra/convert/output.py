@@ -42,7 +42,7 @@ def write_files(folder: Path, files: Mapping[str, bytes], force: bool = False) -
     changed = [name for name in places if _is_changed(places[name], known.get(name), files.get(name))]
     if changed and not force:
         more = f" and {len(changed) - SHOWN} more" if len(changed) > SHOWN else ""
-        text = f"{', '.join(changed[:SHOWN])}{more} changed by hand since; move it away, or say --force"
+        text = f"{', '.join(changed[:SHOWN])}{more} changed by hand since; move it away, or use --force"
         raise UsageError(text, file=folder)
     for name in known:
         if name not in files:

@@ -251,7 +251,7 @@ def _targets(made: Conversion, folder: Path) -> str:
     where = cmake_word(f"apps/{folder.name}", folder)
     places = "".join(f"set({node.file}_SEARCH_PATH {where})\n" for node in made.nodes)
     name = _line(folder.name)
-    return f"""# What a mission's targets.cmake needs, with this folder as apps/{name} of the mission; {MADE}.
+    return f"""# Lines for the targets.cmake of a mission that has this folder as apps/{name}; {MADE}.
 list(APPEND MISSION_GLOBAL_APPLIST {names})
 {places}"""
 
@@ -303,19 +303,19 @@ def _lock(made: Conversion) -> str:
 
 def _readme(made: Conversion, folder: Path) -> str:
     mission = """
-Or fly it on cfepy, which builds it by itself:
+Or fly it on cfepy, which builds it automatically:
 
     cfepy run mission
 """
     return f"""# {_line(made.task.title)} on cFE
 
-ROS nodes in C++, unmodified, as applications of cFE 7.0.0; {MADE}. `report.md` says what became of what.
+ROS nodes in C++, unmodified, as applications of cFE 7.0.0; {MADE}. `report.md` lists the result for each node.
 
 1. Put this folder into a cFS mission tree as `apps/{folder.name}`.
-2. Add what `targets.cmake` says to the mission's `targets.cmake`, such as
+2. Add the lines of `targets.cmake` to the mission's `targets.cmake`, for instance with
    `include(${{MISSION_SOURCE_DIR}}/apps/{folder.name}/targets.cmake)`.
 3. Add the lines of `startup_lines.scr` to the startup script of the processor, before its first `!`.
-4. Build as ever: `make SIMULATION=native prep && make && make install`.
+4. Build as usual: `make SIMULATION=native prep && make && make install`.
 
 `tables/` has the parameters of each node as a table file: put it into `/cf`, and load and activate it to change them.
 Convert again after a change of the launch file, of the nodes or of MsgIds, which are compiled in.
@@ -368,7 +368,7 @@ def report_text(made: Conversion) -> str:
 
 
 def _report_lines(said: Mapping[str, Any]) -> Iterator[str]:
-    yield f"# What became of {said['made_from']}"
+    yield f"# Conversion of {said['made_from']}"
     yield ""
     yield "| node | from | application | entry point | parameters |"
     yield "|---|---|---|---|---|"

@@ -32,17 +32,17 @@ if TYPE_CHECKING:
 
 TRACEBACK = "Traceback (most recent call last)"
 HELP = """\
-  c, continue    go on to the next breakpoint
-  s, step        go on to the next thing that happens; so does an empty line
-  w, where       the lines of the application that are being executed
-  tasks          all tasks, and what they wait for
-  pipes          all pipes, and how many messages wait in them
-  pdb            Python's debugger in the task that runs
+  c, continue    continue to the next breakpoint
+  s, step        continue to the next event, message or line; so does an empty line
+  w, where       show the current lines of the application
+  tasks          show all tasks and their waits
+  pipes          show all pipes and the number of waiting messages
+  pdb            open Python's debugger in the running task
   q, quit        end the run here"""
 BACK = """
-  b, back        back to the thing that happened before
-  rc             back to the last breakpoint
-  bt WHAT        back to the last time at which WHAT, as of --break, happened, or an expression about variables held"""
+  b, back        go back by one step
+  rc             go back to the last breakpoint
+  bt WHAT        go back to the last match of WHAT: a breakpoint as of --break, or an expression of variables"""
 NO_WAY = "cannot go back"
 
 

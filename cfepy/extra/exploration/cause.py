@@ -103,7 +103,7 @@ def _deadlock(evidence: Evidence) -> str:
     held = {holder: evidence.names.get(what, what) for _, what, holder in waits}
     if len(waits) < 2 or wanted.keys() != held.keys():
         return ""
-    return "; ".join(f"{task} has {held[task]} and wants {wanted[task]}" for task in wanted)
+    return "; ".join(f"{task} holds {held[task]} and waits for {wanted[task]}" for task in wanted)
 
 
 # -- time ------------------------------------------------------------------------------------------------------------
@@ -116,7 +116,7 @@ def _late(evidence: Evidence) -> str:
     if span_ns is None or not task:
         return ""
     ran, usual, span = (time_text(each) for each in (evidence.ran[task], evidence.usually_ran[task], span_ns))
-    return f"{task} ran for {ran} of the {span} before it, under fifo for {usual}"
+    return f"{task} ran for {ran} of the {span} before the missed deadline; under fifo it runs for {usual}"
 
 
 # -- accesses --------------------------------------------------------------------------------------------------------
@@ -277,7 +277,7 @@ def _order(evidence: Evidence) -> str:
     earlier, later = found[0]
     return (
         f"{earlier.task} {_did(earlier)} {later.thing} at {earlier.place} before {later.task} {_did(later)} it at "
-        f"{later.place}; under fifo after that"
+        f"{later.place}; under fifo the order is reversed"
     )
 
 
@@ -326,7 +326,7 @@ def _notified_early(evidence: Evidence, at: int) -> str:
     if last is None or evidence.deeds[last].note != NOBODY or not evidence.is_flipped(last, at):
         return ""
     deed = evidence.deeds[last]
-    return f"{deed.task}'s notify at {deed.place} came before {wait.task}'s wait at {wait.place}: nobody waited then"
+    return f"{deed.task}'s notify at {deed.place} came before {wait.task}'s wait at {wait.place}: no task was waiting"
 
 
 def _set_and_cleared(evidence: Evidence, at: int) -> str:
@@ -381,8 +381,8 @@ def _overflow(evidence: Evidence) -> str:
             where = f" at {deed.place}" if deed.place else ""
             full = f"full, with {depth} {'message' if depth == '1' else 'messages'}"
             return (
-                f"a message {deed.thing} was lost that {deed.task} sent{where}: the pipe of {app} was {full}; "
-                "under fifo none is lost there"
+                f"a message {deed.thing} that {deed.task} sent{where} was lost: the pipe of {app} was {full}; "
+                "under fifo no message is lost there"
             )
     return ""
 
@@ -394,7 +394,7 @@ def _late_subscription(evidence: Evidence) -> str:
             if sending.thing == subscription.thing and evidence.is_flipped(sent_at, at):
                 return (
                     f"{sending.task} sent {sending.thing} at {sending.place} before {subscription.task} subscribed to "
-                    f"it at {subscription.place}; under fifo after that"
+                    f"it at {subscription.place}; under fifo the order is reversed"
                 )
     return ""
 
@@ -405,8 +405,8 @@ def _deleted(evidence: Evidence) -> str:
     for deletion, receiving in _received_late(evidence.deeds):
         if receiving.thing not in usual:
             return (
-                f"{deletion.task} deleted {deletion.thing} at {deletion.place}, and {receiving.task} went to receive "
-                f"from it after that, at {receiving.place}; under fifo nobody does"
+                f"{deletion.task} deleted {deletion.thing} at {deletion.place} before {receiving.task} tried to "
+                f"receive from it at {receiving.place}; under fifo no task does so after the deletion"
             )
     return ""
 
@@ -446,12 +446,14 @@ def _one_switch(evidence: Evidence) -> str:
     before = (each.text for each in reversed(evidence.rows[: moves[0]]) if each.task == row.task and each.kind == AT)
     place = ":".join(next(before, "").split(":")[:2])
     if row.kind == ORDERED:
-        return f"{row.text} went on before {row.task}, which was ready first; without that one change it does not fail"
+        return (
+            f"{row.text} continued before {row.task}, which was ready first; without this change the run does not fail"
+        )
     if not place:
         return ""
     if row.text == HOLD:
-        return f"{row.task} was held up at {place}; without that it does not fail"
-    return f"{row.text} got in while {row.task} was at {place}; without that one switch it does not fail"
+        return f"{row.task} was delayed at {place}; without this delay the run does not fail"
+    return f"{row.text} preempted {row.task} at {place}; without this preemption the run does not fail"
 
 
 def _of(deeds: Sequence[Deed], verb: str) -> Iterator[tuple[int, Deed]]:

@@ -132,10 +132,10 @@ class Breadth:
         chances = [f"{self.chance(depth):.2g} at depth {depth}" for depth in sorted(self.pct)]
         if chances:
             bound = f"PCT's bound for {self.tasks} tasks and {self.steps} points"
-            found.append(f"chance that a bug has shown, at least: {', '.join(chances)} ({bound})")
+            found.append(f"probability that a bug was found, at least: {', '.join(chances)} ({bound})")
         if self.gaps:
             found.append(
-                "accesses with no call between were one step here; --points attributes lets others in between:"
+                "accesses without a call between them were one step; --points attributes adds points between them:"
             )
             found += [f"  {gap}" for gap in self.gaps]
         return found

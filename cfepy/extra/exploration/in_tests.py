@@ -55,7 +55,7 @@ def schedules_of(exploration: Exploration, decisions: Callable[[], int], count: 
     search = SeededSearch(tuple(kinds), first_seed=1)
     for _ in range(count - 1):
         schedule = search.next()
-        assert schedule is not None, "it knows how long a run is"
+        assert schedule is not None, "a search of seeds has a schedule at any time"
         yield schedule
         search.reckon_with(decisions())
 
@@ -123,7 +123,7 @@ class ExploredTest:
         """Run the test. Returns the reports that stand for all runs."""
         count = self._item.config.getoption("--cfepy-schedules") or self._exploration.seeds
         for number, schedule in enumerate(schedules_of(self._exploration, self._decisions, count), 1):
-            when = f"under the {number}. of {count} schedules"
+            when = f"under schedule {number} of {count}"
             self._flown = number
             self._last = self._once(Conditions(schedule))
             if self._last.is_done:
@@ -162,7 +162,7 @@ class ExploredTest:
             lines.append(f"the shortest schedule that fails in this way, after {shrunk.probes} runs: {schedule}")
             lines += ["", *self._timeline(schedule, shrunk.moves), ""]
         if self._missions is not None:
-            lines.append(f"the same again: {self._missions.command(self._item, schedule)}")
+            lines.append(f"to reproduce: {self._missions.command(self._item, schedule)}")
         reports = list(self._last.reports)
         failed = next((each for each in reports if each.outcome != "passed"), reports[-1])
         failed.sections.append((f"{SECTION} explore", visible("\n".join(lines))))

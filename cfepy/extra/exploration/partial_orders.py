@@ -396,11 +396,13 @@ class OrdersSeen(NamedTuple):
             )
         found = [told]
         if self.astray:
-            found.append(f"{self.astray} schedules could not go as they were to: time or a priority is against it")
+            found.append(f"{self.astray} schedules could not be followed, because of a time or a priority")
         if self.timed:
-            found.append(f"{self.timed} pairs of steps came in the order of the time that others used; it was left so")
+            found.append(
+                f"{self.timed} pairs of steps are ordered by the CPU time of others; the reverse order was not tried"
+            )
         if self.has_ends:
-            found.append("how the subscriptions of a node end that is ended was not tried in all orders")
+            found.append("not all orders were tried in which the subscriptions of a stopped node end")
         return found
 
 

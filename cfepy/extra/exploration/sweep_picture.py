@@ -59,7 +59,7 @@ def picture_of_sweep(lines: Sequence[SweepLine], title: str = "") -> Figure:
     rates.legend(frameon=False, fontsize="small")
     for place, text in ((rates, "delivered, Hz"), (latencies, "longest latency, ms"), (shares, "CPU, %")):
         _dress(place, text)
-    shares.set_xlabel("asked for, Hz")
+    shares.set_xlabel("requested rate, Hz")
     if title:
         figure.suptitle(title, x=0.01, horizontalalignment="left", fontweight="bold")
     return figure

@@ -272,7 +272,7 @@ class TaskLook(Attachment):
             return
         waiters = getattr(use.subject, "_waiters", None)
         note = f"{len(waiters)}" if verb == do.NOTIFIES and waiters is not None else ""
-        more = {"": "", "0": ": nobody waits"}.get(note, f": {note} wait")
+        more = {"": "", "0": ": no task waits"}.get(note, f": {note} wait")
         self._shown(task, self._done(task, verb, name, use.frame, note), use.frame, more)
 
     def _named(self, lock: Any, use: Use) -> str:

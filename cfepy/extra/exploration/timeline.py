@@ -300,7 +300,7 @@ def _forms(row: Row) -> tuple[str, ...]:
     if row.kind not in (PREEMPTED, ORDERED):
         return row.text, _MADE_AT.sub("", row.text)
     if row.text == HOLD:
-        return ("=== HELD UP ===",)
+        return ("=== DELAYED ===",)
     short, whole = ("PREEMPTED", "PREEMPTED by") if row.kind == PREEMPTED else ("NOT FIRST", "AFTER")
     return f"=== {whole} {row.text} ===", f"{whole} {row.text}", f"=== {short} ==="
 

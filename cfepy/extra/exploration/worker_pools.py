@@ -225,7 +225,7 @@ class Cluster:
         if len(jobs) > 1:
             self._again += jobs
             return []
-        fate = "with it the workers of the cluster"
+        fate = "each cluster worker that flew the schedule died"
         return [(number, self._died(schedule, fate, str(error))) for number, schedule in jobs]
 
     def _give_up(self) -> None:

@@ -214,10 +214,10 @@ def _switch_text(moment: Moment, move: Move, place: str) -> str:
     if moment.question:
         return f"{moment.instead_of}: {moment.chosen} {number}"
     if moment.chosen == HOLD:
-        return f"{moment.instead_of} is held up{at} {number}"
+        return f"{moment.instead_of} is delayed{at} {number}"
     if moment.preemption:
         return f"{moment.instead_of} is preempted by {moment.chosen}{at} {number}"
-    return f"{moment.chosen} goes before {moment.instead_of} {number}"
+    return f"{moment.chosen} runs before {moment.instead_of} {number}"
 
 
 def _keep(kept: list[Any], thing: Any) -> None:

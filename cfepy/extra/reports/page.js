@@ -1,5 +1,5 @@
 "use strict";
-/* The page of a run: the timeline, tables that sort, tables that are filtered. */
+/* The page of a run: the timeline, and tables that readers can sort and filter. */
 
 const data = JSON.parse(document.getElementById("timeline-data").textContent);
 const canvas = document.getElementById("timeline-canvas");
@@ -7,7 +7,7 @@ const box = canvas.parentElement;
 const context = canvas.getContext("2d");
 const ROW = 18, TOP = 24, LEAST_BINS = 8, MARK_REACH = 5, MOST_NAMED = 12;
 
-/* Counts of a lane as sums up to each bin, so that any stretch of time is one subtraction. */
+/* Return the sums of a lane's counts up to each bin. The count of any time interval is then one subtraction. */
 function sums(runs) {
   let length = 0;
   for (let at = 1; at < runs.length; at += 2) length += runs[at];
@@ -21,7 +21,7 @@ function sums(runs) {
 const lanes = data.lanes.map(lane => ({ ...lane, runs: sums(lane.runs), busy: sums(lane.busy) }));
 const end = Math.max(data.end, data.width);
 let view = { from: 0, to: end };
-let focus = null;  // an instant that a link has asked for
+let focus = null;  // the instant of the link that the reader clicked last
 let labels = 150;
 
 function between(table, from, to) {
@@ -84,7 +84,7 @@ function drawFocus(on, width, height) {
   on.fillRect(Math.round(place(focus, width)) - 1, 0, 2, height);
 }
 
-/* Lines at round times from one height to another, and the times themselves. */
+/* Draw vertical lines at round times between two heights, with the times as text. */
 function drawAxis(on, width, top, height, textAt) {
   const span = view.to - view.from, room = width - labels;
   let step = 10 ** Math.ceil(Math.log10(span / Math.max(2, room / 110)));
@@ -125,7 +125,7 @@ function drawLane(lane, row, width) {
   context.globalAlpha = 1;
 }
 
-/* A tick at the top for each, and a line down the lanes that is the fainter the more there are. */
+/* Draw each mark as a tick at the top and a line across the lanes. The lines are fainter if there are many marks. */
 function drawMarks(width, height) {
   const room = width - labels, span = view.to - view.from;
   const seen = data.marks.filter(mark => mark[0] >= view.from && mark[0] <= view.to);
@@ -152,14 +152,14 @@ function describe(event) {
   if (lane) {
     const from = Math.floor(at / data.width) * data.width, to = Math.max(from + data.width, at + span / room);
     const count = between(lane.runs, from, to), busy = between(lane.busy, from, to);
-    const what = lane.kind === "app" ? " times on the processor" : " sent";
-    const used = busy ? ", " + (busy / 1e3).toLocaleString("en") + " us of it" : "";
+    const what = lane.kind === "app" ? " runs" : " sent";
+    const used = busy ? ", " + (busy / 1e3).toLocaleString("en") + " us of CPU time" : "";
     texts.unshift(lane.name + " from " + seconds(from) + " to " + seconds(to) + ": " + count + what + used);
   }
   tip.textContent = texts.join(" | ");
 }
 
-/* The mouse zooms and moves; where it does neither, something is told. */
+/* Zoom and move with the mouse. Without a pressed button, call `tell` to describe the place of the mouse. */
 function movable(surface, tell) {
   let dragged = null;
   surface.addEventListener("pointerdown", event => { dragged = event.clientX; surface.setPointerCapture(event.pointerId); });
@@ -211,7 +211,7 @@ function timesOf(steps) {
   return Float64Array.from(steps, step => (at += step) * 1e3);
 }
 
-/* What can be chosen: groups of lines, and texts that change. Lines are decoded when they are first drawn. */
+/* The groups that a reader can select: lines of numbers, and texts that change. Lines are decoded when first drawn. */
 const groups = [];
 for (const series of JSON.parse(document.getElementById("values-data").textContent)) {
   for (const group of series.groups)
@@ -229,7 +229,7 @@ function linesOf(group) {
   return group.decoded;
 }
 
-/* The first point that is not before an instant. */
+/* Return the index of the first point at or after an instant. */
 function firstAt(times, ns) {
   let low = 0, high = times.length;
   while (low < high) {
@@ -326,7 +326,7 @@ function drawLine(on, group, line, index, range, y, width) {
   on.stroke();
 }
 
-/* The names of the lines stand where the timeline has those of its lanes. */
+/* Draw the names of the lines, in the column that has the names of the lanes in the timeline. */
 function drawNames(on, group, top) {
   const room = Math.floor((PLOT - PLOT_TOP) / 14);
   on.save();
@@ -342,7 +342,7 @@ function drawNames(on, group, top) {
   on.restore();
 }
 
-/* Values at the mouse, those of the last point before it. */
+/* Show the values at the mouse: the last point at or before its time. */
 function tellValues(event) {
   const box = valuesCanvas.getBoundingClientRect(), x = event.clientX - box.left - labels;
   const plots = groups.filter(group => chosen.has(group) && group.lines);
@@ -358,7 +358,7 @@ function tellValues(event) {
 
 function choose(group, box) {
   if (box.checked) chosen.add(group); else chosen.delete(group);
-  document.getElementById("values-tip").textContent = chosen.size ? "" : "Choose fields to draw them.";
+  document.getElementById("values-tip").textContent = chosen.size ? "" : "Select fields to draw them.";
   drawValues();
 }
 

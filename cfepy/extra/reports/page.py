@@ -140,7 +140,7 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
         "Virtual time": f"{numbers.show('virtual_s', f'{results.virtual_s:,.3f}')} s",
         "OPERATIONAL at": booted,
         "Tasks": escaped(str(results.task_kind)),
-        "Made from": escaped(about.source),
+        "Mission source": escaped(about.source),
         "Versions": escaped(f"cfepy {__version__}, Python {platform.python_version()}"),
         "Trace": element("code", escaped(results.trace)),
     }
@@ -148,7 +148,7 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
         speed = f"{numbers.show('speed', f'{results.speed:,.1f}')} times real time"
         facts["Wall time"] = f"{numbers.show('wall_s', f'{results.wall_s:,.3f}')} s, {speed}"
     listed = "".join(element("div", element("dt", name) + element("dd", value)) for name, value in facts.items())
-    command = element("dt", "The same run again") + element("dd", element("code", escaped(about.command)))
+    command = element("dt", "Command to repeat the run") + element("dd", element("code", escaped(about.command)))
     warnings = "".join(element("p", escaped(text), class_="banner bad", role="note") for text in about.warnings)
     title = element("h1", escaped(results.mission)) + warnings + _problems(flown, collector, about.story)
     title += _silent(results)
@@ -178,10 +178,9 @@ def _timeline() -> str:
     tip = element("p", "", id="timeline-tip", class_="tip", aria_live="off")
     bar = element("p", buttons + shown, class_="tools")
     about = (
-        "When applications ran and messages were sent; the darker, the more. Lines mark resets, faults, overruns and "
-        "switches of the schedule. Zoom with the wheel, the buttons or + and &minus;, move by dragging or with the "
-        "arrow keys. "
-        "<code>cfepy trace --perfetto</code> has every single one."
+        "The times at which applications ran and messages were sent. Darker areas have more of them. Lines mark "
+        "resets, faults, overruns and switches of the schedule. To zoom, use the wheel, the buttons, or + and "
+        "&minus;. To move, drag or use the arrow keys. <code>cfepy trace --perfetto</code> exports all of them."
     )
     return section("Timeline", "timeline", bar + element("div", canvas, class_="timeline") + tip, about)
 
@@ -220,7 +219,7 @@ def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> st
     switches = [RunProblem(mark.text, mark.at_ns) for mark in collector.marks if mark.kind == SWITCH]
     if switches:
         one = len(switches) == 1
-        items += element("p", f"The schedule made {'one switch' if one else f'{len(switches)} switches'} before")
+        items += element("p", f"The schedule made {'one switch' if one else f'{len(switches)} switches'} in this run:")
         items += element("ul", "".join(_item(each, "switch") for each in switches[:MOST_SWITCHES]))
     return element("div", title + items, class_="banner bad", role="note")
 
@@ -271,7 +270,7 @@ def _deadlines(results: Results, numbers: Numbers) -> str:
         )
     if not rows:
         return ""
-    heads = ("Of", "What", "Limit", "Verdict", "Measured", "Missed", "Worst", "First at")
+    heads = ("Subject", "Kind", "Limit", "Verdict", "Measured", "Missed", "Worst", "First at")
     return section("Deadlines", "deadlines", table("Deadlines of the mission file", heads, rows, (2, 4, 5, 6, 7)))
 
 
@@ -285,7 +284,7 @@ def _faults(results: Results, numbers: Numbers) -> str:
         rows.append([escaped(fault["name"]), escaped(fault["what"]), numbers.show(f"{path}.times"), when])
     if not rows:
         return ""
-    heads = ("Name", "What", "Times", "At, s, or why never")
+    heads = ("Name", "Fault", "Times", "At, s, or the reason why not")
     return section("Faults", "faults", table("Faults of the plan", heads, rows, (2,), class_="log"))
 
 
@@ -330,13 +329,13 @@ def _marks(results: Results, numbers: Numbers, collector: Collector) -> str:
     if not rows:
         return ""
     rows.sort(key=lambda row: row[0].order or 0)
-    inside = table("Resets, faults, overruns and notes", ("At, s", "What", "Text"), rows, (0,), class_="log")
+    inside = table("Resets, faults, overruns and notes", ("At, s", "Kind", "Text"), rows, (0,), class_="log")
     about = " ".join(
-        f"The first {MOST_OF_A_KIND:,} of {count:,} of the kind {kind} are shown."
+        f"The first {MOST_OF_A_KIND:,} of {count:,} entries of the kind {kind} are shown."
         for kind, count in collector.mark_counts.items()
         if count > MOST_OF_A_KIND
     )
-    return section("What stands out", "marks", inside, about)
+    return section("Notable events", "marks", inside, about)
 
 
 def _script(outcome: Any, numbers: Numbers) -> str:
@@ -369,13 +368,15 @@ def _messages(results: Results, numbers: Numbers) -> str:
         msg_id = TableCell(numbers.show(f"{path}.msg_id", f"0x{topic.msg_id:04X}"), topic.msg_id)
         rate = numbers.show(f"{path}.rate_hz", f"{topic.rate_hz:,.1f}")
         if topic.too_fast:
-            rate += element("strong", " !", title="more than the board is made for")
+            rate += element("strong", " !", title="more than the board can carry")
         counts = [TableCell(numbers.show(f"{path}.{each}"), getattr(topic, each)) for each in FATES]
         rows.append([name, msg_id, TableCell(rate, topic.rate_hz), *counts])
     limit = ""
     if results.max_publish_hz:
-        limit = f" The board is made for {numbers.show('max_publish_hz')} Hz of ROS messages a topic."
-    about = f"What was sent over the Software Bus, and what became of it. Rates count from OPERATIONAL on.{limit}"
+        limit = f" The board carries at most {numbers.show('max_publish_hz')} Hz of ROS messages per topic."
+    about = (
+        f"The messages sent over the Software Bus, and their delivery. Rates are measured from OPERATIONAL on.{limit}"
+    )
     heads = ("Name", "MsgId", "Hz", *FATES.values())
     rates = table("Messages by MsgId", heads, rows, range(1, len(heads)), class_="sortable")
     return section("Messages", "messages", rates, about)
@@ -391,9 +392,9 @@ def _latencies(collector: Collector) -> str:
             cells = [TableCell(escaped(time_text(each)), each) for each in times]
             name = escaped(collector.names[msg_id])
             rows.append([name, TableCell(f"{latency.count:,}", latency.count), *cells, _picture(latency)])
-    heads = ("Name", "Received", "p50", "p95", "p99", "Longest", "From 0 ns on, doubling")
+    heads = ("Name", "Received", "p50", "p95", "p99", "Longest", "Distribution, doubling from 0 ns")
     about = (
-        "Virtual time from the sending of a message until a receiver has it, which is when its callback begins. "
+        "Virtual time from the sending of a message until its receiver takes it, or until its callback begins. "
         "Percentiles are at most 1.6 % too low."
     )
     return section(
@@ -438,9 +439,11 @@ def _applications(results: Results, numbers: Numbers) -> str:
                 escaped(app.error or ""),
             ]
         )
-    heads = ("Name", "State", "CPU", "Restarts", "Deaths", "Error events", "Died of")
+    heads = ("Name", "State", "CPU", "Restarts", "Deaths", "Error events", "Cause of death")
     total = sum(app.cpu_share for app in results.apps)
-    about = f"Processor time is virtual: what the board says that calls cost. All together they used {total:.2%} of it."
+    about = (
+        f"Processor time is virtual: the board profile defines the cost of calls. All applications used {total:.2%}."
+    )
     inside = table("Applications", heads, rows, (2, 3, 4, 5), class_="sortable")
     return section("Applications", "applications", inside, about)
 
@@ -461,15 +464,15 @@ def _pipes(results: Results, numbers: Numbers) -> str:
                 TableCell(numbers.show(f"{path}.dropped"), pipe.dropped),
             ]
         )
-    heads = ("Pipe", "Application", "Most that waited", "Room for", "Share", "Did not get in")
+    heads = ("Pipe", "Application", "Peak", "Depth", "Share", "Dropped")
     return section("Pipes", "pipes", table("Pipes", heads, rows, (2, 3, 4, 5), class_="sortable"))
 
 
 def _graph(collector: Collector) -> str:
     """Draw senders, messages and receivers."""
     about = (
-        "Who sends is on the left, who takes on the right, with pipes; the same application may be on both sides. "
-        "<code>cfepy graph</code> shows the same as text."
+        "Senders are on the left, receivers and their pipes on the right. An application may be on both sides. "
+        "<code>cfepy graph</code> shows the same graph as text."
     )
     drawing = graph_svg(collector.graph.of_interest(), is_document=False)
     return section("Graph", "graph", element("div", drawing, class_="drawing"), about)
@@ -483,7 +486,7 @@ def _drops(collector: Collector) -> str:
     ]
     if not rows:
         return ""
-    heads = ("Message", "Pipe", "Why", "Times")
+    heads = ("Message", "Pipe", "Reason", "Times")
     return section("Dropped messages", "drops", table("Dropped messages", heads, rows, (3,), class_="sortable"))
 
 
@@ -497,14 +500,14 @@ def _budget(results: Results, numbers: Numbers, collector: Collector) -> str:
         stack = stacks.get(owner, 0)
         booked = TableCell(meter(share, numbers.show(f"memory.by_owner.{owner}"), memory.limit is not None), size)
         rows.append([escaped(owner), booked, TableCell(f"{stack:,}", stack), TableCell(f"{share:.1%}", share)])
-    whole = "of the board" if memory.limit else "of what is used"
-    parts = table("RAM by owner", ("Owner", "Bytes", "of them stacks", whole), rows, (1, 2, 3), class_="sortable")
+    whole = "Share of the board" if memory.limit else "Share of the used bytes"
+    parts = table("RAM by owner", ("Owner", "Bytes", "Bytes of stacks", whole), rows, (1, 2, 3), class_="sortable")
     used, peak = numbers.show("memory.used"), numbers.show("memory.peak")
     if memory.limit:
         of = f"{meter(memory.peak / memory.limit, '')} at most {peak} of {numbers.show('memory.limit')} bytes"
     else:
         of = f"At most {peak} bytes, on a board without a limit"
-    about = f"{of}; {used} at the end, {sum(stacks.values()):,} of them stacks."
+    about = f"{of}; {used} bytes at the end, including {sum(stacks.values()):,} bytes of stacks."
     return section("Board budget", "budget", parts, about)
 
 
@@ -522,7 +525,7 @@ def _events(results: Results, numbers: Numbers, collector: Collector) -> str:
         for event in collector.events
     ]
     heads = ("At, s", "Type", "Application", "Id", "Text")
-    inside = _filter("events", "Show events with") + table(
+    inside = _filter("events", "Show events that contain") + table(
         "Events", heads, rows, (0, 3), class_="log", id="events-table"
     )
     about = f"{counts}. {_kept(len(collector.events), collector.event_count)}"
@@ -532,14 +535,14 @@ def _events(results: Results, numbers: Numbers, collector: Collector) -> str:
 def _console(collector: Collector) -> str:
     """Show the console, with a filter."""
     rows = [[f"{line.at_ns / NS_PER_S:.6f}", escaped(line.text)] for line in collector.lines]
-    inside = _filter("console", "Show lines with")
+    inside = _filter("console", "Show lines that contain")
     inside += table("Console", ("At, s", "Line"), rows, (0,), class_="log console", id="console-table")
     return section("Console", "console", inside, _kept(len(collector.lines), collector.line_count))
 
 
 def _kept(shown: int, count: int) -> str:
     """Return a note if not all rows are shown."""
-    return "" if count <= shown else f"The first {MOST:,} of {count:,} are shown."
+    return "" if count <= shown else f"The first {MOST:,} of {count:,} rows are shown."
 
 
 def _filter(name: str, label: str) -> str:
@@ -554,4 +557,4 @@ def _others(numbers: Numbers) -> str:
     rows = [[escaped(path), shown] for path, shown in numbers.rest()]
     if not rows:
         return ""
-    return section("Other numbers", "others", table("Other numbers", ("What", "Value"), rows, (1,)))
+    return section("Other numbers", "others", table("Other numbers", ("Name", "Value"), rows, (1,)))

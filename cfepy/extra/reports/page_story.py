@@ -52,10 +52,10 @@ def story_section(story: PageStory) -> str:
     cause = element("p", f"Cause: {escaped(story.cause)}", class_="banner bad") if story.cause else ""
     heads = ("At, s", *story.tasks)
     rows = [_cells(number, row, len(story.tasks)) for number, row in enumerate(story.rows)]
-    about = "What the tasks did that the failure is about, where others could have got in. Times lead to the timeline."
+    about = "The operations of the tasks involved in the failure. Each time links to the timeline."
     end = element("p", escaped(story.end))
     return section(
-        "What happened", STORY, cause + table("What each task did", heads, rows, class_="story") + end, about
+        "What happened", STORY, cause + table("Operations of each task", heads, rows, class_="story") + end, about
     )
 
 

@@ -180,15 +180,15 @@ def values_section(values: ValueData, recorded: SeriesSet) -> str:
         id="values-canvas",
         tabindex="0",
         role="img",
-        aria_label="The chosen fields by virtual time; cfepy export has them as a table",
+        aria_label="The selected fields by virtual time; cfepy export writes them as a table",
     )
-    tip = element("p", "Choose fields to draw them.", id="values-tip", class_="tip", aria_live="off")
+    tip = element("p", "Select fields to draw them.", id="values-tip", class_="tip", aria_live="off")
     search = element("input", type="search", id="values-filter", autocomplete="off").removesuffix("</input>")
-    search = element("label", "Show fields with", for_="values-filter") + search
+    search = element("label", "Show fields that contain", for_="values-filter") + search
     drawn = element("div", element("div", canvas, class_="timeline") + tip, class_="drawn")
     about = (
-        "Fields of topics and packets over the time that the timeline shows; both zoom and move together. "
-        "<code>cfepy plot</code> draws them into a file, <code>cfepy export csv</code> has every value."
+        "Fields of topics and packets over the time range of the timeline; both zoom and move together. "
+        "<code>cfepy plot</code> draws them into a file, and <code>cfepy export csv</code> writes every value."
     )
     inside = element("p", search, class_="filter") + element("div", picker + drawn, class_="values")
     return section("Values over time", "values", inside, " ".join([about, *_thinned(values, recorded)]))
@@ -197,8 +197,8 @@ def values_section(values: ValueData, recorded: SeriesSet) -> str:
 def _thinned(values: ValueData, recorded: SeriesSet) -> Iterator[str]:
     """Say which values were left off the page, and why."""
     if any(len(recorded.series(each["name"])) > len(each["times"]) for each in values.plain):
-        yield "Of many messages the lowest and highest values of each stretch of time are drawn."
+        yield "If there are many messages, the lowest and highest values of each time interval are drawn."
     if any(each["every"] > 1 for each in values.plain):
-        yield "Of topics with very many messages only every second, fourth, ... was looked at."
+        yield "Of topics with very many messages, only every second, fourth, ... message is included."
     if values.shown < values.found:
-        yield f"{values.shown:,} of {values.found:,} fields are here, those of the smaller messages."
+        yield f"{values.shown:,} of {values.found:,} fields are included: the fields of the smaller messages."

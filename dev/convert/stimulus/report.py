@@ -40,10 +40,10 @@ class Row(NamedTuple):
 
 
 VERDICTS = {
-    "equal": "the same messages, answers, lines, names in the graph and end",
-    "explained": "differs, for a reason that explained.tsv has",
-    "different": "differs, and should not",
-    "refused": "compiles, but does what nothing flies: a rule of the check says so",
+    "equal": "the messages, answers, printed lines, names in the graph and exit are equal",
+    "explained": "differs for a reason that is listed in explained.tsv",
+    "different": "differs without a known reason",
+    "refused": "compiles, but a rule of the check refuses it",
     "not on cfepy": "converts, but does not fly",
     "not with roscpp": "cannot be built with Debian's roscpp",
     "not run": "was not tried",
@@ -110,16 +110,16 @@ def table(made: list[Row]) -> str:
     counts = Counter(row.verdict for row in made)
     there = [row for row in made if row.verdict in ("equal", "explained", "different")]
     lines = [
-        f"Of {len(made)} nodes that compile for the host:",
+        f"The comparison covers {len(made)} nodes that compile for the host:",
         "",
-        "| verdict | nodes | what it means |",
+        "| verdict | nodes | meaning |",
         "|---|---|---|",
     ]
     lines += [f"| {name} | {counts[name]} | {what} |" for name, what in VERDICTS.items() if counts[name]]
     messages, printed = sum(each.messages for each in there), sum(each.lines for each in there)
     sums = (messages, printed, sum(each.answers for each in there))
     seen = "published {:,} messages, printed {:,} lines and gave {:,} answers".format(*sums)
-    lines += ["", f"The {len(there)} that ran on both sides {seen} with roscpp."]
+    lines += ["", f"The {len(there)} nodes that ran on both sides {seen} with roscpp."]
     return "\n".join(lines)
 
 

@@ -22,7 +22,9 @@ def main() -> int:
     options = parser.parse_args()
     built = real.installed()
     if built is None:
-        parser.error(f"{real.VARIABLE} names no folder with a real cFE; dev/twin/api/real.py says how to build one")
+        parser.error(
+            f"{real.VARIABLE} is not a folder with a real cFE; dev/twin/api/real.py describes how to build one"
+        )
     release = real.release(built)
     totals: Counter[str] = Counter()
     found = 0

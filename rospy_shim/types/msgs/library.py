@@ -227,8 +227,8 @@ class Library:
         size = self._sizes[found.full_name] = self._sum(found)
         for what, number, limit in (
             ("types inside each other", size.depth, MESSAGE_DEPTH),
-            ("fields, those of nested types counted", size.fields, MESSAGE_FIELDS),
-            ("values in fixed arrays, those inside counted", size.values, MESSAGE_VALUES),
+            ("fields, including fields of nested types", size.fields, MESSAGE_FIELDS),
+            ("values in fixed arrays, including nested arrays", size.values, MESSAGE_VALUES),
         ):
             if number > limit:
                 problem = f"message type {found.full_name} has more than {limit:,} {what}; split it"

@@ -24,7 +24,7 @@ def computer(tmp_path_factory: pytest.TempPathFactory) -> Computer:
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_what_flies_here_flies_there(computer: Computer, tmp_path: Path, module: str) -> None:
+def test_tests_of_this_folder_pass_on_aarch64(computer: Computer, tmp_path: Path, module: str) -> None:
     options = ("-p", "no:cacheprovider", "--basetemp", str(tmp_path / "there"))
     done = computer.run("-m", "pytest", *options, f"tests/extra/c/{module}", cwd=REPOSITORY)
     assert done.returncode == 0, done.stdout
@@ -67,7 +67,7 @@ print(digest_of(folder, tasks))
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_run_is_the_same_here_and_there(computer: Computer, tmp_path: Path, tasks: str) -> None:
+def test_run_on_aarch64_has_the_digest_of_a_run_here(computer: Computer, tmp_path: Path, tasks: str) -> None:
     here, there = tmp_path / "here" / "mission", tmp_path / "there" / "mission"  # the name is in an event
     for folder in (here, there):
         folder.mkdir(parents=True)

@@ -14,7 +14,7 @@ pytestmark = needs_compiler
 
 @pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("name", NAMES)
-def test_an_application_says_what_it_says_on_nasas_cfe(tmp_path: Path, name: str, tasks: str) -> None:
+def test_application_prints_the_output_of_nasas_cfe(tmp_path: Path, name: str, tasks: str) -> None:
     assert fly(name, tmp_path, tasks) == expected(name)
 
 
@@ -25,7 +25,7 @@ def test_handles_of_tables_are_ids_without_deprecated_elements(tmp_path: Path) -
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [each for each in NAMES if each != "pools"])
-def test_it_says_the_same_under_the_guard(tmp_path: Path, name: str) -> None:
+def test_application_prints_the_same_under_the_guard(tmp_path: Path, name: str) -> None:
     """The application about pools reads the bytes that a pool writes before its blocks, which are elsewhere then."""
     assert fly(name, tmp_path, more="compiled: {guard: true}\n") == expected(name)
 

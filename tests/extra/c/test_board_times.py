@@ -36,7 +36,7 @@ def told(folder: Path, profile: Path, capsys: pytest.CaptureFixture[str]) -> dic
     return {option: int(time.removesuffix("ns")) for option, time in zip(fields[::2], fields[1::2], strict=True)}
 
 
-def test_it_measures_on_a_profile_what_that_was_made_of(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_measured_times_match_the_profile_of_the_board(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program, folder = tmp_path / "program", tmp_path / "mission"
     assert main(["board", "program", str(program)]) == 0
     assert LINE in capsys.readouterr().out
@@ -51,7 +51,7 @@ def test_it_measures_on_a_profile_what_that_was_made_of(tmp_path: Path, capsys: 
     assert costs.findall(second) == costs.findall(first)
 
 
-def test_a_folder_that_is_there_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_existing_folder_is_not_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["board", "program", str(tmp_path)]) == 2
     assert "already exists" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())

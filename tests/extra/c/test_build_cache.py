@@ -33,18 +33,18 @@ def fallback(tmp_path: Path) -> Path:
     return tmp_path / "tmp" / f"cfepy-cache-{os.getuid()}"
 
 
-def test_cache_folder_is_in_the_home_that_can_be_written(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cache_folder_is_in_a_writable_home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("HOME", str(tmp_path))
     assert cache_folder() == tmp_path / ".cache/cfepy"
     assert cache_folder().is_dir()
 
 
-def test_cache_folder_is_the_named_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cache_folder_is_set_by_a_variable(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CFEPY_CACHE", str(tmp_path / "a/b"))
     assert cache_folder() == tmp_path / "a/b"
 
 
-def test_home_that_cannot_be_written_is_said_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unwritable_home_is_reported_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cache_folder() == fallback(tmp_path)
     said = capsys.readouterr().err
     assert f"{tmp_path}/home/.cache/cfepy cannot be made: Not a directory" in said
@@ -55,12 +55,12 @@ def test_home_that_cannot_be_written_is_said_once(tmp_path: Path, capsys: pytest
     assert capsys.readouterr().err == ""
 
 
-def test_fallback_folder_belongs_to_the_user_alone(tmp_path: Path) -> None:
+def test_fallback_folder_is_accessible_only_to_the_user(tmp_path: Path) -> None:
     assert cache_folder().stat().st_mode & 0o777 == 0o700
     assert headers_folder().is_relative_to(fallback(tmp_path))
 
 
-def test_fallback_folder_that_others_can_write_is_refused(tmp_path: Path) -> None:
+def test_fallback_folder_writable_by_others_is_refused(tmp_path: Path) -> None:
     fallback(tmp_path).mkdir()
     fallback(tmp_path).chmod(0o777)
     with pytest.raises(UsageError, match=r"only you can write; set CFEPY_CACHE") as failure:
@@ -75,7 +75,7 @@ def test_fallback_folder_that_is_a_link_is_refused(tmp_path: Path) -> None:
         cache_folder()
 
 
-def test_named_folder_that_cannot_be_made_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_folder_that_cannot_be_created_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CFEPY_CACHE", str(tmp_path / "home/cache"))
     with pytest.raises(UsageError, match=r"home/cache: cannot be written: Not a directory; set CFEPY_CACHE"):
         headers_folder()
@@ -88,7 +88,7 @@ def test_full_cache_is_named() -> None:
         raise full
 
 
-def test_error_elsewhere_is_not_blamed_on_the_cache() -> None:
+def test_error_outside_the_cache_is_not_attributed_to_it() -> None:
     with pytest.raises(FileNotFoundError), writing_cache(Path("/cache/x")):
         raise FileNotFoundError(errno.ENOENT, "No such file", "/source.c")
 

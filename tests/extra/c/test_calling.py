@@ -18,7 +18,7 @@ ALL_KINDS = [
 ]
 
 
-def test_formats_take_arguments_beyond_the_registers_whichever_function_has_them(tmp_path: Path) -> None:
+def test_formats_read_arguments_beyond_the_registers_in_every_printing_function(tmp_path: Path) -> None:
     console = fly_c(
         tmp_path,
         r"""
@@ -180,7 +180,7 @@ void TEST_Main(void)
 """
 
 
-def test_a_long_computation_has_all_its_registers_when_it_goes_on(tmp_path: Path) -> None:
+def test_long_computation_keeps_its_registers_when_it_is_interrupted(tmp_path: Path) -> None:
     turns = 4_000_000
 
     def after(step: int, add: int, value: int) -> int:
@@ -241,7 +241,7 @@ def test_modes_of_floating_point_belong_to_each_task(tmp_path: Path, tasks: str)
 
 
 @pytest.mark.parametrize("flags", [(), PROTECTION])
-def test_what_compilers_add_to_code_is_there(tmp_path: Path, flags: tuple[str, ...]) -> None:
+def test_code_added_by_compilers_is_supported(tmp_path: Path, flags: tuple[str, ...]) -> None:
     console = fly_c(
         tmp_path,
         """

@@ -60,7 +60,7 @@ def test_patterns_find_files(tmp_path: Path) -> None:
     assert values(tmp_path / "in", "file(GLOB r ../*.cpp)") == ["../a.cpp"]
 
 
-def test_what_a_file_has_done_counts_for_all_its_subfolders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_commands_of_a_file_count_for_all_its_subfolders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cfepy.extra.c.toolchain.cmake_script.CMAKE_COMMANDS", 100)
     outer = CMakeScript(tmp_path, {})
     outer.run("set(r a)\n" * 60)

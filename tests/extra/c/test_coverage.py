@@ -50,7 +50,7 @@ def counts(folder: Path) -> dict[int, str]:
 
 
 @pytest.mark.parametrize("end", [EXIT, STAY], ids=["of the application", "of the mission"])
-def test_counts_are_written_at_the_end(tmp_path: Path, end: str) -> None:
+def test_counts_are_written_at_the_end_of_the_application(tmp_path: Path, end: str) -> None:
     compile_c(tmp_path, "TEST", SOURCE.replace("@", end), "--coverage", "-O0")
     console = console_of(fly(write_mission(tmp_path, "TEST"), 10))
     assert "gcov" not in console
@@ -80,7 +80,7 @@ def test_counts_go_below_a_prefix(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
 
 @needs_cpp
 @pytest.mark.slow
-def test_an_application_in_cpp_too(tmp_path: Path) -> None:
+def test_application_in_cpp_writes_counts(tmp_path: Path) -> None:
     source = SOURCE.replace("void TEST_Main", 'extern "C" void TEST_Main').replace("@", EXIT)
     compile_cpp(tmp_path, "TEST", source, "--coverage", "-O0")
     fly(write_mission(tmp_path, "TEST"), 10)
@@ -89,14 +89,14 @@ def test_an_application_in_cpp_too(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_all_runs_of_an_exploration_count(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_counts_include_all_runs_of_an_exploration(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     compile_c(tmp_path, "TEST", SOURCE.replace("@", STAY), "--coverage", "-O0")
     assert main(["explore", write_mission(tmp_path, "TEST"), "--for", "1", "--seeds", "4"]) == 0
     capsys.readouterr()
     assert int(counts(tmp_path)[3]) >= 20
 
 
-def test_other_files_of_the_host_are_out_of_reach(tmp_path: Path) -> None:
+def test_other_files_of_the_host_are_inaccessible(tmp_path: Path) -> None:
     compile_c(
         tmp_path,
         "TEST",

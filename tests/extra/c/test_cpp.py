@@ -88,14 +88,14 @@ def test_the_standard_library_and_exceptions(tmp_path: Path, link: str, tasks: s
 
 
 @pytest.mark.slow
-def test_a_run_is_the_same_each_time(tmp_path: Path) -> None:
+def test_run_has_one_digest(tmp_path: Path) -> None:
     compile_cpp(tmp_path, "TEST", LIBRARY)
     folder = write_mission(tmp_path, "TEST")
     assert len({digest_of(folder, tasks) for tasks in ("thread", "greenlet", "thread")}) == 1
 
 
 @pytest.mark.parametrize("link", [pytest.param(link, marks=[pytest.mark.slow] * (link != "static")) for link in LINKS])
-def test_an_exception_that_nobody_catches_is_a_fault(tmp_path: Path, link: str) -> None:
+def test_uncaught_exception_is_a_fault(tmp_path: Path, link: str) -> None:
     source = """
         #include <stdexcept>
         extern "C" void TEST_Main()
@@ -169,7 +169,7 @@ LIFE = """
 
 
 @pytest.mark.parametrize("flags", [(), STATIC, FREE], ids=["shared", "static", "without libstdc++"])
-def test_objects_begin_and_end(tmp_path: Path, flags: tuple[str, ...]) -> None:
+def test_static_objects_are_constructed_and_destroyed(tmp_path: Path, flags: tuple[str, ...]) -> None:
     source = LIFE
     if flags is FREE:
         source = 'extern "C" { void *__dso_handle = &__dso_handle; }\n' + source.replace("\n    ", "\n")
@@ -180,7 +180,7 @@ def test_objects_begin_and_end(tmp_path: Path, flags: tuple[str, ...]) -> None:
     ]
 
 
-def test_a_static_variable_is_initialised_once_while_another_task_comes(tmp_path: Path) -> None:
+def test_static_variable_is_initialised_once_when_two_tasks_need_it(tmp_path: Path) -> None:
     source = """
         static int made;
         struct Slow { int value; Slow() { OS_TaskDelay(50); value = ++made; } };
@@ -220,7 +220,7 @@ def test_code_without_exceptions_and_libstdcpp_has_faults_instead(tmp_path: Path
 
 
 @pytest.mark.slow
-def test_a_mutex_of_the_standard_library_keeps_others_out(tmp_path: Path) -> None:
+def test_mutex_of_the_standard_library_excludes_other_tasks(tmp_path: Path) -> None:
     console = fly_cpp(
         tmp_path,
         """
@@ -249,7 +249,7 @@ def test_a_mutex_of_the_standard_library_keeps_others_out(tmp_path: Path) -> Non
 
 
 @pytest.mark.slow
-def test_a_recursive_mutex_is_taken_twice_by_its_task_alone(tmp_path: Path) -> None:
+def test_recursive_mutex_is_taken_twice_by_its_owner_only(tmp_path: Path) -> None:
     console = fly_cpp(
         tmp_path,
         """
@@ -284,7 +284,7 @@ def test_a_recursive_mutex_is_taken_twice_by_its_task_alone(tmp_path: Path) -> N
 
 
 @pytest.mark.slow
-def test_a_computer_without_libstdcpp_says_how_to_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_check_without_libstdcpp_explains_how_to_link(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     compile_cpp(tmp_path, "TEST", LIBRARY)
     folder = write_mission(tmp_path, "TEST")
     host_library.cache_clear()
@@ -296,7 +296,7 @@ def test_a_computer_without_libstdcpp_says_how_to_link(tmp_path: Path, monkeypat
 
 
 @pytest.mark.slow
-def test_a_thread_of_the_library_is_told_what_flight_software_has(tmp_path: Path) -> None:
+def test_std_thread_is_refused_with_the_calls_to_use_instead(tmp_path: Path) -> None:
     source = """
         #include <thread>
         extern "C" void TEST_Main()

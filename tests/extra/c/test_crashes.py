@@ -74,7 +74,7 @@ void TEST_Main(void)
 
 @pytest.mark.parametrize("tasks", ["thread", pytest.param("greenlet", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("kind", FAULTS)
-def test_a_fault_restarts_the_application_and_the_others_fly_on(tmp_path: Path, kind: str, tasks: str) -> None:
+def test_fault_restarts_the_application_and_others_continue(tmp_path: Path, kind: str, tasks: str) -> None:
     code, what, where = FAULTS[kind]
     compile_c(tmp_path, "TEST", FAILING.replace("@", code), "-O0", "-w")
     compile_c(tmp_path, "WITNESS", WITNESS)
@@ -92,7 +92,7 @@ def test_a_fault_restarts_the_application_and_the_others_fly_on(tmp_path: Path, 
     assert mission.cfe.es.history["TEST"].deaths >= 1
 
 
-def test_a_fault_resets_the_processor_where_the_startup_script_says_so(tmp_path: Path) -> None:
+def test_fault_resets_the_processor_when_the_startup_script_demands_it(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", FAILING.replace("@", FAULTS["segv"][0]), "-O0", "-w")
     mission = fly(write_mission(tmp_path, "TEST", action=1), 1.5)
     assert "SIGSEGV" in mission.record.resets[0].reason
@@ -113,7 +113,7 @@ void TEST_Main(void)
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_loop_without_an_end_is_a_fault_of_its_application(tmp_path: Path, tasks: str) -> None:
+def test_endless_loop_is_a_fault_of_its_application(tmp_path: Path, tasks: str) -> None:
     compile_c(tmp_path, "TEST", LOOPING)
     compile_c(tmp_path, "WITNESS", WITNESS)
     with Mission(write_mission(tmp_path, "TEST", "WITNESS"), console=Console(quiet=True), tasks=tasks) as mission:
@@ -126,7 +126,7 @@ def test_a_loop_without_an_end_is_a_fault_of_its_application(tmp_path: Path, tas
         assert said(console_of(mission))[-1] == "witness 110"
 
 
-def test_a_computation_that_ends_is_no_fault_and_goes_on_where_it_was(tmp_path: Path) -> None:
+def test_long_computation_is_not_a_fault_and_continues(tmp_path: Path) -> None:
     compile_c(
         tmp_path,
         "TEST",
@@ -160,7 +160,7 @@ def test_a_computation_that_ends_is_no_fault_and_goes_on_where_it_was(tmp_path: 
     assert float(said(console)[0].split()[1]) > x
 
 
-def test_a_fault_in_a_child_task_is_told_with_its_place(tmp_path: Path) -> None:
+def test_fault_in_a_child_task_is_reported_with_its_line(tmp_path: Path) -> None:
     console = fly_c(
         tmp_path,
         """
@@ -183,7 +183,7 @@ def test_a_fault_in_a_child_task_is_told_with_its_place(tmp_path: Path) -> None:
     assert "child (TEST.c:4)" in console
 
 
-def test_a_fault_of_what_is_called_at_load_is_told_and_the_others_fly_on(tmp_path: Path) -> None:
+def test_fault_in_a_constructor_is_reported_and_others_continue(tmp_path: Path) -> None:
     compile_c(
         tmp_path,
         "TEST",

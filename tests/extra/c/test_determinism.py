@@ -98,7 +98,7 @@ def has_fixed_addresses() -> bool:
 
 @pytest.mark.slow
 @needs_cpp
-def test_a_run_is_the_same_in_each_process(tmp_path: Path) -> None:
+def test_run_has_one_digest_in_each_process(tmp_path: Path) -> None:
     here, there = tmp_path / "here" / "mission", tmp_path / "elsewhere" / "mission"
     here.mkdir(parents=True)
     compile_c(here, "TEST", RUBBISH, "-O2", "-fstack-protector-all", "-Wno-uninitialized", "-Wno-maybe-uninitialized")
@@ -169,7 +169,7 @@ def test_a_stack_keeps_no_address_of_the_host(tmp_path: Path) -> None:
     assert addresses == "0"
 
 
-def test_the_guard_of_stacks_is_the_same_in_each_run(tmp_path: Path) -> None:
+def test_stack_guard_has_one_value_in_each_run(tmp_path: Path) -> None:
     source = """
         #if defined(__x86_64__)
         #define LOOK(into) __asm__ volatile("mov %%fs:0x28, %0" : "=r"(into))
@@ -191,7 +191,7 @@ def test_the_guard_of_stacks_is_the_same_in_each_run(tmp_path: Path) -> None:
     assert "what nobody has" not in console
 
 
-def test_a_format_tells_the_errno_of_its_task(tmp_path: Path) -> None:
+def test_format_prints_the_errno_of_its_task(tmp_path: Path) -> None:
     source = """
         int *__errno_location(void);
         void TEST_Main(void)
@@ -204,7 +204,7 @@ def test_a_format_tells_the_errno_of_its_task(tmp_path: Path) -> None:
     assert said(fly_c(tmp_path, source, flags=("-Wno-format",))) == ["Success", "No such file or directory"]
 
 
-def test_files_of_the_host_are_not_asked_for(tmp_path: Path) -> None:
+def test_access_to_files_of_the_host_is_refused(tmp_path: Path) -> None:
     console = fly_c(tmp_path, 'int access(const char *, int); void TEST_Main(void) { SAY("%d", access("/etc", 0)); }')
     assert "access() of /etc" in console
     assert said(console) == []
@@ -254,7 +254,7 @@ LEAKS = """
         ("rest()", ":20 in rest", "OS_TaskDelay(200 + process_id() % 10000);", "TEST calls from "),
     ],
 )
-def test_what_goes_past_cfepy_is_found_with_its_line(
+def test_nondeterminism_is_found_with_its_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], how: str, place: str, source: str, what: str
 ) -> None:
     compile_c(tmp_path, "TEST", LEAKS, f"-DHERE={how}", "-fno-optimize-sibling-calls", "-Wno-unused-function")

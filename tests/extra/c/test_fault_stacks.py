@@ -66,7 +66,7 @@ def test_a_fault_five_calls_deep(tmp_path: Path, flags: str) -> None:
 
 
 @pytest.mark.slow
-def test_names_are_those_of_symbols_where_there_is_no_debug_data(tmp_path: Path) -> None:
+def test_names_come_from_symbols_when_debug_data_is_missing(tmp_path: Path) -> None:
     found = frames(tmp_path, DEEP, "-O2", "-g0")
     assert [name.partition("+")[0] for name, _, _ in found] == ["TEST_Main", "one", "two", "three", "four", "five"]
     assert {(file, line) for _, file, line in found} == {("TEST.so", 0)}
@@ -95,7 +95,7 @@ def test_a_fault_in_a_callback_shows_both_stacks(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_loop_without_an_end_shows_where_it_computes(tmp_path: Path, tasks: str) -> None:
+def test_endless_loop_shows_its_function_and_line(tmp_path: Path, tasks: str) -> None:
     source = f"""static volatile int turns, ends;
     static {KEPT} void turn(void) {{ while (!ends) turns++; }}
     static {KEPT} void work(void) {{ turn(); turns = 0; }}
@@ -122,7 +122,7 @@ def test_a_loop_without_an_end_shows_where_it_computes(tmp_path: Path, tasks: st
 
 
 @pytest.mark.slow
-def test_a_fault_in_a_loop_that_was_interrupted(tmp_path: Path) -> None:
+def test_fault_in_an_interrupted_loop_shows_its_calls(tmp_path: Path) -> None:
     source = f"""static volatile long turns;
     static {KEPT} long turn(long n) {{
         for (long i = 0; i < n; i++)
@@ -149,7 +149,7 @@ BROKEN = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("how", BROKEN)
-def test_a_stack_that_was_written_over_ends_what_is_shown(tmp_path: Path, how: str) -> None:
+def test_overwritten_stack_ends_the_traceback(tmp_path: Path, how: str) -> None:
     source = f"""static {KEPT} int inner(int *at) {{ return *at + 1; }}
     static {KEPT} int break_it(uint64_t *room) {{ {BROKEN[how]} return inner((int *)16); }}
     static {KEPT} int holds(void) {{ uint64_t room[4]; return break_it(room) + room[2]; }}
@@ -167,7 +167,7 @@ def test_a_stack_that_was_written_over_ends_what_is_shown(tmp_path: Path, how: s
 
 
 @pytest.mark.slow
-def test_a_return_to_nowhere_shows_what_is_known(tmp_path: Path) -> None:
+def test_return_to_an_invalid_address_shows_the_address(tmp_path: Path) -> None:
     source = f"""static {KEPT} void break_it(uint64_t *room) {{ for (int i = 0; i < 40; i++) room[i] = 0x10; }}
     static {KEPT} int holds(void) {{ uint64_t room[4]; break_it(room); return room[2]; }}
     void TEST_Main(void)
@@ -183,7 +183,7 @@ def test_a_return_to_nowhere_shows_what_is_known(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_runaway_recursion_shows_its_beginning_and_its_end(tmp_path: Path) -> None:
+def test_runaway_recursion_shows_its_first_and_last_calls(tmp_path: Path) -> None:
     source = f"""static volatile int zero;
     static {KEPT} int deep(int n) {{ return n + deep(n + 1) + zero; }}
     void TEST_Main(void) {{ zero = deep(0); }}
@@ -198,7 +198,7 @@ def test_a_runaway_recursion_shows_its_beginning_and_its_end(tmp_path: Path) -> 
 
 @pytest.mark.slow
 @needs_cpp
-def test_an_exception_of_cpp_that_nobody_catches_shows_who_threw_it(tmp_path: Path) -> None:
+def test_uncaught_exception_shows_the_function_that_threw_it(tmp_path: Path) -> None:
     source = f"""#include <stdexcept>
     static {KEPT} int pump(int fuel) {{ if (fuel < 9) throw std::runtime_error("no fuel"); return fuel; }}
     static {KEPT} int burn(int fuel) {{ return pump(fuel) + 1; }}

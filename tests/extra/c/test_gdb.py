@@ -56,7 +56,7 @@ def test_gdb_stops_at_the_main_function_and_sees_lines_and_variables(tmp_path: P
 
 
 @pytest.mark.slow
-def test_gdb_takes_breakpoints_at_a_time(tmp_path: Path) -> None:
+def test_gdb_accepts_breakpoints_at_a_time(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", SOURCE, "-O0")
     cfepy(tmp_path, "run", write_mission(tmp_path, "TEST"), "--for", "2", "--record", "run.cfepy")
     typed = "break twice\ncontinue\ndelete\ncontinue\nquit\n"
@@ -69,7 +69,7 @@ def test_gdb_takes_breakpoints_at_a_time(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_one_debugger_at_a_time_and_an_application_that_there_is(tmp_path: Path) -> None:
+def test_second_debugger_and_unknown_application_are_refused(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", SOURCE)
     folder = write_mission(tmp_path, "TEST")
     cfepy(tmp_path, "run", folder, "--for", "1", "--record", "run.cfepy")

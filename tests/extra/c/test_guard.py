@@ -43,7 +43,7 @@ def fly_guarded(folder: str, is_on: bool) -> object:
 
 
 @pytest.mark.parametrize("name", MISTAKES)
-def test_a_mistake_is_a_fault_where_it_happens(tmp_path: Path, name: str) -> None:
+def test_mistake_is_a_fault_at_its_own_line(tmp_path: Path, name: str) -> None:
     code, what = MISTAKES[name]
     compile_c(tmp_path, "TEST", SOURCE.replace("@", code), "-O0", "-w")
     folder = write_mission(tmp_path, "TEST")
@@ -55,13 +55,13 @@ def test_a_mistake_is_a_fault_where_it_happens(tmp_path: Path, name: str) -> Non
 @pytest.mark.parametrize(
     "name", ["overrun by a byte", "use after free", "overrun of a message", "message after release"]
 )
-def test_without_the_guard_it_goes_unnoticed_as_on_a_flight_computer(tmp_path: Path, name: str) -> None:
+def test_mistake_is_not_noticed_without_the_guard(tmp_path: Path, name: str) -> None:
     compile_c(tmp_path, "TEST", SOURCE.replace("@", MISTAKES[name][0]), "-O0", "-w")
     mission = fly_guarded(write_mission(tmp_path, "TEST"), False)
     assert said(console_of(mission)) == ["not noticed"]  # type: ignore[arg-type]
 
 
-def test_what_was_never_written_is_not_zero(tmp_path: Path) -> None:
+def test_unwritten_memory_is_not_zero_under_the_guard(tmp_path: Path) -> None:
     code = 'unsigned char local[32]; volatile unsigned char *p = malloc(4); SAY("%x %x", p[3], local[5]);'
     compile_c(tmp_path, "TEST", SOURCE.replace("@", code), "-O0", "-w")
     folder = write_mission(tmp_path, "TEST")
@@ -69,7 +69,7 @@ def test_what_was_never_written_is_not_zero(tmp_path: Path) -> None:
     assert said(console_of(fly_guarded(folder, False)))[0] == "0 0"  # type: ignore[arg-type]
 
 
-def test_the_mission_file_and_the_option_say_it(tmp_path: Path) -> None:
+def test_guard_is_set_by_the_mission_file_and_the_option(tmp_path: Path) -> None:
     from cfepy.pilot import RunPlan
 
     folder = write_mission(tmp_path, "TEST")

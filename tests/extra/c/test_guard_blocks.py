@@ -172,7 +172,7 @@ def overwritten(mission: Mission) -> list[tuple[str, str]]:
 @pytest.mark.parametrize(
     "name", [pytest.param(each, marks=() if each in QUICK else pytest.mark.slow) for each in MISTAKES]
 )
-def test_a_mistake_is_a_fault_with_its_line(tmp_path: Path, name: str) -> None:
+def test_mistake_in_a_block_is_a_fault_at_its_own_line(tmp_path: Path, name: str) -> None:
     mistake = MISTAKES[name]
     folder = compile_app(tmp_path, mistake.source(mistake.wrong))
     switch(tmp_path, True)
@@ -184,14 +184,14 @@ def test_a_mistake_is_a_fault_with_its_line(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MISTAKES)
-def test_without_the_guard_it_goes_unnoticed(tmp_path: Path, name: str) -> None:
+def test_mistake_in_a_block_is_not_noticed_without_the_guard(tmp_path: Path, name: str) -> None:
     mission = fly(compile_app(tmp_path, MISTAKES[name].source(MISTAKES[name].wrong)), 1)
     assert said(console_of(mission)) == ["not noticed"]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MISTAKES)
-def test_the_mended_form_is_clean(tmp_path: Path, name: str) -> None:
+def test_mended_form_of_a_mistake_is_clean(tmp_path: Path, name: str) -> None:
     folder = compile_app(tmp_path, MISTAKES[name].source(MISTAKES[name].right))
     switch(tmp_path, True)
     mission = fly(folder, 1)
@@ -218,7 +218,7 @@ LEFT = {
 @pytest.mark.slow
 @pytest.mark.parametrize("ends", ["", "CFE_ES_ExitApp(EXIT);"])
 @pytest.mark.parametrize("name", LEFT)
-def test_what_is_not_given_back_is_told_at_the_end(tmp_path: Path, name: str, ends: str) -> None:
+def test_overwrite_of_a_block_still_held_is_reported_at_the_end(tmp_path: Path, name: str, ends: str) -> None:
     """At the end of the application, or of the mission."""
     body, app, text = LEFT[name]
     folder = compile_app(tmp_path, SOURCE.format(body=body + ends, before=""))
@@ -230,7 +230,7 @@ def test_what_is_not_given_back_is_told_at_the_end(tmp_path: Path, name: str, en
     assert overwritten(mission) == [(app, text)]
 
 
-def test_what_is_told_at_the_end_is_a_problem_of_the_run(tmp_path: Path, capsys: Any) -> None:
+def test_overwrite_reported_at_the_end_fails_the_run(tmp_path: Path, capsys: Any) -> None:
     folder = compile_app(tmp_path, SOURCE.format(body=LEFT["a pool block"][0], before=""))
     assert main(["run", folder, "--for", "2", "--guard"]) == 1
     told = "overwritten memory: TEST: a pool block of 20 bytes at 0x was written past its end"
@@ -238,7 +238,7 @@ def test_what_is_told_at_the_end_is_a_problem_of_the_run(tmp_path: Path, capsys:
 
 
 @pytest.mark.slow
-def test_it_is_a_failure_while_schedules_are_explored(tmp_path: Path, capsys: Any) -> None:
+def test_overwrite_is_a_failure_of_an_exploration(tmp_path: Path, capsys: Any) -> None:
     folder = compile_app(tmp_path, SOURCE.format(body=LEFT["a pool block"][0], before=""))
     assert main(["explore", folder, "--for", "1", "--seeds", "2", "--guard"]) == 1
     assert "overwritten memory: TEST: a pool block of 20 bytes" in capsys.readouterr().out
@@ -304,7 +304,7 @@ def test_blocks_have_the_alignment_of_their_pool(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("size", "at"), [(1000, 1000), (1001, 1001), (4096, 4096), (4096, -1)])
-def test_an_area_of_any_size_ends_where_nobody_may_write(tmp_path: Path, size: int, at: int) -> None:
+def test_area_of_any_size_ends_at_protected_memory(tmp_path: Path, size: int, at: int) -> None:
     """The area ends there if its size is a number of whole words.
 
     Otherwise a write behind it is reported at the end.
@@ -325,7 +325,7 @@ def test_an_area_of_any_size_ends_where_nobody_may_write(tmp_path: Path, size: i
 
 
 @pytest.mark.slow
-def test_what_the_store_of_critical_data_gives_ends_where_its_block_does(tmp_path: Path) -> None:
+def test_block_of_the_cds_ends_at_its_last_byte(tmp_path: Path) -> None:
     body = """
         uint32_t handle;
         CFE_ES_RegisterCDS(&handle, 100, "C");
@@ -360,7 +360,7 @@ def test_a_table_at_an_address_of_the_application_is_validated_there(tmp_path: P
 
 
 @pytest.mark.slow
-def test_of_more_blocks_than_linux_has_mappings_it_is_told_at_the_end(tmp_path: Path) -> None:
+def test_overwrite_is_reported_at_the_end_when_linux_has_no_more_mappings(tmp_path: Path) -> None:
     body = "for (int i = 0; i < 33000; i++) p = malloc(112); p[112] = 1;"
     folder = compile_app(tmp_path, SOURCE.format(body=body, before=""))
     switch(tmp_path, True)
@@ -378,7 +378,7 @@ def image_of(tbl: TableServices) -> memoryview:
 
 
 @pytest.mark.slow
-def test_python_and_c_have_one_image_also_when_it_was_given_back(tmp_path: Path) -> None:
+def test_python_and_c_share_one_image_also_after_its_release(tmp_path: Path) -> None:
     body = """
         p = image(40, SINGLE, NULL);
         p[3] = 7;
@@ -402,7 +402,7 @@ def test_python_and_c_have_one_image_also_when_it_was_given_back(tmp_path: Path)
 
 
 @pytest.mark.slow
-def test_all_else_has_the_addresses_that_it_has_without_the_guard(tmp_path: Path) -> None:
+def test_other_addresses_are_the_same_with_and_without_the_guard(tmp_path: Path) -> None:
     before = "int32_t CFE_TBL_GetInfo(void *, const char *);"
     folder = compile_app(tmp_path, SOURCE.format(body='SAY("%p %p", (void *)&memory, (void *)&p);', before=before))
     lines = []

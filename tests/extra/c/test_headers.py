@@ -75,7 +75,7 @@ def test_constants_have_their_values(flags: list[str], tmp_path: Path) -> None:
 
 
 @each_profile
-def test_structures_are_laid_out_alike(flags: list[str], tmp_path: Path) -> None:
+def test_structures_have_nasas_layouts(flags: list[str], tmp_path: Path) -> None:
     text = ""
     for name, layout in rows("structures.tsv"):
         size, *members = layout.split()
@@ -121,7 +121,7 @@ def test_every_public_name_is_declared(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(names()))
-def test_each_header_stands_alone(name: str, tmp_path: Path) -> None:
+def test_each_header_compiles_alone(name: str, tmp_path: Path) -> None:
     file = tmp_path / "alone.c"
     file.write_text(f'#include "{name}.h"\n#include "{name}.h"\nint end;\n', encoding="utf-8")
     command = [*compiler(), "-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
@@ -130,11 +130,11 @@ def test_each_header_stands_alone(name: str, tmp_path: Path) -> None:
 
 
 @each_profile
-def test_they_are_headers_of_cpp_too(flags: list[str], tmp_path: Path) -> None:
+def test_headers_compile_as_cpp(flags: list[str], tmp_path: Path) -> None:
     assert compile_text(tmp_path, "", "-x", "c++", "-std=c++17", *flags, command=cpp_compiler()) == ""
 
 
-def test_every_declaration_has_a_name_that_leads_to_it() -> None:
+def test_each_declaration_file_is_used_by_a_header() -> None:
     led_to = {each for ours in names().values() for each in ours}
     there = {each.stem for each in DECLARATIONS.glob("*.h")}
     assert led_to <= there
@@ -188,7 +188,7 @@ def kinds(folder: Path, functions: dict[str, str]) -> dict[str, str]:
     return dict(zip(functions, data.decode().splitlines(), strict=True))
 
 
-def test_the_engine_declares_functions_as_the_headers_do(tmp_path: Path) -> None:
+def test_engine_declares_functions_like_the_headers(tmp_path: Path) -> None:
     letters = declared()
     known = {name: kind for name, kind in rows("functions.tsv") if name in letters}
     assert len(known) > 50

@@ -70,7 +70,7 @@ def restart(mission: Mission, times: int) -> None:
 
 
 @pytest.mark.parametrize("restarts", [30, pytest.param(1000, marks=pytest.mark.slow)])
-def test_restarts_leave_nothing_behind(tmp_path: Path, restarts: int) -> None:
+def test_restarts_leak_no_memory_maps_files_or_blocks(tmp_path: Path, restarts: int) -> None:
     compile_c(tmp_path, "TEST", SOURCE)
     ours = Held()
     with Mission(write_mission(tmp_path, "TEST"), console=Console(quiet=True), tasks="greenlet") as mission:
@@ -83,7 +83,7 @@ def test_restarts_leave_nothing_behind(tmp_path: Path, restarts: int) -> None:
 
 
 @pytest.mark.parametrize("missions", [3, pytest.param(100, marks=pytest.mark.slow)])
-def test_missions_leave_nothing_behind(tmp_path: Path, missions: int) -> None:
+def test_missions_leak_no_memory_maps_files_or_blocks(tmp_path: Path, missions: int) -> None:
     compile_c(tmp_path, "TEST", SOURCE)
     folder = write_mission(tmp_path, "TEST")
     ours = Held()
@@ -98,7 +98,7 @@ def test_missions_leave_nothing_behind(tmp_path: Path, missions: int) -> None:
     assert seen[0][0] <= 2  # the two pools of the core, which objects of Python may still look at
 
 
-def test_two_missions_at_once_have_memory_of_their_own(tmp_path: Path) -> None:
+def test_two_missions_at_once_have_separate_memory(tmp_path: Path) -> None:
     compile_c(
         tmp_path,
         "TEST",

@@ -18,25 +18,25 @@ def problems(folder: str) -> list[str]:
     return [each.text for each in check_mission(folder)]
 
 
-def test_a_good_one_has_no_problem(tmp_path: Path) -> None:
+def test_valid_application_has_no_problem(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", GOOD)
     assert problems(write_mission(tmp_path, "TEST")) == []
 
 
-def test_an_entry_point_that_is_not_there(tmp_path: Path) -> None:
+def test_missing_entry_point_is_reported(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", "void TEST_Mian(void) {}")
     [text] = problems(write_mission(tmp_path, "TEST"))
     assert "TEST.so has no function TEST_Main" in text
     assert "TEST_Mian" in text
 
 
-def test_functions_that_nobody_has(tmp_path: Path) -> None:
+def test_undefined_functions_are_reported(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", "int NONE_One(void); int fork(void); void TEST_Main(void) { NONE_One(); fork(); }")
     [text] = problems(write_mission(tmp_path, "TEST"))
     assert "TEST needs NONE_One, fork, but cfepy and the libraries of the mission do not define them" in text
 
 
-def test_a_library_that_is_loaded_too_late(tmp_path: Path) -> None:
+def test_library_loaded_too_late_is_reported(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", "int LIB_One(void); void TEST_Main(void) { LIB_One(); }")
     compile_c(tmp_path, "lib", "int LIB_One(void) { return 1; }")
     folder = write_mission(tmp_path, "TEST", libraries="CFE_LIB, lib, NULL, LIB, 0, 0, 0x0, 0;\n")
@@ -57,7 +57,9 @@ def test_a_library_that_is_loaded_too_late(tmp_path: Path) -> None:
         (32, b"\xff\xff\xff", "TEST.so"),
     ],
 )
-def test_a_file_for_another_computer_or_a_damaged_one(tmp_path: Path, at: int, change: bytes, what: str) -> None:
+def test_file_for_another_computer_or_damaged_file_is_reported(
+    tmp_path: Path, at: int, change: bytes, what: str
+) -> None:
     made = compile_c(tmp_path, "TEST", GOOD)
     data = bytearray(made.read_bytes())
     data[at : at + len(change)] = change
@@ -84,7 +86,7 @@ OMITS = "compiled: {{omit_deprecated: {}}}\n"
 
 @pytest.mark.parametrize("of_file", [False, True])
 @pytest.mark.parametrize("of_mission", [None, False, True])
-def test_an_object_of_the_other_abi_profile(tmp_path: Path, of_file: bool, of_mission: bool | None) -> None:
+def test_object_of_the_other_abi_profile_is_reported(tmp_path: Path, of_file: bool, of_mission: bool | None) -> None:
     made = compile_c(tmp_path, "TEST", TABLES, f"-DHANDLE={HANDLES[of_file]}")
     folder = write_mission(tmp_path, "TEST")
     if of_mission is not None:
@@ -104,7 +106,7 @@ def test_an_object_of_the_other_abi_profile(tmp_path: Path, of_file: bool, of_mi
     assert f"OS_ModuleLoad: /cf/TEST.so was built with OMIT_DEPRECATED={word}" in console
 
 
-def test_without_debug_data_the_abi_profile_cannot_be_told(tmp_path: Path) -> None:
+def test_unknown_abi_profile_is_a_warning_when_debug_data_is_missing(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", TABLES, "-DHANDLE=int16_t", "-g0")
     folder = write_mission(tmp_path, "TEST")
     [problem] = check_mission(folder)

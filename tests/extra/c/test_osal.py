@@ -27,7 +27,7 @@ def results(folder: Path, body: str, *, before: str = "", tasks: str = "thread")
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_task_of_osal_belongs_to_no_application(tmp_path: Path, tasks: str) -> None:
+def test_task_of_osal_belongs_to_no_application(tmp_path: Path, tasks: str) -> None:
     if tasks == "greenlet":
         pytest.importorskip("greenlet")
     before = """
@@ -58,7 +58,7 @@ def test_a_task_of_osal_belongs_to_no_application(tmp_path: Path, tasks: str) ->
     assert said == [*("-2", "-2", "-2", "-13", "-40", "9", "0"), "KID 60 5000 1", "-16", "[] -16"]
 
 
-def test_a_delay_takes_no_more_than_its_time_and_one_of_0_ms_gets_on(tmp_path: Path) -> None:
+def test_delay_lasts_its_time_and_0_ms_yields(tmp_path: Path) -> None:
     body = """
         Time then, now;
         OS_GetMonotonicTime(&then);
@@ -75,7 +75,7 @@ def test_a_delay_takes_no_more_than_its_time_and_one_of_0_ms_gets_on(tmp_path: P
     assert results(tmp_path, body) == ["500010", "polled"]
 
 
-def test_a_task_on_a_stack_that_the_application_brings(tmp_path: Path) -> None:
+def test_task_runs_on_a_stack_of_the_application(tmp_path: Path) -> None:
     before = """
     static char stack[16384] __attribute__((aligned(16)));
     static void child(void)
@@ -344,7 +344,7 @@ void TEST_Main(void)
 )
 
 
-def test_a_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
+def test_run_is_the_same_on_threads_and_greenlets(tmp_path: Path) -> None:
     pytest.importorskip("greenlet")
     compile_c(tmp_path, "TEST", TALK)
     folder = write_mission(tmp_path, "TEST")

@@ -194,7 +194,7 @@ def test_datagrams(tmp_path: Path) -> None:
     ]
 
 
-def test_addresses_of_no_family(tmp_path: Path) -> None:
+def test_addresses_without_a_family_are_refused_as_by_osal_7_0_0(tmp_path: Path) -> None:
     """As OSAL 7.0.0 on Linux answers them: without a length they reach the kernel, which refuses them."""
     body = """
         for (int domain = 1; domain <= 2; domain++)

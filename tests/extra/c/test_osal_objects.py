@@ -50,7 +50,7 @@ def test_modules_and_symbols(tmp_path: Path) -> None:
     assert "SIGSEGV" in console, "the code of a module is gone with it"
 
 
-def test_code_that_is_loaded_later_sees_the_symbols_of_global_modules(tmp_path: Path) -> None:
+def test_code_loaded_later_uses_symbols_of_global_modules(tmp_path: Path) -> None:
     compile_c(tmp_path, "FIRST", "int first(void) { return 1; }")
     compile_c(tmp_path, "SECOND", "int first(void);\nint second(void) { return 1 + first(); }")
     body = """
@@ -73,7 +73,7 @@ def test_code_that_is_loaded_later_sees_the_symbols_of_global_modules(tmp_path: 
     assert "first() was called, but cfepy and the libraries of the mission do not define it" in console
 
 
-def test_the_modules_of_an_application_are_gone_with_it(tmp_path: Path) -> None:
+def test_modules_of_an_ended_application_are_unloaded(tmp_path: Path) -> None:
     compile_c(tmp_path, "MODULE", "int answer(void) { return 42; }")
     compile_c(
         tmp_path,
@@ -186,5 +186,5 @@ def test_a_shell_command(tmp_path: Path) -> None:
     assert results(tmp_path, body) == ["0", "-2", "-16", "6", "hello"]
 
 
-def test_the_exit_of_an_application_ends_the_run(tmp_path: Path) -> None:
+def test_application_exit_ends_the_run(tmp_path: Path) -> None:
     assert results(tmp_path, 'SAY("here");\nOS_ApplicationExit(0);\nSAY("never");') == ["here"]

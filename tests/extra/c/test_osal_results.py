@@ -20,13 +20,13 @@ CFE_PSP: Starting the cFE with a POWER ON reset.
 COMPLETE: 2 test segments"""
 
 
-def test_segments_are_those_in_which_something_is_tested() -> None:
+def test_segments_with_a_test_are_kept() -> None:
     result = read("queue-test", CONSOLE.splitlines())
     assert [(segment.name, segment.passes) for segment in result.segments] == [("01 First", True), ("02 Second", False)]
     assert result.segments[1].failures == ["02.001 queue-test.c:9 - Rc=-1", "02.002 queue-test.c:9 - cannot clean up"]
     assert row(result) == "| queue-test | 1 of 2 | 1 | 1 | 1 |"
 
 
-def test_a_test_that_does_not_come_to_its_end_is_told() -> None:
+def test_without_an_end_is_reported() -> None:
     result = read("queue-test", CONSOLE.splitlines()[:-1])
     assert "not to its end" in row(result)

@@ -76,7 +76,7 @@ SIMPLE = [name for name in BUGS if name not in ("uninitialised", "counter_wrap")
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=LONG.get(name, ())) for name in SIMPLE])
-def test_the_bug_is_found(tmp_path: Path, name: str, capsys: Any) -> None:
+def test_planted_bug_is_found(tmp_path: Path, name: str, capsys: Any) -> None:
     write(tmp_path, name)
     status, told = fly(tmp_path, BUGS[name], capsys)
     assert status == BUGS[name].status
@@ -95,14 +95,14 @@ def test_the_mended_form_is_clean(tmp_path: Path, name: str, capsys: Any) -> Non
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=LONG.get(name, ())) for name in SIMPLE if BUGS[name].command == GUARD]
 )
-def test_without_the_guard_it_goes_unnoticed(tmp_path: Path, name: str, capsys: Any) -> None:
+def test_planted_bug_is_not_noticed_without_the_guard(tmp_path: Path, name: str, capsys: Any) -> None:
     write(tmp_path, name)
     assert fly(tmp_path, Bug(RUN, ()), capsys)[0] == 0
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("flags", [(), ("-DMENDED",)])
-def test_what_was_never_written_makes_two_runs_differ(tmp_path: Path, flags: tuple[str, ...], capsys: Any) -> None:
+def test_unwritten_memory_makes_two_runs_differ(tmp_path: Path, flags: tuple[str, ...], capsys: Any) -> None:
     """An application sends the same with and without the guard, unless it sends memory that it never wrote."""
     write(tmp_path, "uninitialised", *flags)
     journals = [str(tmp_path / name) for name in ("plain.cfepy", "guarded.cfepy")]

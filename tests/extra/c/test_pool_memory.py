@@ -50,7 +50,7 @@ USER = (
 )
 
 
-def test_a_pool_whose_memory_is_gone_is_a_fault_of_who_uses_it(tmp_path: Path) -> None:
+def test_pool_of_an_ended_application_is_a_fault_of_its_user(tmp_path: Path) -> None:
     compile_c(tmp_path, "OWNER", OWNER)
     compile_c(tmp_path, "USER", USER, "-DPOOL=0x140003")
     folder = write_mission(tmp_path, "OWNER", "USER")

@@ -25,7 +25,7 @@ def results(folder: Path, body: str, *, before: str = "") -> list[str]:
     return said(fly_c(folder, program(body, before), 2))
 
 
-def test_who_and_when(tmp_path: Path) -> None:
+def test_processor_identity_and_time_are_reported(tmp_path: Path) -> None:
     body = """
         uint32_t subtype, seconds, ns;
         int64_t time, later;
@@ -158,7 +158,7 @@ def test_areas_of_the_board(tmp_path: Path) -> None:
     ]
 
 
-def test_the_user_reserved_area_outlives_a_processor_reset_and_python_sees_the_same_bytes(tmp_path: Path) -> None:
+def test_user_reserved_area_survives_a_processor_reset_and_python_shares_it(tmp_path: Path) -> None:
     body = """
         uint64_t at;
         uint32_t size;

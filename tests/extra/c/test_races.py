@@ -57,7 +57,7 @@ def explore(folder: Path, code: str, *options: str) -> list[dict[str, str]]:
 
 
 @pytest.mark.slow
-def test_accesses_that_nothing_orders_are_told_with_both_places(tmp_path: Path) -> None:
+def test_unordered_accesses_are_reported_with_both_lines(tmp_path: Path) -> None:
     [found] = explore(tmp_path, "counter++;")
     assert found["kind"] == "data race"
     assert found["text"] == (
@@ -69,7 +69,7 @@ def test_accesses_that_nothing_orders_are_told_with_both_places(tmp_path: Path) 
     ]
 
 
-def test_a_run_under_a_given_schedule_tells_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_run_under_a_given_schedule_reports_the_race(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     compile_c(tmp_path, "TEST", START.replace("@", "counter++;"), "-fsanitize=thread", "-O0", "-w")
     folder = write_mission(tmp_path, "TEST")
     assert main(["run", folder, "--for", "2", "--quiet", "--schedule", "random:1"]) == 1
@@ -116,7 +116,7 @@ def test_stacks_go_through_calls_and_callbacks(tmp_path: Path, capsys: pytest.Ca
 
 
 @pytest.mark.slow
-def test_the_command_of_a_race_under_fifo_shows_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_replay_command_of_a_race_under_fifo_reports_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     [found] = explore(tmp_path, "counter++;")
     [replay] = [line.partition("replay: ")[2] for line in capsys.readouterr().out.splitlines() if "replay: " in line]
     for command in (replay, found["command"]):
@@ -148,14 +148,14 @@ TEXTS = 'static char name[16] = "abc", digits[4] = "123"; if (who) {{ {} }} else
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LIBC)
-def test_what_functions_of_libc_touch_counts(tmp_path: Path, name: str) -> None:
+def test_memory_accessed_by_libc_functions_counts(tmp_path: Path, name: str) -> None:
     found = explore(tmp_path, TEXTS.format(*LIBC[name]), "--seeds", "4")
     assert {each["kind"] for each in found} == {"data race"}
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", APART)
-def test_what_functions_of_libc_do_not_touch_is_no_race(tmp_path: Path, name: str) -> None:
+def test_memory_not_accessed_by_libc_functions_is_not_a_race(tmp_path: Path, name: str) -> None:
     assert explore(tmp_path, TEXTS.format(*APART[name]), "--seeds", "4") == []
 
 
@@ -230,7 +230,7 @@ def test_the_race_is_found_wherever_the_memory_is(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_others_run_between_accesses(tmp_path: Path) -> None:
+def test_other_tasks_run_between_accesses(tmp_path: Path) -> None:
     code = """
         if (who)
             OS_BinSemTake(ready);
@@ -261,7 +261,7 @@ ORDERED = {
 @pytest.mark.parametrize(
     "how", [each if each == "a mutex" else pytest.param(each, marks=pytest.mark.slow) for each in ORDERED]
 )
-def test_accesses_that_are_ordered_are_not(tmp_path: Path, how: str) -> None:
+def test_ordered_accesses_are_not_reported(tmp_path: Path, how: str) -> None:
     assert explore(tmp_path, ORDERED[how]) == []
 
 
@@ -302,7 +302,7 @@ def RELAY_Main(cfe):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("relays", "races"), [("pass", 1), ("cfe.sb.transmit_msg(header.init(0x0A02, 16))", 0)])
-def test_a_python_application_between_two_tasks_orders_them(tmp_path: Path, relays: str, races: int) -> None:
+def test_python_application_between_two_tasks_orders_them(tmp_path: Path, relays: str, races: int) -> None:
     code = RELAYED if not races else RELAYED.replace("pipe, -1)", "pipe, 500)")
     compile_c(tmp_path, "TEST", code, "-fsanitize=thread", "-O0", "-w")
     (tmp_path / "RELAY.py").write_text(RELAY.replace("@", relays), encoding="utf-8")
@@ -312,13 +312,13 @@ def test_a_python_application_between_two_tasks_orders_them(tmp_path: Path, rela
 
 
 @pytest.mark.slow
-def test_the_start_of_a_task_orders(tmp_path: Path) -> None:
+def test_start_of_a_task_orders_accesses(tmp_path: Path) -> None:
     assert explore(tmp_path, 'if (who) SAY("%u", (unsigned)lock);') == []
 
 
 @pytest.mark.slow
 @needs_cpp
-def test_static_objects_and_mutexes_of_cpp_order(tmp_path: Path) -> None:
+def test_static_objects_and_mutexes_of_cpp_order_accesses(tmp_path: Path) -> None:
     compile_cpp(
         tmp_path,
         "TEST",

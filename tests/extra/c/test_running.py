@@ -196,7 +196,7 @@ def test_tasks_share_memory_of_each_others_stacks(tmp_path: Path) -> None:
     assert digest_of(folder, "thread") == digest_of(folder, "greenlet")
 
 
-def test_what_was_never_written_and_addresses_are_the_same_in_each_run(tmp_path: Path) -> None:
+def test_unwritten_memory_and_addresses_are_the_same_in_each_run(tmp_path: Path) -> None:
     compile_c(
         tmp_path,
         "TEST",
@@ -272,7 +272,7 @@ def test_packed_relocations_are_filled_in(tmp_path: Path) -> None:
     assert packed[0].endswith(" 99 far away")
 
 
-def test_a_run_that_waits_for_the_engines_compiler_is_not_watched(
+def test_run_is_not_watched_while_it_waits_for_the_compiler_of_the_engine(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     compile_c(tmp_path, "TEST", "void TEST_Main(void) {}")

@@ -28,7 +28,7 @@ void TEST_Main(void)
 
 
 @pytest.mark.slow
-def test_the_depth_of_a_stack_is_what_was_written_to(tmp_path: Path) -> None:
+def test_stack_depth_is_the_deepest_written_byte(tmp_path: Path) -> None:
     used = {}
     for size in (512, 5120):
         folder = tmp_path / str(size)

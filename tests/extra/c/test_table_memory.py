@@ -61,7 +61,7 @@ def test_addresses_of_tables_are_the_same_in_each_run(tmp_path: Path) -> None:
     assert digest_of(folder, "thread") == digest_of(folder, "greenlet")
 
 
-def test_python_sees_what_c_writes_and_still_when_the_mission_is_over(tmp_path: Path) -> None:
+def test_python_reads_values_of_c_also_after_the_mission_is_closed(tmp_path: Path) -> None:
     missions = []
     for value in (21, 99):
         folder = tmp_path / str(value)
@@ -77,7 +77,7 @@ def test_python_sees_what_c_writes_and_still_when_the_mission_is_over(tmp_path: 
         assert table_of(mission.cfe.tbl, "OWNER.T") == expected
 
 
-def test_two_missions_at_once_have_their_own_tables(tmp_path: Path) -> None:
+def test_two_missions_at_once_have_separate_tables(tmp_path: Path) -> None:
     compile_c(tmp_path, "OWNER", OWNER, "-DVALUE=21")
     folder = write_mission(tmp_path, "OWNER")
     with Mission(folder, console=Console(quiet=True)) as one, Mission(folder, console=Console(quiet=True)) as two:
@@ -92,7 +92,7 @@ def test_two_missions_at_once_have_their_own_tables(tmp_path: Path) -> None:
         assert table_of(two.cfe.tbl, "OWNER.T")[0] == 21
 
 
-def test_a_table_at_an_address_of_an_application_that_is_gone(tmp_path: Path) -> None:
+def test_table_of_an_ended_application_keeps_its_last_values(tmp_path: Path) -> None:
     source = """
         static Table mine = {5, 6};
         void OWNER_Main(void)
@@ -131,7 +131,7 @@ def test_a_table_at_an_address_of_an_application_that_is_gone(tmp_path: Path) ->
         assert table_of(mission.cfe.tbl, "OWNER.Mine")[0] == 7  # its memory is gone, and its last values are kept
 
 
-def test_a_critical_table_comes_back_after_a_processor_reset(tmp_path: Path) -> None:
+def test_critical_table_is_restored_after_a_processor_reset(tmp_path: Path) -> None:
     source = """
         void TEST_Main(void)
         {

@@ -50,7 +50,7 @@ EACH_ITS_OWN = """
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
 @pytest.mark.parametrize("model", ["global-dynamic", "local-dynamic"])
-def test_each_task_has_its_own(tmp_path: Path, model: str, tasks: str) -> None:
+def test_each_task_has_its_own_thread_local_variables(tmp_path: Path, model: str, tasks: str) -> None:
     console = fly_c(tmp_path, EACH_ITS_OWN, flags=(f"-ftls-model={model}",), tasks=tasks)
     assert sorted(said(console)) == ["child 43 3", "child 43 3", "main 43 3"]
 
@@ -79,7 +79,7 @@ LEFT_BEHIND = """
 """
 
 
-def test_nothing_of_the_hosts_thread_is_left_on_stacks(tmp_path: Path) -> None:
+def test_stacks_have_no_leftovers_of_the_host_thread(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", LEFT_BEHIND, "-O2", "-Wno-uninitialized", "-Wno-maybe-uninitialized")
     folder = write_mission(tmp_path, "TEST")
     assert said(console_of(fly(folder))) == said(console_of(fly(folder, tasks="greenlet")))
@@ -93,7 +93,7 @@ def test_code_of_aarch64_gets_no_thread_pointer() -> None:
     assert without_thread_pointer(across) == across
 
 
-def test_a_library_has_some_that_applications_use(tmp_path: Path) -> None:
+def test_library_shares_its_thread_local_variables_with_applications(tmp_path: Path) -> None:
     compile_c(tmp_path, "lib", "__thread int LIB_Level = 5; int LIB_Up(void) { return ++LIB_Level; }")
     compile_c(
         tmp_path,
@@ -120,7 +120,7 @@ def test_a_library_has_some_that_applications_use(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_many_libraries_have_some(tmp_path: Path) -> None:
+def test_many_libraries_have_thread_local_variables(tmp_path: Path) -> None:
     numbers = range(10)  # as many libraries as there may be
     for number in numbers:
         compile_c(tmp_path, f"lib{number}", f"__thread int LIB{number} = {number};")
@@ -144,20 +144,20 @@ def test_many_libraries_have_some(tmp_path: Path) -> None:
     assert sorted(said(console)) == [f"child {sum_}", f"main {sum_}"]
 
 
-def test_fixed_places_are_refused_with_what_helps(tmp_path: Path) -> None:
+def test_initial_exec_model_is_refused_with_the_flag_to_use(tmp_path: Path) -> None:
     console = fly_c(tmp_path, EACH_ITS_OWN, flags=("-ftls-model=initial-exec",))
     assert "TEST.so has thread-local variables in the initial-exec model" in console
     assert "compile it with -fPIC -ftls-model=global-dynamic" in console
 
 
 @pytest.mark.skipif(platform.machine() != "x86_64", reason="elsewhere descriptors are what compilers make, and work")
-def test_descriptors_are_refused_with_what_helps(tmp_path: Path) -> None:
+def test_tls_descriptors_are_refused_with_the_flag_to_use(tmp_path: Path) -> None:
     console = fly_c(tmp_path, EACH_ITS_OWN, flags=("-mtls-dialect=gnu2",))
     assert "TEST.so uses TLS descriptors; compile it with -mtls-dialect=gnu" in console
 
 
 @needs_cpp
-def test_objects_end_with_their_task(tmp_path: Path) -> None:
+def test_thread_local_objects_are_destroyed_with_their_task(tmp_path: Path) -> None:
     compile_cpp(
         tmp_path,
         "TEST",
@@ -180,7 +180,7 @@ def test_objects_end_with_their_task(tmp_path: Path) -> None:
     assert said(console_of(fly(write_mission(tmp_path, "TEST")))) == ["own 2 ends", "own 3 ends"]
 
 
-def test_an_indirect_function_is_chosen_when_it_is_loaded(tmp_path: Path) -> None:
+def test_indirect_function_is_resolved_when_it_is_loaded(tmp_path: Path) -> None:
     source = """
         static int one(void) { return 1; }
         static int two(void) { return 2; }
@@ -192,7 +192,7 @@ def test_an_indirect_function_is_chosen_when_it_is_loaded(tmp_path: Path) -> Non
     assert said(fly_c(tmp_path, source)) == ["2 2"]
 
 
-def test_errno_is_there_for_each_task(tmp_path: Path) -> None:
+def test_each_task_has_its_own_errno(tmp_path: Path) -> None:
     source = """
         int *__errno_location(void);
         static int *other;

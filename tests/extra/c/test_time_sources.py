@@ -22,7 +22,7 @@ DECLARED = """
 
 
 @pytest.mark.parametrize(("source", "call"), [("met", "MET(time)"), ("gps", "GPS(time, -3)"), ("time", "Time(time)")])
-def test_a_source_of_time_is_there_when_the_mission_has_it(tmp_path: Path, source: str, call: str) -> None:
+def test_external_time_is_accepted_when_the_mission_has_the_source(tmp_path: Path, source: str, call: str) -> None:
     code = f"""
         void TEST_Main(void)
         {{
@@ -44,7 +44,7 @@ def test_a_source_of_time_is_there_when_the_mission_has_it(tmp_path: Path, sourc
     assert not mission.record.resets
 
 
-def test_a_source_that_the_mission_has_not_is_a_fault(tmp_path: Path) -> None:
+def test_external_time_is_a_fault_when_the_mission_lacks_the_source(tmp_path: Path) -> None:
     console = fly_c(tmp_path, DECLARED + "void TEST_Main(void) { CFE_TIME_ExternalMET((Time){1, 0}); }")
     assert "CFE_TIME_ExternalMET() was called" in console
 

@@ -69,7 +69,7 @@ def sections(built: Built) -> set[str]:
 # -- sources -----------------------------------------------------------------------------------------------------------
 
 
-def test_a_folder_without_cmake_is_all_its_sources_but_those_of_eds(app: Path) -> None:
+def test_folder_without_cmake_builds_all_sources_except_eds_files(app: Path) -> None:
     write(app, {"fsw/src/probe_eds_dispatch.c": "#error EDS\n", "fsw/src/more.c": "int More(void) { return 1; }\n"})
     built = build(app)
     assert built.library == app / "probe.so"
@@ -78,7 +78,7 @@ def test_a_folder_without_cmake_is_all_its_sources_but_those_of_eds(app: Path) -
     assert symbols(built)["CFE_ES_ExitApp"] is False
 
 
-def test_cmake_lists_say_name_sources_and_tables(tmp_path: Path) -> None:
+def test_cmake_lists_define_name_sources_and_tables(tmp_path: Path) -> None:
     text = """
         project(CFS_PROBE C)  # a comment (with brackets
         set(PROBE_OPTION FALSE CACHE STRING "an option")
@@ -116,14 +116,14 @@ def test_cmake_lists_say_name_sources_and_tables(tmp_path: Path) -> None:
     assert said.dependencies == ["other", "sample_lib"]
 
 
-def test_a_source_that_cmake_names_must_be_there(app: Path) -> None:
+def test_missing_source_of_cmake_is_reported(app: Path) -> None:
     write(app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/gone.c)\n"})
     with pytest.raises(UsageError, match=r"CMakeLists\.txt names a missing file: fsw/src/gone\.c"):
         build(app)
 
 
 @pytest.mark.parametrize("name", ["nothing", "apps"])
-def test_there_must_be_something_to_build(name: str, app: Path) -> None:
+def test_folder_without_sources_is_refused(name: str, app: Path) -> None:
     with pytest.raises(UsageError, match=r"folder not found|missing C sources"):
         build(app.parents[1] / name)
 
@@ -136,13 +136,13 @@ def test_headers_of_a_mission_go_before_defaults(app: Path, tmp_path: Path) -> N
     build(app, options=Options(definitions=tmp_path / "defs"))
 
 
-def test_a_header_that_only_missions_have_is_empty_without_one(app: Path) -> None:
+def test_header_of_a_mission_is_empty_when_no_mission_is_given(app: Path) -> None:
     write(app, {"mission_build.cmake": "set(PROBE_MISSION_CONFIG_FILE_LIST\n  probe_msgids.h\n  probe_extra.h\n)\n"})
     write(app, {"fsw/src/more.c": '#include "probe_extra.h"\nint more;\n'})
     assert build(app).warnings == []
 
 
-def test_headers_of_a_library_beside_it_are_found(app: Path) -> None:
+def test_headers_of_a_neighbouring_library_are_found(app: Path) -> None:
     write(app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/user.c)\nadd_cfe_app_dependency(probe my_lib)\n"})
     write(app, {"fsw/src/user.c": '#include "my_lib.h"\nint user = MY_LIB;\n'})
     with pytest.raises(CompilerError, match=r"It uses headers of my_lib: put that folder next to this one"):
@@ -155,36 +155,36 @@ def test_headers_of_a_library_beside_it_are_found(app: Path) -> None:
 # -- the compiler ------------------------------------------------------------------------------------------------------
 
 
-def test_what_the_compiler_says_is_told(app: Path) -> None:
+def test_compiler_error_is_reported_with_its_line(app: Path) -> None:
     write(app, {"fsw/src/wrong.c": "int wrong(void) { return nothing; }\n"})
     with pytest.raises(CompilerError, match=r"wrong\.c:1:26: error: .*nothing.* undeclared"):
         build(app)
     assert not (app / "probe.so").exists()
 
 
-def test_warnings_are_told(app: Path) -> None:
+def test_compiler_warnings_are_returned(app: Path) -> None:
     write(app, {"fsw/src/odd.c": "static int unused;\n"})
     (warning,) = build(app).warnings
     assert "odd.c:1:12: warning: 'unused' defined but not used" in warning.replace("\u2018", "'").replace("\u2019", "'")
 
 
-def test_a_compiler_that_is_not_there(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_compiler_is_reported(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", "no-such-compiler -m64")
     with pytest.raises(UsageError, match="no-such-compiler is not installed; install a C compiler"):
         build(app)
 
 
-def test_debug_data_is_there_unless_unwanted(app: Path) -> None:
+def test_debug_data_is_included_by_default(app: Path) -> None:
     assert ".debug_info" in sections(build(app))
     assert ".debug_info" not in sections(build(app, options=Options(debug=False)))
 
 
-def test_two_builds_give_the_same_bytes(app: Path, tmp_path: Path) -> None:
+def test_two_builds_have_equal_bytes(app: Path, tmp_path: Path) -> None:
     one, other = (build(app, tmp_path / name).library.read_bytes() for name in ("one.so", "other.so"))
     assert one == other
 
 
-def test_sources_of_one_name_in_two_folders(app: Path) -> None:
+def test_sources_of_one_name_in_two_folders_are_built(app: Path) -> None:
     write(
         app, {"CMakeLists.txt": "add_cfe_app(probe fsw/src/a.c fsw/src/x/a.c ../common.c)\n", "fsw/src/a.c": "int a;\n"}
     )
@@ -193,7 +193,7 @@ def test_sources_of_one_name_in_two_folders(app: Path) -> None:
 
 
 @needs_cpp
-def test_cpp_has_its_library(app: Path, tmp_path: Path) -> None:
+def test_cpp_library_is_linked(app: Path, tmp_path: Path) -> None:
     text = """
         #include <stdexcept>
         #include <string>
@@ -229,7 +229,7 @@ def test_without_deprecated_names_handles_are_ids(app: Path) -> None:
     build(app, options=Options(flags=["-DSIZE=4"], omit_deprecated=True))
 
 
-def test_accesses_of_memory_are_told_to_whoever_loads_it(app: Path) -> None:
+def test_memory_accesses_call_undefined_tsan_functions_when_sanitized(app: Path) -> None:
     write(app, {"fsw/src/shared.c": "int shared; int Read(void) { return shared; }\n"})
     built = build(app, options=Options(sanitize_thread=True))
     assert symbols(built)["__tsan_read4"] is False
@@ -237,7 +237,7 @@ def test_accesses_of_memory_are_told_to_whoever_loads_it(app: Path) -> None:
     assert not [each.needed for each in needed if "tsan" in each.needed]
 
 
-def test_notes_for_gcov_stay_beside_the_library(app: Path, tmp_path: Path) -> None:
+def test_notes_for_gcov_are_written_next_to_the_library(app: Path, tmp_path: Path) -> None:
     built = build(app, tmp_path / "out/probe.so", Options(coverage=True))
     assert (tmp_path / "out/probe.so.coverage/fsw/src/probe.c.gcno").is_file()
     assert any(name.startswith("__gcov") for name in symbols(built)) or ".init_array" in sections(built)
@@ -246,7 +246,7 @@ def test_notes_for_gcov_stay_beside_the_library(app: Path, tmp_path: Path) -> No
 # -- a tree of the user's own ------------------------------------------------------------------------------------------
 
 
-def test_the_headers_of_a_cfs_tree_are_taken_in_place_of_ours(app: Path, tmp_path: Path) -> None:
+def test_headers_of_a_cfs_tree_replace_the_shipped_ones(app: Path, tmp_path: Path) -> None:
     needed = ("cfe_mission_cfg", "osconfig", "osapi")
     tree = write(
         tmp_path / "cfs",
@@ -263,7 +263,7 @@ def test_the_headers_of_a_cfs_tree_are_taken_in_place_of_ours(app: Path, tmp_pat
         build(app, options=Options(cfs=tree))
 
 
-def test_a_tree_must_be_one(app: Path, tmp_path: Path) -> None:
+def test_folder_without_a_cfs_tree_is_refused(app: Path, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="is not a cFS tree of cFE 7"):
         build(app, options=Options(cfs=tmp_path))
 
@@ -311,13 +311,13 @@ def test_command_writes_table_files(
     assert (kept, note in capsys.readouterr().err) == (option != ["--tables"], not option)
 
 
-def test_a_table_of_zeros_has_its_zeros(app: Path) -> None:
+def test_table_of_zeros_keeps_its_zeros(app: Path) -> None:
     write(app, {"fsw/tables/zeros.c": TABLE.replace("= {1, 2}", "")})
     (made,) = build(app).tables
     assert read_table_file(made.read_bytes())[2] == bytes(4)
 
 
-def test_addresses_in_a_table_are_told(app: Path) -> None:
+def test_addresses_in_a_table_are_a_warning(app: Path) -> None:
     text = TABLE.replace("uint16 Int1, Int2;", "uint64 Number; const char *Text;").replace("{1, 2}", '{1, "text"}')
     write(app, {"fsw/tables/pointers.c": text})
     built = build(app)
@@ -338,7 +338,7 @@ def test_addresses_in_a_table_are_told(app: Path) -> None:
         ("SAMPLE_APP.ExampleTable", "ExampleTable", "invalid table name"),
     ],
 )
-def test_what_is_no_table(old: str, new: str, wrong: str, app: Path) -> None:
+def test_invalid_table_is_refused(old: str, new: str, wrong: str, app: Path) -> None:
     text = TABLE.replace(old, new)
     if "missing table" in wrong:
         text = text[: text.index("int SAMPLE")]
@@ -371,12 +371,12 @@ def test_a_name_that_leads_out_is_refused(name: str, app: Path) -> None:
         build(app)
 
 
-def test_a_header_that_a_mission_makes_stays_where_it_is_written(app: Path) -> None:
+def test_generated_header_outside_the_build_folder_is_ignored(app: Path) -> None:
     write(app, {"mission_build.cmake": "set(PROBE_PLATFORM_FILE_LIST ../../../victim.h /victim.h good.h)\n"})
     assert set(find_sources(app).chosen) == {"good.h", "probe_msgids.h"}
 
 
-def test_a_compiler_is_called_where_the_process_itself_is_bound(tmp_path: Path) -> None:
+def test_compiler_runs_when_the_process_has_resource_limits(tmp_path: Path) -> None:
     (tmp_path / "a.c").write_text("int a;\n", encoding="utf-8")
     program = (
         "import resource, sys\n"

@@ -66,7 +66,7 @@ def launch(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     return str(package / "launch/asked.launch")
 
 
-def test_a_node_answers_at_its_uri(launch: str, capfd: pytest.CaptureFixture[str]) -> None:
+def test_ros_tools_query_a_node_in_cpp_at_its_uri(launch: str, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", launch, "--for", "3"]) == 0
     shown = capfd.readouterr().out
     said = [line.removeprefix("[asker] ") for line in shown.splitlines() if line.startswith("[asker] ")]
@@ -78,7 +78,7 @@ def test_a_node_answers_at_its_uri(launch: str, capfd: pytest.CaptureFixture[str
     assert "    * to: /asker" in said
 
 
-def test_cfepy_service_tells_of_it(launch: str, capfd: pytest.CaptureFixture[str]) -> None:
+def test_service_command_describes_a_service_in_cpp(launch: str, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["rosservice", "info", launch, "/count", "--for", "2"]) == 0
     node, uri, kind, fields = capfd.readouterr().out.splitlines()
     assert (node, kind, fields) == ("Node: /server", "Type: ping/Count", "Args: first last")

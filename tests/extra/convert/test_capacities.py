@@ -19,7 +19,7 @@ def mission(folder: Path, capacities: str) -> Path:
     return folder
 
 
-def test_all_kinds_of_fields(tmp_path: Path) -> None:
+def test_capacities_of_all_kinds_of_fields_are_read(tmp_path: Path) -> None:
     text = 'sensor_msgs/JointState: {name: 7, "name[]": 12, position: 7}\n    std_msgs/String: {data: 9}\n    array: 5'
     said = capacities_of(read_sections(str(mission(tmp_path, text))).cpp_nodes, shipped())
     assert (said.of_array("sensor_msgs/JointState.name", "string"), said.of_text("sensor_msgs/JointState.name[]")) == (
@@ -61,7 +61,7 @@ def test_all_kinds_of_fields(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_errors_say_where(tmp_path: Path, capacities: str, error: str) -> None:
+def test_errors_of_capacities_have_their_line(tmp_path: Path, capacities: str, error: str) -> None:
     folder = mission(tmp_path, capacities)
     with pytest.raises(UsageError) as caught:
         capacities_of(read_sections(str(folder)).cpp_nodes, shipped())
@@ -71,12 +71,12 @@ def test_errors_say_where(tmp_path: Path, capacities: str, error: str) -> None:
     assert problem.text in str(caught.value)
 
 
-def test_a_check_has_all(tmp_path: Path) -> None:
+def test_check_reports_all_wrong_capacities(tmp_path: Path) -> None:
     said = read_sections(str(mission(tmp_path, "std_msgs/String: {dat: 7, day: 8, data: 9}"))).cpp_nodes
     assert len(wrong_capacities(said, shipped())) == 2
 
 
-def test_a_text_holds_the_constants_of_its_type(tmp_path: Path) -> None:
+def test_capacity_must_hold_the_constants_of_its_type(tmp_path: Path) -> None:
     (error,) = wrong_capacities(
         read_sections(str(mission(tmp_path, "mavros_msgs/State: {mode: 5}"))).cpp_nodes, shipped()
     )

@@ -94,7 +94,7 @@ def test_each_rule_is_met(tmp_path: Path, line: str, rule: str, column: int) -> 
         "std::condition_variable changed;",
     ],
 )
-def test_what_nothing_flies_refuses_a_node_for_the_host_too(tmp_path: Path, line: str) -> None:
+def test_unsupported_call_refuses_a_node_in_the_host_profile(tmp_path: Path, line: str) -> None:
     assert len(look(tmp_path, f"{MAIN}{line}", Profile.HOST).at(Level.ERROR)) == 1
 
 
@@ -123,7 +123,7 @@ def test_what_nothing_flies_refuses_a_node_for_the_host_too(tmp_path: Path, line
         'const char *kText = "exit(1)";',
     ],
 )
-def test_what_is_right_is_not_told(tmp_path: Path, line: str) -> None:
+def test_valid_source_has_no_findings(tmp_path: Path, line: str) -> None:
     report = look(tmp_path, f"{line}\n{MAIN}", mine="#ifndef MINE_H\n#define MINE_H\n#include <string>\n#endif\n")
     assert not report.findings
 
@@ -144,9 +144,7 @@ WORKER = '#include "worker.h"\nvoid Worker::begin() { std::thread(work).detach()
         (MAIN, f"{WORKER}PLUGINLIB_EXPORT_CLASS(Worker, Base)", "thread"),
     ],
 )
-def test_code_of_a_library_that_a_node_cannot_call_does_not_refuse_it(
-    tmp_path: Path, node: str, worker: str, rule: str
-) -> None:
+def test_uncalled_library_code_does_not_refuse_a_node(tmp_path: Path, node: str, worker: str, rule: str) -> None:
     sources = {"node.cpp": node, "worker.cpp": worker, "worker.h": WORKER_H}
     for name, text in sources.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
@@ -192,7 +190,7 @@ void Node::start() {
     ]
 
 
-def test_a_file_that_cannot_be_read_is_told(tmp_path: Path) -> None:
+def test_unreadable_file_is_a_finding(tmp_path: Path) -> None:
     report = CheckReport("node", Profile.HOST)
     ProgramSources([tmp_path / "none.cpp"], [], shipped()).look(report)
     assert found(report) == {"file-unreadable": (0, 0), "main-form": (0, 0)}
@@ -227,7 +225,7 @@ def test_deep_nesting_is_read() -> None:
     )
 
 
-def test_every_rule_says_what_why_and_what_to_do() -> None:
+def test_each_rule_has_a_description_a_reason_and_a_remedy() -> None:
     for rule in RULES.values():
         assert rule.what, rule.id
         assert rule.why, rule.id
@@ -235,6 +233,6 @@ def test_every_rule_says_what_why_and_what_to_do() -> None:
         assert {rule.level(profile) for profile in Profile} & set(Level), rule.id
 
 
-def test_the_documents_table_is_that_of_the_rules() -> None:
+def test_table_in_the_docs_matches_the_rules() -> None:
     text = DOCUMENT.read_text(encoding="utf-8")
     assert between(text, rules.BEGIN, rules.END, rules.table()) == text, "python -m dev.convert.rules writes it"

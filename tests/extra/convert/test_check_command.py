@@ -64,17 +64,17 @@ def test_a_node_that_converts(
         ("#include <ros/ros.h>", "#include <ros/ros.h>\n#ifndef N\n#include <rosbag/bag.h>\n#endif", "ros-library"),
     ],
 )
-def test_what_the_compiler_refuses_is_never_clean(tmp_path: Path, old: str, new: str, rule: str) -> None:
+def test_source_refused_by_the_compiler_is_never_clean(tmp_path: Path, old: str, new: str, rule: str) -> None:
     assert rule in rules_of(tmp_path, NODE.replace(old, new))
 
 
-def test_what_both_passes_see_is_told_once(tmp_path: Path) -> None:
+def test_finding_of_both_passes_is_reported_once(tmp_path: Path) -> None:
     checked(tmp_path, NODE.replace("ros::spin();", "throw 1;"), "--profile", "pool", "--json", str(tmp_path / "f.json"))
     (node,) = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))["nodes"]
     assert [each["rule"] for each in node["found"]].count("throw") == 1
 
 
-def test_the_first_of_many_errors_are_told(tmp_path: Path) -> None:
+def test_first_50_of_many_compiler_errors_are_reported(tmp_path: Path) -> None:
     checked(tmp_path, NODE + "".join(f"int a{at} = b{at};\n" for at in range(60)), "--json", str(tmp_path / "f.json"))
     (node,) = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))["nodes"]
     told = [each["text"] for each in node["found"] if each["rule"] == "compile-error"]
@@ -92,7 +92,7 @@ def test_strict_needs_capacities(tmp_path: Path) -> None:
     assert rules_of(tmp_path, text.replace("message->data.c_str()", '"x"'), "strict") == {"capacity-missing"}
 
 
-def test_a_mistake_in_a_message_is_told_where_it_is_included(tmp_path: Path) -> None:
+def test_mistake_in_a_message_is_reported_for_the_node_that_includes_it(tmp_path: Path) -> None:
     package = ping_package(tmp_path)
     (package / "msg/Beat.msg").write_text("int32 number\nnone_msgs/Thing what\n", encoding="utf-8")
     assert main(["convert", "check", str(package), "--json", str(tmp_path / "found.json")]) == 1

@@ -49,7 +49,7 @@ def test_a_script_becomes_a_class(program: Program) -> None:
     assert "constexpr int Tune_Large = (2);" in text
 
 
-def test_a_script_that_fails_is_told(program: Program) -> None:
+def test_failed_cfg_script_is_reported(program: Program) -> None:
     script = program.package.folder / "cfg/Tune.cfg"
     script.write_text("raise ValueError('no such gain')", encoding="utf-8")
     with pytest.raises(UsageError, match=r"cfg/Tune.cfg: failed: ValueError: no such gain"):
@@ -124,7 +124,7 @@ WARN Reconfigure callback failed with unprintable exception.
 
 @needs_cpp
 @pytest.mark.slow
-def test_a_server_does_what_that_of_ros_does() -> None:
+def test_reconfigure_server_logs_the_same_as_roscpp() -> None:
     with mission_of("tuned") as mission:
         mission.run_for(5)
         lines = mission.console.lines

@@ -55,7 +55,7 @@ def test_a_launch_file_becomes_applications(package: Path, tmp_path: Path) -> No
     assert (len((out / "tables/arm_left_params.tbl").read_bytes()) - 64 - 52) % ROW_BYTES == 0
 
 
-def test_the_mission_has_the_same_ids(package: Path, tmp_path: Path) -> None:
+def test_converted_mission_has_the_reported_msg_ids(package: Path, tmp_path: Path) -> None:
     out = tmp_path / "made"
     assert convert(package, out) == 0
     spec = read_mission(str(out / "mission"))
@@ -64,7 +64,7 @@ def test_the_mission_has_the_same_ids(package: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_stays_the_same_and_keeps_what_its_user_changed(package: Path, tmp_path: Path) -> None:
+def test_second_conversion_changes_nothing_and_refuses_hand_edited_files(package: Path, tmp_path: Path) -> None:
     out = tmp_path / "made"
     assert convert(package, out) == 0
     first = {each: each.read_bytes() for each in out.rglob("*") if each.is_file()}
@@ -109,7 +109,9 @@ def run_or_raise(package: Path, out: Path) -> None:
     run(parser_for(words).parse_args(words))
 
 
-def test_two_names_on_one_id_are_told(package: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_two_names_of_one_msg_id_are_reported(
+    package: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     mission = tmp_path / "mission"
     mission.mkdir()
     (mission / "startup.scr").write_text("!\n", encoding="utf-8")
@@ -129,21 +131,21 @@ def test_entry_points_fit_into_osal(app: str, symbol: str | None) -> None:
     assert found == symbol if symbol else found.startswith("RN_")
 
 
-def test_parameters_of_other_nodes_are_left_out() -> None:
+def test_parameters_of_other_nodes_are_excluded() -> None:
     params = {"a": {"x": 1, "y": {"z": "text"}}, "b": {"x": 2}, "all": True, "long": "v" * 100}
     rows = [row for row in parameter_rows(params, "/a", ["/b"]) if row != ("", "")]
     assert rows == [("/a/x", "1"), ("/a/y/z", "text"), ("/all", "true"), ("/long", "v" * 80), ("+", "v" * 20)]
     assert parameter_rows({"a": "\xe9"}, "/a")[0] == ("/a", '"\\u00e9"')
 
 
-def test_texts_are_those_of_c() -> None:
+def test_texts_are_quoted_as_in_c() -> None:
     assert quoted('a"b\\c\n?') == r'"a\"b\\c\012\077"'
     text = NodeEntry("APP", "n", takes_arguments=False).text()
     assert "int roscfe_main() __asm__" in text
     assert "nullptr, 0," in text
 
 
-def test_parts_of_the_library_that_nobody_uses_stay_out(package: Path, tmp_path: Path) -> None:
+def test_unused_parts_of_the_library_are_excluded(package: Path, tmp_path: Path) -> None:
     """Messages of unused parts have no capacity, so no strict node could be built beside them."""
     out = tmp_path / "made"
     assert convert(package, out, "--profile", "strict") == 0

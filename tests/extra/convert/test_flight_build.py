@@ -33,7 +33,7 @@ def test_a_launch_file_is_flown(package: Path, capfd: pytest.CaptureFixture[str]
     assert "/pulse" in shown
 
 
-def test_what_a_node_prints_by_itself_is_shown_with_its_name(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_standard_output_of_a_node_is_shown_with_its_name(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "src/sender.cpp"
     own = """
   struct Last { ~Last() { std::printf("at its end"); } };
@@ -55,7 +55,7 @@ def test_what_a_node_prints_by_itself_is_shown_with_its_name(package: Path, capf
     assert capfd.readouterr().out.splitlines() == said[:-1]  # the run ends with the node, before its code is unloaded
 
 
-def test_the_clocks_of_cpp_are_the_mission_s(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_cpp_clocks_show_mission_time(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "src/sender.cpp"
     own = """
   const auto steady = std::chrono::steady_clock::now();
@@ -72,7 +72,7 @@ def test_the_clocks_of_cpp_are_the_mission_s(package: Path, capfd: pytest.Captur
     assert capfd.readouterr().out == "after 0.500 s, 0.500 s\n"
 
 
-def test_both_kinds_of_nodes_hear_each_other(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_nodes_in_python_and_cpp_exchange_messages(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["launch", str(package / "launch/both.launch"), "--for", "1"]) == 0
     shown = capfd.readouterr().out
     assert "python heard plain-beat-even!" in shown
@@ -103,7 +103,7 @@ def test_a_mission_with_the_launch_file(package: Path, tmp_path: Path, capfd: py
     assert "heard 1 plain-beat-odd!" in capfd.readouterr().out
 
 
-def test_one_node(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_one_node_is_built_and_flown(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["node", "ping", "hearer", "--for", "1"]) == 0
     assert main(["check", "ping", "ping.launch"]) == 0
 
@@ -116,7 +116,9 @@ def test_a_replay_needs_no_compiler(package: Path, tmp_path: Path, monkeypatch: 
     assert replay(read_journal(journal)).verdict.same
 
 
-def test_what_the_compiler_refuses_is_left_out_with_its_words(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_node_refused_by_the_compiler_is_left_out_with_the_error(
+    package: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     source = package / "src/sender.cpp"
     source.write_text(
         source.read_text(encoding="utf-8").replace("ros::Rate rate(hz);", "ros::Rate rate(nothing_such);"),
@@ -128,7 +130,7 @@ def test_what_the_compiler_refuses_is_left_out_with_its_words(package: Path, cap
     assert "nothing_such" in told
 
 
-def test_a_topic_of_a_node_has_one_type(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_second_type_on_a_topic_of_a_node_is_refused(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "src/sender.cpp"
     again = 'ros::Publisher other = nh.advertise<std_msgs::String>("beat", 4); ROS_INFO("is one: %d", bool(other));'
     text = source.read_text(encoding="utf-8").replace("ros::Rate rate(hz);", again + " ros::Rate rate(hz);")
@@ -140,7 +142,7 @@ def test_a_topic_of_a_node_has_one_type(package: Path, capfd: pytest.CaptureFixt
     assert "heard 1 plain-beat-odd!" in shown
 
 
-def test_without_a_compiler_it_is_said(
+def test_missing_compiler_is_reported_when_a_node_is_launched(
     package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("CXX", "no-such-compiler")
@@ -167,7 +169,7 @@ def test_symbols_that_nodes_would_share_are_found(tmp_path: Path) -> None:
         unique_symbols(source)
 
 
-def test_another_type_in_python_is_told_once(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_other_type_of_a_topic_in_python_is_reported_once(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "src/sender.cpp"
     (package / "launch/both.launch").write_text(
         '<launch><node pkg="ping" type="sender" name="left"/>'

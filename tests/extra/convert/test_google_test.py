@@ -101,7 +101,9 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @needs_google_test
-def test_what_came_of_each_test_is_told(package: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_result_of_each_google_test_is_reported(
+    package: Path, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
     results = tmp_path / "results.xml"
     assert main(["rostest", str(package / "test/words.test"), "--results", str(results)]) == 1
     shown, told = capfd.readouterr()
@@ -126,7 +128,7 @@ def test_what_came_of_each_test_is_told(package: Path, tmp_path: Path, capfd: py
 
 
 @needs_google_test
-def test_a_test_that_passes_and_one_that_takes_too_long(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_passed_test_and_timeout_are_reported(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     source = package / "test/words_test.cpp"
     source.write_text(
         TESTS.replace('"two"', '"one"').replace("2.0, 0.5", "1.0, 0.5").replace("FAIL() <<", "SUCCEED() <<"),
@@ -147,7 +149,7 @@ def test_a_test_that_passes_and_one_that_takes_too_long(package: Path, capfd: py
     assert "| [ RUN      ] Beats.areHeard" in shown
 
 
-def test_where_google_test_is_not_installed_it_is_said(
+def test_missing_google_test_is_reported(
     package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv("GTEST_ROOT", str(tmp_path / "nowhere"))

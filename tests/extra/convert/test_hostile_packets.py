@@ -56,7 +56,7 @@ def ignored(mission: Mission) -> list[str]:
     return [line for line in mission.console.lines if "/target: ignored " in line]
 
 
-def test_list_that_ends_before_its_count_is_ignored(mission: Mission) -> None:
+def test_list_shorter_than_its_count_is_ignored(mission: Mission) -> None:
     for _ in range(3):
         send(mission, EMPTY_LIST)
         mission.run_for(0.5)
@@ -65,7 +65,7 @@ def test_list_that_ends_before_its_count_is_ignored(mission: Mission) -> None:
     assert "/target: ignored 28 bytes on 0x080D: no report of subscriptions; told once" in line
 
 
-def test_reports_that_end_early_are_ignored(mission: Mission) -> None:
+def test_truncated_reports_are_ignored(mission: Mission) -> None:
     for size in range(1, 30):
         send(mission, packet_of(ONESUB, b"\xff" * size))
         send(mission, packet_of(ALLSUBS, b"\xff" * size))
@@ -76,7 +76,7 @@ def test_reports_that_end_early_are_ignored(mission: Mission) -> None:
     assert len(ignored(mission)) == 1
 
 
-def test_made_up_subscriptions_take_no_memory(mission: Mission) -> None:
+def test_forged_subscriptions_take_no_memory(mission: Mission) -> None:
     route = next(each for each in mission.processor.cfe.sb.routes.values() if each.active)
     pipe = route.active[0].pipe.pipe_id
     for number in range(2500):
@@ -89,7 +89,7 @@ def test_made_up_subscriptions_take_no_memory(mission: Mission) -> None:
     assert len(told) == 1
 
 
-def test_requests_and_answers_that_end_early_are_ignored(mission: Mission) -> None:
+def test_truncated_requests_and_answers_are_ignored(mission: Mission) -> None:
     ros = mission.ros
     assert ros is not None
     ids = {name: ros.graph.ids.of_service(name) for name in ("/set", "/other")}
@@ -109,7 +109,7 @@ def test_notice_of_a_long_parameter_takes_no_memory(mission: Mission) -> None:
     works(mission)
 
 
-def test_random_packets_change_nothing(mission: Mission) -> None:
+def test_random_packets_do_not_change_the_node(mission: Mission) -> None:
     ros = mission.ros
     assert ros is not None
     draw = random.Random(7)

@@ -37,12 +37,12 @@ def rows(table: str) -> list[list[str]]:
 
 
 @pytest.mark.parametrize("table", PAPER)
-def test_no_row_is_missing(table: str) -> None:
+def test_table_has_no_missing_row(table: str) -> None:
     assert set(PAPER[table].split()) - {row[0].removeprefix("ros::") for row in rows(table)} == set()
 
 
 @pytest.mark.parametrize("row", rows("functions"), ids=lambda row: row[0])
-def test_a_function_is_there(row: list[str]) -> None:
+def test_function_is_in_its_header_and_uses_the_listed_calls(row: list[str]) -> None:
     name, header, _, calls = row
     word = name.rpartition("::")[2]
     assert re.search(rf"\b{word}\b", (INCLUDE / header).read_text(encoding="utf-8"))
@@ -51,7 +51,7 @@ def test_a_function_is_there(row: list[str]) -> None:
 
 
 @pytest.mark.parametrize("row", rows("messages"), ids=lambda row: row[0])
-def test_a_message_is_there_for_python(row: list[str]) -> None:
+def test_message_exists_for_python(row: list[str]) -> None:
     name, header, python = row
     package = header.partition("/")[0]
     assert python == f"{package}.msg.{name}"
@@ -59,7 +59,7 @@ def test_a_message_is_there_for_python(row: list[str]) -> None:
 
 
 @pytest.mark.parametrize("row", rows("linear math"), ids=lambda row: row[0])
-def test_linear_math_is_there_for_python(row: list[str]) -> None:
+def test_linear_math_exists_for_python(row: list[str]) -> None:
     name, _, python = row
     module = universe().importer.load(python)
     assert hasattr(
@@ -68,7 +68,7 @@ def test_linear_math_is_there_for_python(row: list[str]) -> None:
 
 
 @pytest.mark.slow
-def test_the_functions_are_there_for_nodes_in_python(tmp_path: Path) -> None:
+def test_functions_exist_for_nodes_in_python(tmp_path: Path) -> None:
     script = tmp_path / "node.py"
     names = [row[2] for row in rows("functions") if row[2]]
     script.write_text("import rospy\n" + "".join(f"assert callable({name})\n" for name in names), encoding="utf-8")
@@ -82,7 +82,7 @@ def included_messages() -> list[str]:
 
 
 @pytest.mark.slow
-def test_the_headers_have_the_types(tmp_path: Path) -> None:
+def test_types_exist_in_the_headers(tmp_path: Path) -> None:
     messages, maths = rows("messages"), rows("linear math")
     types = [header.removesuffix(".h") for _, header, _ in messages]
     write_headers([*types, *included_messages()], tmp_path / "messages", Profile.HOST, shipped())

@@ -26,7 +26,7 @@ def header(folder: Path, name: str, of: Library, profile: Profile = Profile.HOST
     return (folder / "demo" / f"{name}.h").read_text(encoding="utf-8")
 
 
-def test_a_type_comes_with_all_types_in_it(tmp_path: Path) -> None:
+def test_header_of_a_type_includes_headers_of_its_fields(tmp_path: Path) -> None:
     made = write_headers(["geometry_msgs/PoseStamped", "std_srvs/SetBool"], tmp_path, Profile.HOST, shipped())
     assert [str(path.relative_to(tmp_path)) for path in made] == [
         *(f"geometry_msgs/{name}.h" for name in ("Point", "Pose", "PoseStamped", "Quaternion")),
@@ -42,7 +42,7 @@ def test_an_action_has_its_seven_messages(tmp_path: Path) -> None:
     assert names == {"TestAction", *(f"Test{part}" for part in parts), *(f"TestAction{part}" for part in parts)}
 
 
-def test_files_that_are_right_are_left_alone(tmp_path: Path) -> None:
+def test_current_files_are_not_rewritten(tmp_path: Path) -> None:
     made = write_headers(["nav_msgs/Odometry"], tmp_path, Profile.HOST, shipped())
     texts = [path.read_bytes() for path in made]
     made[0].write_text("changed", encoding="utf-8")
@@ -92,7 +92,7 @@ def test_constants(tmp_path: Path) -> None:
         assert line in text
 
 
-def test_a_field_that_is_a_word_of_the_language(tmp_path: Path) -> None:
+def test_field_named_like_a_keyword_is_refused(tmp_path: Path) -> None:
     text = header(tmp_path, "Word", library(Word="int32 new"))
     assert "_new_type new_{};" in text
     assert "next(message.new_)" in text
@@ -130,13 +130,13 @@ def test_a_type_that_is_unknown(tmp_path: Path) -> None:
         header(tmp_path, "Nothing", library(All="string a"))
 
 
-def test_a_name_that_cpp_cannot_have(tmp_path: Path) -> None:
+def test_name_that_is_invalid_in_cpp_is_refused(tmp_path: Path) -> None:
     of = Library([Texts({"new/Thing": Definition("uint8 a", "Thing.msg")})])
     with pytest.raises(UsageError, match="new/Thing is not a valid name in C"):
         write_headers(["new/Thing"], tmp_path, Profile.HOST, of)
 
 
-def test_the_definition_is_that_of_the_connection_header(tmp_path: Path) -> None:
+def test_definition_equals_the_connection_header(tmp_path: Path) -> None:
     of = library(All='# a "comment" \\ \u00e4\nInner d', Inner="uint8 i")
     text = header(tmp_path, "All", of)
     assert r'"# a \"comment\" \\ \303\244\n"' in text
@@ -151,7 +151,9 @@ def test_the_definition_is_that_of_the_connection_header(tmp_path: Path) -> None
         *(("asio", True, True), ("thread", True, False)),
     ],
 )
-def test_which_headers_of_boost_need_the_real_one(tmp_path: Path, header: str, host: bool, pool: bool) -> None:
+def test_header_of_boost_selects_the_small_or_the_installed_boost(
+    tmp_path: Path, header: str, host: bool, pool: bool
+) -> None:
     source = tmp_path / "node.cpp"
     source.write_text(f"#include <boost/{header}.hpp>\n", encoding="utf-8")
     found = collect([source], library_includes())

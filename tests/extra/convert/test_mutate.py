@@ -12,13 +12,13 @@ from dev.convert.mutate import DAMAGES, NODES, OWN, STUB, Damaging
 
 
 @pytest.mark.parametrize("kind", sorted(DAMAGES))
-def test_each_kind_damages(kind: str) -> None:
+def test_each_kind_of_damage_changes_the_source(kind: str) -> None:
     source = NODES[0].encode()
     assert any(DAMAGES[kind](random.Random(seed), source) != source for seed in range(3))
 
 
 @pytest.mark.slow
-def test_what_is_whole_compiles(tmp_path: Path) -> None:
+def test_undamaged_sources_compile(tmp_path: Path) -> None:
     damaging = Damaging(1, tmp_path)
     assert (tmp_path / "stub" / next(iter(STUB))).is_file()
     assert damaging.check("nothing", NODES[2].encode(), False) == ("nothing", False, False, "")
@@ -27,7 +27,7 @@ def test_what_is_whole_compiles(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_called_clean_and_does_not_compile_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_clean_source_that_does_not_compile_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Compiler, "compile", lambda self, source, scratch: Compiled(True, []))
     outcome = Damaging(1, tmp_path).check("nothing", NODES[2].encode() + b"int more = none;", False)
     assert outcome.problem == "clean, but it does not compile"

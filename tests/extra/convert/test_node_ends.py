@@ -58,7 +58,7 @@ def launched(package: Path, one: str, status: int = 0, seconds: float = 60.0) ->
     return main(["launch", str(package / "brief.launch"), "--for", "10"])
 
 
-def test_a_node_is_started_again(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_respawning_node_is_started_again(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert launched(package, 'respawn="true" respawn_delay="1.0"', status=3) == 0
     shown = capfd.readouterr().out
     said = shown.count("launch: one ended with exit status 3 and is restarted")
@@ -67,7 +67,7 @@ def test_a_node_is_started_again(package: Path, capfd: pytest.CaptureFixture[str
     assert shown.count("[/two] [ INFO]") == 1
 
 
-def test_the_end_of_a_required_node_is_that_of_the_run(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_end_of_a_required_node_ends_the_run(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert launched(package, 'required="true"', status=2) == 1
     shown = capfd.readouterr().out
     assert "launch: one ended with exit status 2; it is required, so the run ends" in shown
@@ -75,20 +75,20 @@ def test_the_end_of_a_required_node_is_that_of_the_run(package: Path, capfd: pyt
     assert "\n1.0" in shown
 
 
-def test_a_run_ends_with_its_nodes(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_run_ends_with_its_nodes(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert launched(package, "", seconds=1.0) == 0
     shown = capfd.readouterr().out
     assert shown.count("ended, exit status 0") == 2
     assert "\n1.5" in shown  # virtual seconds, of which 0.55 are the boot
 
 
-def test_the_exit_status_of_one_node(package: Path) -> None:
+def test_exit_status_of_one_node_is_the_status_of_the_command(package: Path) -> None:
     for status in ("0", "4"):
         for exits in ("false", "true"):
             assert main(["node", "brief", "brief", f"_status:={status}", f"_exits:={exits}"]) == int(status)
 
 
-def test_a_name_is_made_where_none_is_given(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_anonymous_node_gets_a_generated_name(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["node", "brief", "brief"]) == 0
     assert re.search(r"\]: /brief_\d{18,19} begins", capfd.readouterr().out)
     assert main(["node", "brief", "brief", "__name:=given", "_status:=1"]) == 1

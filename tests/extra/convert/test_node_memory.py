@@ -97,7 +97,7 @@ def test_memory_is_aligned_or_null(
 
 
 @pytest.mark.parametrize("profile", ["pool", "strict"])
-def test_negative_count_ends_the_node_alone(
+def test_negative_count_ends_only_its_node(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], profile: str
 ) -> None:
     status, said, shown = flown(tmp_path, monkeypatch, capfd, profile, negative=True)

@@ -85,7 +85,7 @@ def texts(mission: Mission) -> list[str]:
     return line.partition("text ")[2].removesuffix("\x1b[0m").split(" ")
 
 
-def test_all_see_one_server(launched: Mission) -> None:
+def test_all_nodes_share_one_parameter_server(launched: Mission) -> None:
     launched.run_for(3)
     params = launched.ros.graph.params
     assert texts(launched) == ["launch", "launch"]
@@ -98,7 +98,7 @@ def test_all_see_one_server(launched: Mission) -> None:
     assert texts(launched) == ["third", "third"]
 
 
-def test_what_the_ground_loads_is_on_the_server(launched: Mission) -> None:
+def test_table_loaded_by_the_ground_updates_the_parameter_server(launched: Mission) -> None:
     launched.run_for(2)
     for packet in (
         LOAD.packet(LoadFilename="/cf/knob.tbl"),
@@ -112,7 +112,7 @@ def test_what_the_ground_loads_is_on_the_server(launched: Mission) -> None:
 
 
 @pytest.mark.parametrize("there", ["{}", "{knob: {text: mission}}"])
-def test_what_was_built_for_cfe_brings_its_parameters(package: Path, tmp_path: Path, there: str) -> None:
+def test_node_built_for_cfe_has_its_own_default_parameters(package: Path, tmp_path: Path, there: str) -> None:
     program = program_of(read_package(package, "knobs"), "knob", Packages(package / "x", {}), provided_packages())
     built = build_node(
         program, NodeEntry("KNOB", "knob", rows=parameter_rows({"knob": {"text": "own"}}, "/knob")), shipped()

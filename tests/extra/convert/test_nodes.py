@@ -24,7 +24,7 @@ def said_by(mission: Mission, name: str) -> list[str]:
     return [text.removeprefix(f"{name} ") for text in texts(mission) if text.startswith(f"{name} ")]
 
 
-def test_a_node_that_works_takes_nothing_from_the_heap() -> None:
+def test_working_node_allocates_nothing_on_the_heap() -> None:
     """The node counts its operator new, including the library's. cfepy counts malloc, which libstdc++.so calls."""
     with mission_of("counted") as mission:
         mission.run_for(3.5)
@@ -40,7 +40,7 @@ def test_a_node_that_works_takes_nothing_from_the_heap() -> None:
 
 
 @pytest.mark.parametrize(("pairs", "taken"), [("false", 0), ("true", 3)])
-def test_what_libraries_take_from_the_heap(pairs: str, taken: int) -> None:
+def test_libraries_allocate_a_known_number_of_heap_blocks(pairs: str, taken: int) -> None:
     """Transforms take nothing; a TimeSynchronizer takes three blocks for each pair."""
     with mission_of("counted", "libraries", pairs=pairs) as mission:
         mission.run_for(4)
@@ -50,7 +50,7 @@ def test_what_libraries_take_from_the_heap(pairs: str, taken: int) -> None:
         assert mission.processor.compiled.allocations - before == taken * 20 * 3
 
 
-def test_two_nodes_of_one_program_share_nothing() -> None:
+def test_two_nodes_of_one_program_share_no_state() -> None:
     with mission_of("lives") as mission:
         mission.run_for(4)
         assert said_by(mission, "/one")[:2] == [
@@ -63,14 +63,14 @@ def test_two_nodes_of_one_program_share_nothing() -> None:
         ]
 
 
-def test_nodes_with_long_names_have_pipes_of_their_own() -> None:
+def test_nodes_with_long_names_have_separate_pipes() -> None:
     with mission_of("lives", ends="long") as mission:
         mission.run_for(2)
         assert [len(said_by(mission, name)) for name in ("/a_long_name_of_one", "/a_long_name_of_another")] == [2, 2]
         assert not any("CFE_SB_CreatePipe failed" in line for line in mission.console.lines)
 
 
-def test_a_node_that_is_restarted_begins_anew() -> None:
+def test_restarted_node_begins_with_new_state() -> None:
     """Only its values on the parameter server remain."""
     with mission_of("lives") as mission:
         mission.run_for(3)
@@ -83,7 +83,7 @@ def test_a_node_that_is_restarted_begins_anew() -> None:
         assert said_by(mission, "/two")[-1].startswith(f"count {len(said_by(mission, '/two'))} ")
 
 
-def test_exit_ends_one_application_alone() -> None:
+def test_exit_ends_its_own_application_only() -> None:
     with mission_of("lives", ends="/one") as mission:
         mission.run_for(8)
         assert any("/one: exit(3)" in line for line in mission.console.lines)
@@ -92,7 +92,7 @@ def test_exit_ends_one_application_alone() -> None:
         assert " heard 1 " in said_by(mission, "/two")[-1]
 
 
-def test_a_handler_of_signals_is_called_when_the_application_is_to_end() -> None:
+def test_signal_handler_is_called_when_the_application_ends() -> None:
     with mission_of("lives", ends="handler") as mission:
         mission.run_for(3)
         mission.cfe.sb.transmit_msg(STOP_APP.packet(Application="HANDLER"))
@@ -101,7 +101,7 @@ def test_a_handler_of_signals_is_called_when_the_application_is_to_end() -> None
     assert said == ["first 1", "then 1", "asked 0 1", "refused 1", "drawn 1804289383", "clock 0", "signal 2", "spun"]
 
 
-def test_a_node_starts_at_once_however_many_subscriptions_there_are() -> None:
+def test_node_with_many_subscriptions_starts_at_once() -> None:
     begins = set()
     for more in range(20):  # the capacity of a report of the Software Bus; a full one may be the last one
         with mission_of("lives", more=" ".join(f"/more_{number}" for number in range(more))) as mission:
@@ -111,14 +111,14 @@ def test_a_node_starts_at_once_however_many_subscriptions_there_are() -> None:
     assert len(begins) == 1
 
 
-def test_a_publisher_is_told_of_subscribers_that_were_there_before() -> None:
+def test_publisher_callback_reports_earlier_subscribers() -> None:
     with mission_of("lives", ends="greeters") as mission:
         mission.run_for(4)
         assert [said_by(mission, name) for name in ("/early", "/late")] == [["greets 1"], ["greets 1"]]
         assert sum("greeted 0 before it spins" in line for line in mission.console.lines) == 2
 
 
-def test_a_request_may_be_empty() -> None:
+def test_empty_request_is_answered() -> None:
     with mission_of("lives", ends="greeters") as mission:
         mission.run_for(4)
         assert any(line.endswith(": reset 1") for line in mission.console.lines)

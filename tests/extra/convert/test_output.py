@@ -17,7 +17,7 @@ from cfepy.status import UsageError
 PACKAGE = Path("/package")
 
 
-def test_files_are_written_and_those_no_longer_made_are_removed(tmp_path: Path) -> None:
+def test_files_are_written_and_obsolete_ones_removed(tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert write_files(out, {"a/b": b"1", "c": b"2"}) == ["a/b", "c"]
     assert write_files(out, {"a/b": b"1", "d": b"3"}) == ["d"]
@@ -25,7 +25,7 @@ def test_files_are_written_and_those_no_longer_made_are_removed(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("name", ["../x", "/x", "a/../../x", "a/./b", "a\0b", "", "a//b", "a/"])
-def test_a_name_that_leads_out_is_refused_before_anything_is_written(name: str, tmp_path: Path) -> None:
+def test_path_outside_the_folder_is_refused_before_writing(name: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
     with pytest.raises(UsageError, match="is outside the target folder"):
         write_files(out, {"good": b"1", name: b"2"}, force=True)
@@ -48,7 +48,7 @@ def test_a_link_in_the_folder_is_not_followed(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["../victim", "link/victim", "/victim"])
-def test_a_list_of_files_removes_nothing_elsewhere(name: str, tmp_path: Path) -> None:
+def test_manifest_never_removes_files_outside_the_folder(name: str, tmp_path: Path) -> None:
     """The list may come from a foreign source: the folder of a package can be that of its conversion."""
     out = tmp_path / "out"
     out.mkdir()
@@ -64,7 +64,7 @@ def test_a_list_of_files_removes_nothing_elsewhere(name: str, tmp_path: Path) ->
 
 
 @pytest.mark.parametrize("text", ["[" * 100_000, "{", "[1]", '{"a": 1}', "\0"])
-def test_a_list_of_files_that_is_none_is_written_anew(text: str, tmp_path: Path) -> None:
+def test_damaged_manifest_is_replaced(text: str, tmp_path: Path) -> None:
     (tmp_path / MANIFEST).write_text(text, encoding="utf-8")
     write_files(tmp_path, {"a": b"1"})
     assert list(json.loads((tmp_path / MANIFEST).read_text(encoding="utf-8"))) == ["a"]
@@ -86,7 +86,7 @@ WORDS = (
 
 
 @pytest.mark.parametrize("word", WORDS)
-def test_a_word_means_itself_to_cmake(word: str, tmp_path: Path) -> None:
+def test_quoted_word_is_unchanged_by_cmake(word: str, tmp_path: Path) -> None:
     cmake = shutil.which("cmake")
     if cmake is None:
         pytest.skip("there is no cmake")
@@ -100,6 +100,6 @@ def test_a_word_means_itself_to_cmake(word: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "word", ["a;b", "a\nb", "a\0b", "[a", "a]", "$<1:a>", "a\\", ")\nexecute_process(COMMAND x", "a\x1b"]
 )
-def test_a_word_that_cmake_takes_apart_is_refused(word: str) -> None:
+def test_word_that_cmake_would_split_is_refused(word: str) -> None:
     with pytest.raises(UsageError, match="CMake does not allow"):
         cmake_word(word, PACKAGE)

@@ -75,7 +75,7 @@ def write(folder: Path, files: dict[str, str]) -> None:
         (folder / name).write_text(text, encoding="utf-8")
 
 
-def test_a_package_is_read_as_catkin_does(tmp_path: Path) -> None:
+def test_package_is_parsed_as_by_catkin(tmp_path: Path) -> None:
     write(tmp_path, FILES)
     package = read_package(tmp_path / "demo", "demo")
     assert package.executables() == ["hearer", "old", "talker"]
@@ -89,16 +89,14 @@ def test_a_package_is_read_as_catkin_does(tmp_path: Path) -> None:
     assert program.outside == ["PCL"]
 
 
-def test_a_file_of_plugins_may_have_several_libraries(tmp_path: Path) -> None:
+def test_plugin_file_with_several_libraries_is_read(tmp_path: Path) -> None:
     more = NODELETS.replace("demo/Filter", "demo/Other").replace("libdemo_core", "libother")
     write(tmp_path, FILES | {"demo/nodelets.xml": f'<?xml version="1.0"?>\n{NODELETS}\n{more}\n'})
     found = read_package(tmp_path / "demo", "demo").nodelets()
     assert {name: each.library for name, each in found.items()} == {"demo/Filter": "demo_core", "demo/Other": "other"}
 
 
-def test_headers_of_eigen_that_a_package_offers_are_those_of_its_users(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_eigen_headers_exported_by_a_package_reach_its_users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     eigen = tmp_path / "eigen3"
     eigen.mkdir()
     monkeypatch.setattr(packages, "EIGEN", str(eigen))
@@ -108,7 +106,7 @@ def test_headers_of_eigen_that_a_package_offers_are_those_of_its_users(
     assert eigen in program.includes
 
 
-def test_a_target_that_is_not_there_is_told(tmp_path: Path) -> None:
+def test_missing_target_is_reported(tmp_path: Path) -> None:
     write(tmp_path, FILES)
     package = read_package(tmp_path / "demo", "demo")
     known = Packages(tmp_path / "demo/src/talker.cpp", {})

@@ -47,7 +47,7 @@ def test_each_step_has_one_command() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("number", SHOWN)
-def test_the_command_does_it(
+def test_command_of_a_step_prints_the_text_of_the_page(
     number: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     shutil.copytree(ROOT / "examples/tank", tmp_path / "examples/tank")

@@ -31,7 +31,7 @@ def test_call_fails_when_its_server_is_stopped(tmp_path: Path) -> None:
         assert said_by(mission, "caller") == GONE
 
 
-def test_call_fails_when_its_own_application_is_to_end(tmp_path: Path) -> None:
+def test_call_fails_when_its_own_application_must_end(tmp_path: Path) -> None:
     with small_mission(tmp_path, SOURCES, LAUNCH) as mission:
         mission.run_for(2)
         mission.cfe.sb.transmit_msg(STOP_APP.packet(Application="CALLER"))

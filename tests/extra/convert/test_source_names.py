@@ -62,7 +62,7 @@ def test_parameters_of_the_launch_file_and_remaps() -> None:
     assert found('n.subscribe("in", 1, cb);', ("in", "/out"), ("~x", "y"))[0] == {"/out": True}
 
 
-def test_names_that_are_computed_are_told() -> None:
+def test_computed_names_are_reported() -> None:
     names = SourceNames(["n.advertise<A>(make_name(3), 1); n.subscribe(ops);"], {})
     assert names.used() == []
     assert names.open == ["advertise(make_name(3))"]

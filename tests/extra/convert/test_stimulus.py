@@ -25,19 +25,19 @@ def likeness(one: list[object], other: list[object], again: list[object] | None 
     return next(part for part in compared(*runs) if part.name == name)
 
 
-def test_what_is_repeated_counts_once_and_numbers_may_be_a_little_off() -> None:
+def test_repeated_values_count_once_and_numbers_within_tolerance_are_equal() -> None:
     assert likeness([1.0, 1.0, 2.0], [1.0, 2.000001, 2.0]).likeness is Likeness.EQUAL
     assert likeness([1.0, 2.0], [1.0, 2.001]).likeness is Likeness.DIFFERENT
     assert likeness([1, 2], [1, 3]).likeness is Likeness.DIFFERENT
     assert likeness(["a"], []).likeness is Likeness.DIFFERENT
 
 
-def test_a_node_that_goes_on_by_itself_may_be_seen_longer() -> None:
+def test_longer_or_shifted_sequence_is_shifted_not_different() -> None:
     assert likeness(list(range(10)), list(range(2, 13))).likeness is Likeness.SHIFTED
     assert likeness(list(range(10)), list(range(8, 18))).likeness is Likeness.DIFFERENT
 
 
-def test_what_two_runs_of_roscpp_do_not_agree_on_is_chance() -> None:
+def test_value_that_varies_between_two_runs_of_roscpp_is_chance() -> None:
     one, again, ours = ([{"x": x, "y": y} for y in "ab"] for x in (1, 2, 3))
     assert likeness(one, ours, again).likeness is Likeness.VARIES
     assert likeness(one, ours, again).example == ".x"
@@ -45,12 +45,12 @@ def test_what_two_runs_of_roscpp_do_not_agree_on_is_chance() -> None:
     assert likeness(one, ours, again).likeness is Likeness.DIFFERENT
 
 
-def test_an_end_counts() -> None:
+def test_end_of_a_node_is_compared() -> None:
     runs = [Outcome({}, failed) for failed in (None, None, True)]
     assert [(part.name, part.likeness) for part in compared(*runs)] == [("end", Likeness.DIFFERENT)]
 
 
-def test_a_seed_decides_all_that_a_driver_is_told() -> None:
+def test_seed_decides_the_whole_script_of_a_driver() -> None:
     told = script(1, SEEN, shipped(), Scene())
     assert told == script(1, SEEN, shipped(), Scene())
     assert told["steps"] != script(2, SEEN, shipped(), Scene())["steps"]
@@ -68,7 +68,7 @@ def test_times_count_from_the_first_step() -> None:
         assert outcome.parts["topic /t"] == [{"data": said}]
 
 
-def test_a_driver_that_fails_is_told_of() -> None:
+def test_failed_driver_is_reported() -> None:
     assert outcome_of(["ImportError: rospy"], [], shipped(), None).note == "the driver failed: ImportError: rospy"
 
 
@@ -88,7 +88,7 @@ def test_lines_of_the_console() -> None:
     ]
 
 
-def test_what_differs_is_explained_or_not() -> None:
+def test_difference_is_marked_as_explained_or_not() -> None:
     part = {"name": "log", "likeness": "different", "seen": 3, "example": ""}
     result = {"node": "a/b/c.cpp", "verdict": "different", "parts": [part]}
     assert next(rows([result], {})).verdict == "different"
@@ -98,7 +98,7 @@ def test_what_differs_is_explained_or_not() -> None:
 
 @needs_cpp
 @pytest.mark.slow
-def test_a_node_is_flown_beside_the_driver(tmp_path: Path) -> None:
+def test_node_flies_next_to_the_driver(tmp_path: Path) -> None:
     source = TWINS / "twin_services/src"
     environ = {"ROS_PACKAGE_PATH": str(TWINS)}
     program = programs_of([str(next(iter(sorted(source.glob("*.cpp")))))], environ)[0]

@@ -74,7 +74,7 @@ def fill(folder: Path, talker: str = "talker.py", arena: int = 65536, word: int 
     return str(folder)
 
 
-def test_a_message_that_does_not_fit_is_refused(mission: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_message_beyond_its_capacity_is_refused(mission: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["run", fill(mission), "--for", "3"]) == 1  # an event of the type ERROR
     shown = capfd.readouterr().out
     assert shown.count("/ear: refused 61 bytes on /pulse: no message of its type, or one beyond its capacities") == 1
@@ -84,7 +84,7 @@ def test_a_message_that_does_not_fit_is_refused(mission: Path, capfd: pytest.Cap
     assert heard == ["as long as it can", "as long as it can be", "short"]
 
 
-def test_what_a_node_writes_and_does_not_fit_ends_it(mission: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_text_beyond_its_capacity_ends_the_writing_node(mission: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert main(["run", fill(mission, "sender", word=12), "--for", "3"]) == 1
     shown = capfd.readouterr().out
     assert "heard 0 twelve signs" in shown
@@ -133,7 +133,7 @@ def test_the_folder_for_cfe_has_both(mission: Path, capfd: pytest.CaptureFixture
     assert "12 at most, 16 wanted" in capfd.readouterr().out
 
 
-def test_a_launch_file_by_itself_is_built_as_the_command_line_says(
+def test_launch_file_is_built_with_the_options_of_the_command_line(
     mission: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     fill(mission, "sender", word=12)

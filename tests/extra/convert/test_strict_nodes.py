@@ -13,7 +13,7 @@ from dev.roscfe.building import needs_cpp
 pytestmark = [needs_cpp, pytest.mark.slow]
 
 
-def test_they_say_all_kinds_of_things_without_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_strict_nodes_use_no_heap_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_PACKAGE_PATH", f"{NODES}:{TWINS}")
     run = cfepy.run(str(NODES / "strict/mission"), seconds=4)
     sent = [recorded(line, False) for line in run.console if line.startswith("[recorder] RECORD ")]

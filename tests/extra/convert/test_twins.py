@@ -12,7 +12,7 @@ pytestmark = [needs_cpp, pytest.mark.slow]
 
 
 @pytest.mark.parametrize("package", PACKAGES)
-def test_a_node_and_its_twin_publish_the_same(package: str) -> None:
+def test_node_and_its_twin_in_python_publish_the_same(package: str) -> None:
     compiled = fly(package, python=False)
     assert compiled.messages
     assert compiled.messages == fly(package, python=True).messages

@@ -95,7 +95,7 @@ def test_watch_sees_messages_without_a_subscriber_and_changes_no_trace(spec: Mis
     assert [int.from_bytes(each.data[:4], "little") for each in count["/points"]] == list(range(35))
 
 
-def test_subscriber_outside_hears_a_node_in_cpp(spec: MissionSpec) -> None:
+def test_external_subscriber_receives_from_a_node_in_cpp(spec: MissionSpec) -> None:
     """As rostopic and rosbridge subscribe: between two pieces of the run, with an outlet for a pipe."""
     with flown(spec) as mission:
         mission.run_for(2)
@@ -123,7 +123,7 @@ def test_subscriber_outside_hears_a_node_in_cpp(spec: MissionSpec) -> None:
         assert said_by(mission, "talker")[-1].endswith("0 subscribers")
 
 
-def test_subscriber_outside_may_be_there_before_the_node(spec: MissionSpec) -> None:
+def test_external_subscriber_may_subscribe_before_the_node_starts(spec: MissionSpec) -> None:
     with flown(spec) as mission:
         mission.run_for(0.5)
         ros, out = mission.processor.begin_ros(), WayOut()

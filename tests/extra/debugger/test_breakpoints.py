@@ -51,14 +51,14 @@ def hits(plan: RunPlan, *texts: str) -> list[str]:
         ("/words", None),
     ],
 )
-def test_one_that_stops_nowhere_says_so(plan: RunPlan, text: str, why: str | None) -> None:
+def test_breakpoint_that_never_matched_is_reported(plan: RunPlan, text: str, why: str | None) -> None:
     spec = plan.spec()
     (point,) = breakpoints([text], spec, lambda what: None)
     fly(plan, attachments=[point], spec=spec)
     assert point.missed == why
 
 
-def test_a_field_that_no_message_has_is_told(plan: RunPlan) -> None:
+def test_unknown_field_of_a_predicate_is_reported(plan: RunPlan) -> None:
     spec = plan.spec()
     (point,) = breakpoints(["msg.dat > 2"], spec, lambda what: None)
     fly(plan, attachments=[point], spec=spec)
@@ -79,7 +79,7 @@ def test_a_predicate(plan: RunPlan) -> None:
     assert found.endswith("/numbers of /talker: data: 3")
 
 
-def test_a_predicate_that_does_not_apply_to_a_message_does_not_hold(plan: RunPlan) -> None:
+def test_predicate_is_false_for_messages_without_its_fields(plan: RunPlan) -> None:
     assert len(hits(plan, "msg.data > 2")) == 2  # words are not numbers
 
 
@@ -99,7 +99,7 @@ def test_a_packet_by_msg_id_and_by_name(plan: RunPlan, text: str) -> None:
     assert found[0].startswith("CFE_EVS_LONG_EVENT_MSG (0x0808) of CFE_ES, 172 bytes: {'PacketID'")
 
 
-def test_a_command_is_told_from_others_with_its_msg_id() -> None:
+def test_command_is_distinguished_from_others_with_its_msg_id() -> None:
     plan = RunPlan(("capture",), seconds=1.2)
     assert len(hits(plan, "CFE_TIME_ONEHZ_CMD")) == len(hits(plan, "0x1811")) == 1
 
@@ -114,7 +114,7 @@ def test_a_command_is_told_from_others_with_its_msg_id() -> None:
         ("message.x > 3", "unknown name 'message'"),
     ],
 )
-def test_what_cannot_be_meant_is_told(text: str, why: str) -> None:
+def test_invalid_breakpoint_is_reported(text: str, why: str) -> None:
     spec: MissionSpec = read_mission("capture")
     with pytest.raises(UsageError, match="--break") as caught:
         breakpoints([text], spec, print)

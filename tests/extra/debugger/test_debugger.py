@@ -50,7 +50,7 @@ def debugged(plan: RunPlan, commands: str = "", **options: Any) -> tuple[str, Fl
 
 
 @BOTH
-def test_the_run_does_not_notice(plan: RunPlan, tasks: str) -> None:
+def test_debugger_does_not_change_the_run(plan: RunPlan, tasks: str) -> None:
     plain = fly(plan).trace
     plan = RunPlan(plan.words, command="node", seconds=3, tasks=tasks)
     for options in ({"stops": ["/numbers"]}, {"step": True}, {"from_ns": 700_000_000, "step": True}):
@@ -59,7 +59,7 @@ def test_the_run_does_not_notice(plan: RunPlan, tasks: str) -> None:
         assert said
 
 
-def test_a_stop_says_where_the_application_is(plan: RunPlan) -> None:
+def test_stop_shows_the_current_line_of_the_application(plan: RunPlan) -> None:
     said, _ = debugged(plan, "c\nc\nc\n", stops=["/numbers"])
     lines = said.splitlines()
     assert lines[0].startswith("0.")
@@ -68,7 +68,7 @@ def test_a_stop_says_where_the_application_is(plan: RunPlan) -> None:
     assert len(lines) == 6
 
 
-def test_steps_go_from_one_thing_to_the_next(plan: RunPlan) -> None:
+def test_step_continues_to_the_next_event(plan: RunPlan) -> None:
     said, _ = debugged(plan, "s\n\nstep\nc\nc\nc\n", stops=["msg.data == 0"])
     steps = [line.split(maxsplit=1)[1] for line in said.splitlines() if line[0].isdigit()]
     assert steps[1] == "COUNTER/COUNTER.numbers.1: goes on"
@@ -82,10 +82,10 @@ def test_tasks_pipes_where_and_help(plan: RunPlan) -> None:
     assert "CFE_TBL (task" in said
     assert "TBL_CMD_PIPE" in said
     assert said.count("publisher.publish(number)") == 2
-    assert "go on to the next breakpoint" in said
+    assert "continue to the next breakpoint" in said
 
 
-def test_quitting_ends_the_run(plan: RunPlan) -> None:
+def test_quit_ends_the_run(plan: RunPlan) -> None:
     ended: list[bool] = []
     said, _ = debugged(plan, "q\n", stops=["/numbers"], on_quit=lambda: ended.append(True))
     assert ended == [True]
@@ -105,13 +105,13 @@ def test_pdb_at_a_stop_of_another_task_waits_for_the_application(plan: RunPlan) 
     assert "NameError: name 'missing' is not defined" in said
 
 
-def test_pdb_where_an_exception_ends_the_application(plan: RunPlan) -> None:
+def test_pdb_opens_where_an_exception_ends_a_node(plan: RunPlan) -> None:
     said, _ = debugged(plan, "p number\nq\n", app="COUNTER", stops=["topic == '/nothing'"])
     assert "NameError: name 'missing' is not defined" in said
     assert said.rstrip().endswith("(Pdb) 2\n(Pdb)")
 
 
-def test_pdb_where_an_exception_ends_a_cfe_app(tmp_path: Path) -> None:
+def test_pdb_opens_where_an_exception_ends_a_cfe_app(tmp_path: Path) -> None:
     (tmp_path / "faulty.py").write_text("def main(cfe):\n    height = 0\n    return 1 / height\n", encoding="utf-8")
     (tmp_path / "startup.scr").write_text("CFE_APP, faulty, main, FAULTY, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1, schedule=Schedule.parse("random:1"))

@@ -149,7 +149,7 @@ def walked(plan: RunPlan, steps: int, seed: int) -> Walk:
     return walk
 
 
-def test_moments_are_the_same_again(plan: RunPlan) -> None:
+def test_moments_are_reproduced(plan: RunPlan) -> None:
     assert walked(plan, 8, 1).seen_again > 1
 
 
@@ -161,7 +161,7 @@ def test_hundreds_of_steps_forward_and_back_end_in_equal_states(plan: RunPlan) -
 
 
 @BOTH
-def test_what_was_seen_forward_is_seen_backward(plan: RunPlan, tasks: str) -> None:
+def test_step_back_shows_the_moment_of_the_step_forward(plan: RunPlan, tasks: str) -> None:
     plan = RunPlan(plan.words, command="node", seconds=1.2, tasks=tasks)
     said, _, flights = journey_of(plan, "s\ns\nb\nb\nq\n", Journey(), stops=["msg.data == 1"])
     first, second, third, again, stop = times(said)
@@ -181,7 +181,7 @@ def test_back_to_the_last_breakpoint(plan: RunPlan) -> None:
     assert flown.interrupted is False
 
 
-def test_back_to_what_held_from_the_end(plan: RunPlan) -> None:
+def test_backward_search_finds_the_last_match_from_the_end(plan: RunPlan) -> None:
     said, flown, _ = journey_of(plan, "bt state == 4\nw\nc\n", Journey(asks_at_end=True))
     end, held, again = times(said)
     assert end == again
@@ -191,7 +191,7 @@ def test_back_to_what_held_from_the_end(plan: RunPlan) -> None:
 
 
 @pytest.mark.slow
-def test_the_first_flight_looks_for_the_last_time(plan: RunPlan) -> None:
+def test_first_flight_finds_the_last_match(plan: RunPlan) -> None:
     said, _, flights = journey_of(plan, "q\n", Journey(back_to="msg.data == 2"))
     assert times(said)[0].endswith("/numbers of /counter: data: 2")
     assert flights == 2
@@ -217,7 +217,7 @@ def test_lines_of_a_task_backwards(plan: RunPlan) -> None:
     assert flights == 1 + 2 + 2 + 2
 
 
-def test_without_a_journey_there_is_no_way_back(plan: RunPlan) -> None:
+def test_step_back_is_refused_without_a_journey(plan: RunPlan) -> None:
     spec, stream = plan.spec(), io.StringIO()
     debugger = Debugger(
         spec, commands=io.StringIO("b\nrc\nbt /numbers\nwhat\nc\n"), stream=stream, stops=["msg.data == 0"]
@@ -228,12 +228,12 @@ def test_without_a_journey_there_is_no_way_back(plan: RunPlan) -> None:
 
 
 @pytest.mark.parametrize("text", ["launch() == 3", "x := 3", "state ==", "no_such_packet"])
-def test_what_may_change_the_run_or_means_nothing_is_refused(plan: RunPlan, text: str) -> None:
+def test_invalid_or_state_changing_condition_is_refused(plan: RunPlan, text: str) -> None:
     with pytest.raises(UsageError):
         finders(text, plan.spec(), lambda what: None)
 
 
-def test_a_condition_does_not_hold_where_its_names_are_not_known() -> None:
+def test_condition_with_unknown_names_is_false() -> None:
     assert VariableCondition("STEPS == 500 and len('abc') == 3").holds(sys._getframe())
     assert not VariableCondition("there == 3").holds(sys._getframe())
     assert not VariableCondition("STEPS == 500").holds(None)
@@ -245,7 +245,7 @@ def test_the_moment_before() -> None:
     assert RunMoment(5, finds=1, text="/a").before() == RunMoment(5)
 
 
-def test_a_search_ends_at_its_limit() -> None:
+def test_search_ends_at_its_limit() -> None:
     journey = Journey()
     journey.look_for("", LineMoment(3, 9))
     journey.finds(LineMoment(3, 4))

@@ -61,7 +61,7 @@ class Backwards:
     [Inline(), Backwards(), Processes(1), pytest.param(Processes(2), marks=pytest.mark.slow)],
     ids=["inline", "back", "1", "2"],
 )
-def test_verdicts_come_in_order_whoever_runs(crew: Crew) -> None:
+def test_verdicts_arrive_in_order_with_any_crew(crew: Crew) -> None:
     trial = FakeTrial(fails=(3, 40), raises=(5,))
     told, tally = run(trial, 100, crew)
     assert [number for number, _ in told] == list(range(100))
@@ -71,7 +71,7 @@ def test_verdicts_come_in_order_whoever_runs(crew: Crew) -> None:
     assert tally == Tally(done=100, failed=2, troubled=1)
 
 
-def test_progress_hears_of_each_schedule_and_of_the_end() -> None:
+def test_progress_is_notified_of_each_schedule_and_the_end() -> None:
     heard: list[bool | None] = []
 
     class Heard:
@@ -86,7 +86,7 @@ def test_progress_hears_of_each_schedule_and_of_the_end() -> None:
     assert heard == [False, True, True, False, None]
 
 
-def test_more_schedules_than_may_be_ahead() -> None:
+def test_more_schedules_than_the_lookahead_are_judged() -> None:
     told, tally = run(FakeTrial(), AHEAD + 10, Backwards())
     assert tally.done == len(told) == AHEAD + 10
 
@@ -96,7 +96,7 @@ def test_more_schedules_than_may_be_ahead() -> None:
     [Inline(), Backwards(), pytest.param(Processes(2), marks=pytest.mark.slow)],
     ids=["inline", "back", "2"],
 )
-def test_the_first_failure_in_order_ends_it(crew: Crew) -> None:
+def test_first_failure_in_order_ends_the_campaign(crew: Crew) -> None:
     trial = FakeTrial(fails=(29, 30, 31, 5000))
     told: list[int] = []
 
@@ -140,7 +140,7 @@ def test_a_mission_that_cannot_fly_ends_the_campaign() -> None:
 
 
 @pytest.mark.slow
-def test_what_ends_its_process_every_time_is_a_failure() -> None:
+def test_schedule_that_always_kills_its_process_is_a_failure() -> None:
     told, tally = run(FakeTrial(exits=(4,), killed=(11,), fails=(12,)), 40, Processes(2))
     assert [number for number, _ in told] == list(range(40))
     failures = {number: verdict.failures[0] for number, verdict in told if verdict.failed}
@@ -152,7 +152,7 @@ def test_what_ends_its_process_every_time_is_a_failure() -> None:
     assert tally == Tally(done=40, failed=3)
 
 
-def test_a_schedule_is_blamed_for_two_deaths_alone_and_not_for_those_of_others() -> None:
+def test_schedule_is_blamed_after_two_deaths_of_its_own() -> None:
     crew = Processes(1)
 
     def bury(*numbers: int) -> list[int]:
@@ -169,7 +169,7 @@ def test_a_schedule_is_blamed_for_two_deaths_alone_and_not_for_those_of_others()
 
 
 @pytest.mark.slow
-def test_what_ends_its_process_once_is_tried_again(tmp_path: Path) -> None:
+def test_schedule_that_kills_its_process_once_is_tried_again(tmp_path: Path) -> None:
     notes, log = tmp_path / "notes", tmp_path / "log"
     notes.mkdir()
     told, tally = run(FakeTrial(exits=(0,), killed=(20,), once=notes, log=log), 40, Processes(2))
@@ -179,7 +179,7 @@ def test_what_ends_its_process_once_is_tried_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_what_never_ends_is_a_failure_that_says_where(tmp_path: Path) -> None:
+def test_schedule_that_never_ends_is_a_failure_with_its_place(tmp_path: Path) -> None:
     told, tally = run(FakeTrial(hangs=(3,)), 6, Processes(2, longest_s=0.5))
     assert [number for number, _ in told] == list(range(6))
     failure = told[3][1].failures[0]
@@ -189,7 +189,7 @@ def test_what_never_ends_is_a_failure_that_says_where(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_worker_that_is_killed_costs_nothing() -> None:
+def test_killed_worker_loses_no_verdict() -> None:
     """One is killed in whatever it does, and another one when all schedules that were out then have their verdicts."""
     crew, search = Processes(2), Seeds()
     told: list[int] = []
@@ -208,7 +208,7 @@ def test_a_worker_that_is_killed_costs_nothing() -> None:
     assert tally == Tally(done=drawn[-1] + 1)
 
 
-def test_workers_that_do_not_start(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_worker_that_does_not_start_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("sys.executable", "/bin/false")
     with pytest.raises(UsageError, match="worker processes do not start: ended with exit status 1"):
         run(FakeTrial(), 3, Processes(1))
@@ -224,7 +224,7 @@ def test_workers_have_a_hash_seed(hash_seed: str | None, monkeypatch: pytest.Mon
 
 
 @pytest.mark.slow
-def test_workers_are_gone_afterwards() -> None:
+def test_workers_are_gone_after_the_campaign() -> None:
     crew = Processes(2)
     pids: set[int] = set()
 
@@ -240,7 +240,7 @@ def test_workers_are_gone_afterwards() -> None:
 
 
 @pytest.mark.parametrize("jobs", [0, pytest.param(1, marks=pytest.mark.slow)])
-def test_a_second_run_does_only_what_is_missing(tmp_path: Path, jobs: int) -> None:
+def test_second_run_judges_only_missing_schedules(tmp_path: Path, jobs: int) -> None:
     def crew() -> Crew:
         return Processes(jobs) if jobs else Inline()
 
@@ -257,7 +257,7 @@ def test_a_second_run_does_only_what_is_missing(tmp_path: Path, jobs: int) -> No
     assert sorted(number for number, _ in read_results(path)[1]) == list(range(30))
 
 
-def test_resuming_more_than_may_be_ahead(tmp_path: Path) -> None:
+def test_more_schedules_than_the_lookahead_are_resumed(tmp_path: Path) -> None:
     with_file = ResultsFile(tmp_path / "results", IDENTITY)
     for number in range(AHEAD + 50):
         with_file.append(number, Verdict(Schedule("random", number)).to_dict())
@@ -268,7 +268,7 @@ def test_resuming_more_than_may_be_ahead(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_ctrl_c_keeps_what_was_found(tmp_path: Path) -> None:
+def test_ctrl_c_keeps_the_verdicts_so_far(tmp_path: Path) -> None:
     path = tmp_path / "results"
 
     def interrupt(number: int, verdict: Verdict) -> None:

@@ -84,7 +84,7 @@ def check(told: list[tuple[int, Verdict]]) -> None:
 
 @settings(max_examples=30)
 @given(st.integers(0, 2**32), st.integers(1, 60))
-def test_every_seed_counts_once_however_often_it_is_broken_off(seed: int, count: int) -> None:
+def test_every_seed_counts_once_after_interruptions(seed: int, count: int) -> None:
     random, flown = Random(seed), Counter[int]()
     with TemporaryDirectory() as folder:
         path = Path(folder, "results")
@@ -183,7 +183,7 @@ class Client:
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_a_cluster_whose_workers_die_loses_and_doubles_nothing(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cluster_with_dying_workers_loses_and_duplicates_no_verdict(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     comm = pytest.importorskip("distributed").comm
     random = Random(seed)
     fake = SimpleNamespace(

@@ -49,7 +49,7 @@ def told(
     return cause_of(Evidence(failure, moves, rows, list(map(deed, failing)), list(map(deed, usual)), names))
 
 
-def test_without_deeds_nothing_is_told() -> None:
+def test_cause_is_empty_without_deeds() -> None:
     assert told([]) == ""
 
 
@@ -60,12 +60,16 @@ LATE = Failure("deadline", "/pose", "at_least_every 100 ms was missed", 500 * MS
 @pytest.mark.parametrize(
     ("ran", "usual", "cause"),
     [
-        ({"A": 40, "B": 60}, {"A": 40, "B": 5}, "B ran for 60 ms of the 100 ms before it, under fifo for 5 ms"),
+        (
+            {"A": 40, "B": 60},
+            {"A": 40, "B": 5},
+            "B ran for 60 ms of the 100 ms before the missed deadline; under fifo it runs for 5 ms",
+        ),
         ({"A": 40}, {"A": 31}, ""),
         ({}, {}, ""),
     ],
 )
-def test_what_is_late_has_waited_for_who_ran_longer(ran: dict[str, int], usual: dict[str, int], cause: str) -> None:
+def test_late_task_names_the_task_that_ran_longer(ran: dict[str, int], usual: dict[str, int], cause: str) -> None:
     times = [Counter({task: ms * MS for task, ms in each.items()}) for each in (ran, usual)]
     assert cause_of(Evidence(LATE, NO_MOVES, [], [], [], {}, *times)) == cause
 
@@ -99,7 +103,7 @@ def test_an_update_is_lost_between_a_read_and_a_write() -> None:
         "A:R1 A>B B:R2 A:W2",
     ],
 )
-def test_no_update_is_lost(text: str) -> None:
+def test_cause_is_empty_when_no_update_is_lost(text: str) -> None:
     assert "lost" not in told(accesses(text))
 
 
@@ -118,16 +122,16 @@ def test_two_accesses_are_torn_by_a_third(text: str, cause: str) -> None:
     assert told(accesses(text)) == cause
 
 
-def test_an_order_is_told_when_it_is_that_of_one_variable_only() -> None:
+def test_cause_names_the_order_of_accesses_when_one_variable_explains_it() -> None:
     failing = [f"A|{GIVES_WAY}|B|0", f"B|{READS}|o.x|2", f"A|{WRITES}|o.x|1"]
     usual = [failing[2], failing[1]]
-    assert told(failing, usual) == "B read o.x at a.py:2 before A wrote it at a.py:1; under fifo after that"
+    assert told(failing, usual) == "B read o.x at a.py:2 before A wrote it at a.py:1; under fifo the order is reversed"
     assert told(failing[1:], usual) == ""  # no switch kept A back
     more = [f"B|{READS}|o.y|2", f"A|{WRITES}|o.y|1"]
     assert told([*failing, *more], [*usual, more[1], more[0]]) == ""
 
 
-def test_what_a_line_had_read_was_changed_when_it_raised() -> None:
+def test_cause_of_an_exception_names_the_write_after_its_read() -> None:
     failing = [f"A|{READS}|o.x|7", f"A|{GIVES_WAY}|B|0", f"B|{WRITES}|o.x|2"]
     raised = Failure(RAISED, "a", "RuntimeError: changed (a.py:7)", task="A")
     cause = "B wrote o.x at a.py:2, between A's read at a.py:7 and the exception there"
@@ -136,10 +140,10 @@ def test_what_a_line_had_read_was_changed_when_it_raised() -> None:
     assert told(failing, failure=Failure(RAISED, "b", "RuntimeError: changed (a.py:7)", task="B")) == ""
 
 
-def test_a_notification_comes_before_the_wait() -> None:
+def test_cause_names_a_notify_before_its_wait() -> None:
     early = [f"B|{NOTIFIES}|c|21|0", f"A|{AWAITS}|c|14"]
     late = [f"A|{AWAITS}|c|14", f"B|{NOTIFIES}|c|21|1", f"A|{WAKES}|c|14"]
-    cause = "B's notify at a.py:21 came before A's wait at a.py:14: nobody waited then"
+    cause = "B's notify at a.py:21 came before A's wait at a.py:14: no task was waiting"
     assert told(early, late) == cause
     assert told([*early, f"A|{GIVES_UP}|c|14"], late) == cause
     assert told([*early, f"A|{WAKES}|c|14"], late) == ""  # it did not wait in vain
@@ -149,31 +153,32 @@ def test_a_notification_comes_before_the_wait() -> None:
 def test_a_message_is_lost_that_is_not_lost_under_fifo() -> None:
     lost = f"A|{LOSES}|/a|7|B, 2"
     assert told([lost]).startswith(
-        "a message /a was lost that A sent at a.py:7: the pipe of B was full, with 2 messages"
+        "a message /a that A sent at a.py:7 was lost: the pipe of B was full, with 2 messages"
     )
     assert told([lost], [lost]) == ""
 
 
-def test_messages_come_in_another_order_to_an_application_of_the_moves() -> None:
+def test_cause_names_a_changed_order_of_messages_to_a_task_of_the_moves() -> None:
     failing, usual = [f"A|{GETS}|/b|1|P", f"A|{GETS}|/a|1|Q"], [f"A|{GETS}|/a|1|Q", f"A|{GETS}|/b|1|P"]
     moves = [moved("A", "B"), moved("C", "A")]
     assert told(failing, usual, moves=moves) == "A got /b before /a; under fifo it gets /a first"
     assert told(failing, usual, moves=[moved("B", "C"), moved("B", "C")]) == ""
 
 
-def test_a_circle_of_waits_is_told_with_the_names_of_locks() -> None:
+def test_cause_names_the_locks_of_a_deadlock() -> None:
     text = "A waits for lock 5 of A, held by B; B waits for mutex CARD, held by A"
     circle = Failure(DEADLOCK, "A", text)
     assert (
-        told([], failure=circle) == "A has mutex CARD and wants left (a.py:3); B has left (a.py:3) and wants mutex CARD"
+        told([], failure=circle)
+        == "A holds mutex CARD and waits for left (a.py:3); B holds left (a.py:3) and waits for mutex CARD"
     )
     ended = Failure(DEADLOCK, "A", "A waits for lock 5 of A, held by B")
     assert told([], failure=ended) == ""  # the holder has ended: there is no circle
 
 
-def test_a_single_switch_is_told_when_there_is_no_other() -> None:
+def test_cause_names_the_only_switch() -> None:
     rows = [Row(0, "A", AT, "a.py:7: go()"), Row(0, "A", PREEMPTED, "B")]
-    cause = "B got in while A was at a.py:7; without that one switch it does not fail"
+    cause = "B preempted A at a.py:7; without this preemption the run does not fail"
     assert told([], moves=[moved("A", "B")], rows=rows) == cause
     assert told([], moves=[moved("A", "B"), moved("B", "A")], rows=rows) == ""
     assert told([], moves=[moved("A", "B")], rows=rows[1:]) == ""

@@ -87,7 +87,7 @@ def until(last: int, cluster_event: Callable[[], None]) -> tuple[list[int], Call
 
 
 @pytest.mark.slow
-def test_a_cluster_gives_the_verdicts_of_this_computer(cluster: LoopbackCluster) -> None:
+def test_cluster_gives_the_same_verdicts_as_the_local_computer(cluster: LoopbackCluster) -> None:
     trial = FakeTrial(fails=(3, 40), raises=(5,), exits=(7,))
     told: list[NumberedVerdict] = []
     tally = Campaign(trial, Seeds(), 60, Cluster(cluster.address)).run(lambda *result: told.append(result))
@@ -111,7 +111,7 @@ def test_a_worker_killed_in_the_middle(cluster: LoopbackCluster, tmp_path: Path)
 
 
 @pytest.mark.slow
-def test_a_worker_that_comes_late_works_too(cluster: LoopbackCluster) -> None:
+def test_late_worker_takes_part(cluster: LoopbackCluster) -> None:
     """The only workers left in the end are those that came after the campaign had begun."""
 
     def replace_all() -> None:
@@ -126,7 +126,7 @@ def test_a_worker_that_comes_late_works_too(cluster: LoopbackCluster) -> None:
 
 
 @pytest.mark.slow
-def test_a_lost_scheduler_keeps_what_was_found(cluster: LoopbackCluster, tmp_path: Path) -> None:
+def test_lost_scheduler_keeps_the_verdicts_so_far(cluster: LoopbackCluster, tmp_path: Path) -> None:
     told, on_verdict = until(100_000, lambda: None)
 
     def lose_it(number: int, verdict: Verdict) -> None:
@@ -148,7 +148,7 @@ def test_a_lost_scheduler_keeps_what_was_found(cluster: LoopbackCluster, tmp_pat
 
 
 @pytest.mark.slow
-def test_a_mission_flies_where_none_of_its_files_are(cluster: LoopbackCluster, tmp_path: Path) -> None:
+def test_mission_is_shipped_to_workers_without_its_files(cluster: LoopbackCluster, tmp_path: Path) -> None:
     """The workers get the mission after it was removed here.
 
     Its verdicts do not contain the path where it was unpacked.
@@ -189,7 +189,7 @@ def open_ports() -> list[tuple[str, int]]:
 
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="Linux tells the ports")
-def test_a_cluster_of_this_computer_opens_no_well_known_port() -> None:
+def test_local_cluster_opens_no_well_known_port() -> None:
     first_of_any = int(Path("/proc/sys/net/ipv4/ip_local_port_range").read_text(encoding="utf-8").split()[0])
     before = set(open_ports())
     environ = dict(os.environ)
@@ -222,7 +222,7 @@ def test_a_cluster_without_workers(deserted: LoopbackCluster, monkeypatch: pytes
 
 
 @pytest.mark.slow
-def test_a_cluster_that_loses_all_its_workers(
+def test_loss_of_all_workers_is_reported_and_keeps_the_verdicts(
     cluster: LoopbackCluster, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("cfepy.extra.exploration.worker_pools.PATIENCE_NS", NS_PER_S)
@@ -248,7 +248,7 @@ def test_without_dask(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("address", ["local:", "local:0", "local:many"])
-def test_a_number_of_processes_that_is_none(address: str) -> None:
+def test_invalid_number_of_processes_is_refused(address: str) -> None:
     with pytest.raises(
         UsageError, match=f"^--cluster: invalid number of processes in {address}; write for instance local:4"
     ):
@@ -256,7 +256,7 @@ def test_a_number_of_processes_that_is_none(address: str) -> None:
 
 
 @pytest.mark.parametrize("address", ["nonsense://x", "tcp://127.0.0.1:notaport"])
-def test_an_address_that_is_none(address: str) -> None:
+def test_invalid_scheduler_address_is_refused(address: str) -> None:
     before = set(threading.enumerate())
     with pytest.raises(UsageError, match=f"--cluster: no dask scheduler answers at {address}"):
         Cluster(address)

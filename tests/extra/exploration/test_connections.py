@@ -56,7 +56,7 @@ def explored(plan: RunPlan, policy: str, seeds: int, connect_s: float | None = 0
 
 
 @pytest.mark.slow
-def test_a_message_that_nobody_was_there_for_is_found_and_shrunk(plan: RunPlan) -> None:
+def test_message_lost_by_a_late_connection_is_found_and_shrunk(plan: RunPlan) -> None:
     report = explored(plan, "random", 10)
     (told,) = report.findings
     assert "ARM" in told.finding.failure.title
@@ -95,7 +95,7 @@ def test_every_policy_draws_delays(plan: RunPlan, policy: str, seeds: int) -> No
 
 
 @pytest.mark.slow
-def test_connections_are_as_the_mission_has_them_when_nobody_asks(plan: RunPlan) -> None:
+def test_connections_keep_the_delays_of_the_mission_by_default(plan: RunPlan) -> None:
     assert explored(plan, "random", 2, connect_s=None).findings == []
 
 

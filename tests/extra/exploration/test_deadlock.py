@@ -140,7 +140,7 @@ def test_a_lost_wake_up_is_found(order: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_policy_that_decided_confirms_it(tmp_path: Path) -> None:
+def test_deciding_policy_reproduces_the_failures(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     failed = first_failed(found)
     verdict = found.fly(Schedule("at"), policy=failed.schedule.policy()).verdict
@@ -148,7 +148,7 @@ def test_the_policy_that_decided_confirms_it(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_forked_flight_finds_it_as_well(tmp_path: Path) -> None:
+def test_forked_flight_finds_the_lost_wake_up(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     schedules = [Schedule.parse(f"pct:{seed}:2:60:from=540ms") for seed in range(40)]
     failing = next(schedule for schedule in schedules if found.run(schedule).failed)
@@ -158,7 +158,7 @@ def test_a_forked_flight_finds_it_as_well(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_shrinks_to_one_preemption(tmp_path: Path) -> None:
+def test_lost_wake_up_shrinks_to_one_preemption(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     failure = found.run(Schedule("random", 0)).failures[0]
     shrunk = Shrinker(found, (Schedule("random", 0),), failure.group, 80).run()
@@ -169,7 +169,7 @@ def test_it_shrinks_to_one_preemption(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_says_how_long_others_wait(tmp_path: Path) -> None:
+def test_text_of_a_stuck_task_has_its_longest_wait_under_fifo(tmp_path: Path) -> None:
     found = trial(tmp_path, missions.LOST_WAKE_UP)
     (failure,) = first_failed(found).failures
     assert failure.text.endswith("; under fifo the longest wait there is 0.000002 s")
@@ -185,7 +185,7 @@ def test_without_waits_of_the_default_schedule_nothing_is_stuck(tmp_path: Path) 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("order", ["(consume, produce)", "(produce, consume)"])
-def test_one_that_checks_under_the_lock_is_not(order: str, tmp_path: Path) -> None:
+def test_consumer_that_checks_under_the_lock_is_not_stuck(order: str, tmp_path: Path) -> None:
     source = missions.LOST_WAKE_UP.replace("(consume, produce)", order)
     for old, new in CHECKED:
         assert source.count(old) == 1
@@ -197,21 +197,21 @@ def test_one_that_checks_under_the_lock_is_not(order: str, tmp_path: Path) -> No
 @pytest.mark.parametrize(
     "source", [POOL, EITHER, LATER, AFTER_THE_END], ids=["idle workers", "one of equals", "just later", "after the end"]
 )
-def test_who_waits_by_right_is_not(source: str, tmp_path: Path) -> None:
+def test_legitimate_waiter_is_not_stuck(source: str, tmp_path: Path) -> None:
     assert kinds(trial(tmp_path, source)) == set()
 
 
-def test_a_deadlock_is_told_as_one(tmp_path: Path) -> None:
+def test_deadlock_is_not_reported_as_stuck(tmp_path: Path) -> None:
     assert kinds(trial(tmp_path, missions.LOCK_ORDER)) == {DEADLOCK}
 
 
 @pytest.mark.parametrize("source", [POOL, EITHER], ids=["idle workers", "one of equals"])
-def test_who_waits_by_right_is_not_in_one_schedule(source: str, tmp_path: Path) -> None:
+def test_legitimate_waiter_is_not_stuck_in_a_single_schedule(source: str, tmp_path: Path) -> None:
     assert not trial(tmp_path, source).run(Schedule("random", 0)).failed
 
 
 @pytest.mark.parametrize("command", [RUN, NODE])
-def test_the_run_that_tells_what_is_usual_takes_twice_the_time(command: str, tmp_path: Path) -> None:
+def test_reference_run_of_usual_waits_takes_twice_the_time(command: str, tmp_path: Path) -> None:
     folder = missions.write(tmp_path, {"IDLE": "import threading\nthreading.Event().wait()\n"})
     plan = RunPlan((str(folder if command == RUN else folder / "idle.py"),), command, seconds=0.2)
     (left,) = waits_of(plan, 900_000_000, None).left
@@ -219,12 +219,12 @@ def test_the_run_that_tells_what_is_usual_takes_twice_the_time(command: str, tmp
     assert left.since_ns + left.idle_ns == 1_800_000_000
 
 
-def test_who_waits_for_a_pipe_is_idle(tmp_path: Path) -> None:
+def test_task_that_waits_for_a_pipe_is_idle(tmp_path: Path) -> None:
     plan = RunPlan((str(missions.write(tmp_path, {"IDLE": "import rospy\nrospy.init_node('a')\nrospy.spin()\n"})),))
     assert waits_of(plan, 500_000_000, None).left == ()
 
 
-def test_an_application_that_waits_for_a_pipe_is_idle_and_one_that_waits_for_a_semaphore_is_not(tmp_path: Path) -> None:
+def test_application_is_idle_at_a_pipe_but_not_at_a_semaphore(tmp_path: Path) -> None:
     app = "def Pipe(cfe):\n    cfe.sb.receive_buffer(cfe.sb.create_pipe(4, 'WORK'))\n"
     app += "def Semaphore(cfe):\n    cfe.os.bin_sem_take(cfe.os.bin_sem_create('WORK', 0))\n"
     (tmp_path / "idle.py").write_text(app, encoding="utf-8")
@@ -234,7 +234,7 @@ def test_an_application_that_waits_for_a_pipe_is_idle_and_one_that_waits_for_a_s
     assert left.place[0] == "SEMAPHORE"
 
 
-def test_who_waits_for_a_message_that_it_asked_for_is_not_idle(tmp_path: Path) -> None:
+def test_task_in_wait_for_message_is_not_idle(tmp_path: Path) -> None:
     source = "import rospy\nfrom std_msgs.msg import Int32\nrospy.init_node('a')\nrospy.wait_for_message('b', Int32)\n"
     plan = RunPlan((str(missions.write(tmp_path, {"ASKS": source})),))
     (left,) = waits_of(plan, 500_000_000, None).left
@@ -259,5 +259,5 @@ def waits(longest_ns: int | None, *idle_ns: int) -> Waits:
         (SHORTEST_NS, None, 1, 0),
     ],
 )
-def test_when_it_is_long_enough(idle_ns: int, longest_ns: int | None, usual: int, count: int) -> None:
+def test_wait_is_stuck_only_beyond_its_limit(idle_ns: int, longest_ns: int | None, usual: int, count: int) -> None:
     assert len(stuck(waits(longest_ns, idle_ns), waits(longest_ns, *[idle_ns] * usual))) == count

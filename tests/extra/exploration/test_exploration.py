@@ -39,7 +39,7 @@ def options() -> argparse.Namespace:
     return parser.parse_args(["explore", "capture"])
 
 
-def test_the_command_has_its_defaults() -> None:
+def test_command_has_the_defaults_of_the_expedition() -> None:
     parsed, usual = options(), Expedition(PLAN)
     assert parsed.shrink is None
     for name in (
@@ -60,7 +60,7 @@ def test_the_command_has_its_defaults() -> None:
 
 
 @pytest.mark.slow
-def test_a_failure_is_shrunk_and_told_with_its_timeline() -> None:
+def test_failure_is_shrunk_and_reported_with_its_timeline() -> None:
     report = Expedition(PLAN, seeds=8, jobs=1, until_failure=True).run()
     told = report.findings[0]
     assert "WHEELS" in told.finding.failure.title
@@ -70,7 +70,7 @@ def test_a_failure_is_shrunk_and_told_with_its_timeline() -> None:
     assert report.to_dict()["failures"][0]["shrunk"]["schedule"] == str(told.shrunk.verdict.schedule)
 
 
-def test_a_time_that_cannot_be_is_told_by_the_option() -> None:
+def test_invalid_time_is_reported_with_its_option() -> None:
     with pytest.raises(UsageError, match="--hold"):
         Expedition(PLAN, hold_s=-1).run()
 
@@ -81,14 +81,14 @@ def explored(folder: Path, source: str) -> Report:
 
 
 @pytest.mark.slow
-def test_a_mission_that_goes_another_way_in_another_process_is_not_explored(tmp_path: Path) -> None:
+def test_nondeterministic_mission_is_not_explored(tmp_path: Path) -> None:
     report = explored(tmp_path, BY_ADDRESS)
     assert (report.is_steady, report.unsteady, report.tally.done) == (False, Schedule(), 0)
     assert report.to_dict()["deterministic"] is False
 
 
 @pytest.mark.slow
-def test_a_failure_of_which_only_the_text_differs_is_shrunk_and_the_leak_is_told(tmp_path: Path) -> None:
+def test_failure_with_varying_text_is_shrunk_and_reported_as_nondeterministic(tmp_path: Path) -> None:
     report = explored(tmp_path, TEXT_BY_ADDRESS)
     (told,) = report.findings
     assert (told.repeats, told.is_steady) == (True, False)
@@ -97,12 +97,12 @@ def test_a_failure_of_which_only_the_text_differs_is_shrunk_and_the_leak_is_told
 
 
 @pytest.mark.slow
-def test_a_mission_that_is_deterministic_is_told_as_such() -> None:
+def test_deterministic_mission_is_not_reported_as_nondeterministic() -> None:
     assert Expedition(PLAN, seeds=8, jobs=1, until_failure=True).run().unsteady is None
 
 
 @pytest.mark.slow
-def test_a_failure_that_does_not_come_again_is_none_of_the_schedule(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failure_that_does_not_repeat_is_reported_as_seen_once(monkeypatch: pytest.MonkeyPatch) -> None:
     fly = Trial.fly
     flown: list[Schedule] = []
 
@@ -124,19 +124,19 @@ def test_a_failure_that_does_not_come_again_is_none_of_the_schedule(monkeypatch:
 
 
 @pytest.mark.slow
-def test_it_may_begin_when_the_mission_is_operational() -> None:
+def test_exploration_may_begin_when_the_mission_is_operational() -> None:
     report = Expedition(PLAN, seeds=3, policy="random", jobs=1, from_s=FROM_OPERATIONAL, shrink=0).run()
     assert report.tally.done == 3
     assert {told.finding.verdict.schedule.from_ns for told in report.findings} == {600_000_000}
 
 
-def test_a_mission_that_never_is_operational_has_no_such_time() -> None:
+def test_begin_at_operational_is_refused_when_the_mission_never_is() -> None:
     plan = replace(PLAN, seconds=0.3)
     with pytest.raises(UsageError, match="--from: the mission does not become OPERATIONAL"):
         Expedition(plan, from_s=FROM_OPERATIONAL).run()
 
 
 @pytest.mark.slow
-def test_a_budget_ends_it(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_time_budget_ends_the_exploration(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cfepy.rtos.Stopwatch.elapsed_ns", lambda self: 2_000_000_000)
     assert Expedition(PLAN, seeds=1000, budget_s=1.0, jobs=1, shrink=0).run().tally.done == 1

@@ -23,7 +23,7 @@ def looked(*texts: str, tasks: int = 4) -> Breadth:
     return found
 
 
-def test_the_bound_is_that_of_pct() -> None:
+def test_bound_matches_pct() -> None:
     found = looked("pct:0:1:10", "pct:1:1:10", "pct:2:2:10", "random:3")
     assert found.chance(1) == pytest.approx(1 - (1 - 1 / 4) ** 2)
     assert found.chance(2) == pytest.approx(1 / 40)
@@ -41,16 +41,16 @@ def test_one_task_has_one_order() -> None:
     assert looked("pct:0:1:10", tasks=1).chance(1) == 1
 
 
-def test_it_is_told_in_a_few_lines() -> None:
+def test_extent_is_reported_in_a_few_lines() -> None:
     assert looked("pct:0:1:10").lines() == [
         "1 order",
         "under fifo others can get in at 8 points: 5 at messages, 3 at locks",
-        "chance that a bug has shown, at least: 0.25 at depth 1 (PCT's bound for 4 tasks and 10 points)",
+        "probability that a bug was found, at least: 0.25 at depth 1 (PCT's bound for 4 tasks and 10 points)",
     ]
     assert looked("random:0").lines()[1:] == ["under fifo others can get in at 8 points: 5 at messages, 3 at locks"]
 
 
-def test_points_are_counted_by_what_is_called_there() -> None:
+def test_points_are_counted_by_kind_of_call() -> None:
     plan = RunPlan((LOCKS,), seconds=1.3, tasks="greenlet")
     counter = PointCounter(Policy())
     counted = Trial(plan).fly(Schedule("at"), policy=counter)
@@ -61,5 +61,5 @@ def test_points_are_counted_by_what_is_called_there() -> None:
     assert counted.tasks > 10
 
 
-def test_a_call_from_nowhere_is_another() -> None:
+def test_call_of_an_unknown_kind_counts_as_other() -> None:
     assert kind_of(None) == OTHER

@@ -85,7 +85,7 @@ def shrunk(program: RandomProgram) -> Shrunk[RandomProgram] | None:
 
 
 @pytest.mark.slow
-def test_nothing_can_be_left_out_of_what_shrinking_leaves() -> None:
+def test_shrunk_schedule_has_no_removable_move() -> None:
     counts: list[int] = []
     for seed in SEEDS:
         program = RandomProgram(seed)
@@ -104,7 +104,7 @@ def test_nothing_can_be_left_out_of_what_shrinking_leaves() -> None:
 
 
 @pytest.mark.parametrize("seed", range(8))
-def test_what_is_known_is_what_would_be_flown(seed: int) -> None:
+def test_known_run_has_the_choices_of_its_flight(seed: int) -> None:
     program, known, random = RandomProgram(seed), KnownRuns["Noted"](), Random(seed)
     all_moves: set[Move] = set()
     found = 0
@@ -127,7 +127,7 @@ class Noted(MoveNotingPolicy):
 
 
 @pytest.mark.slow
-def test_runs_that_are_known_are_not_flown(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_known_runs_are_not_flown(monkeypatch: pytest.MonkeyPatch) -> None:
     programs = [RandomProgram(seed) for seed in SEEDS]
     with_knowledge = [shrunk(program) for program in programs]
     flights = sum(program.flights for program in programs)

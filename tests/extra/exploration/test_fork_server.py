@@ -57,14 +57,14 @@ def test_a_forked_run_is_the_run_from_the_start(server: ForkServer, seeds: int) 
     assert len(digests) > 3
 
 
-def test_nothing_but_fifo_happens_before_the_instant() -> None:
+def test_schedule_is_fifo_before_its_begin() -> None:
     _, _, deviations, _ = two_counters(Schedule.parse("random:1:from=60us"))
     whole = two_counters(Schedule.parse("random:1"))
     assert deviations
     assert min(deviations) > min(whole[2])
 
 
-def test_a_run_without_a_choice_after_the_instant_answers_all() -> None:
+def test_run_without_a_choice_after_the_begin_answers_all_schedules() -> None:
     def body(schedule: LateSchedule) -> int:
         with make_kernel("greenlet", None, schedule.policy()) as kernel:
             kernel.run(1000)
@@ -84,7 +84,7 @@ def _failing(end: Callable[[], object]) -> Callable[[LateSchedule], object]:
     return body
 
 
-def test_an_error_of_a_run_is_the_callers_and_the_next_one_goes_well() -> None:
+def test_error_of_a_run_is_raised_and_the_next_run_works() -> None:
     def fail() -> None:
         raise KeyError("broken")
 
@@ -94,7 +94,7 @@ def test_an_error_of_a_run_is_the_callers_and_the_next_one_goes_well() -> None:
         assert server.run(Schedule.parse("random:2" + FROM)) == "random:2" + FROM
 
 
-def test_a_run_that_ends_its_process_is_told_and_the_next_one_goes_well() -> None:
+def test_run_that_ends_its_process_is_reported_and_the_next_run_works() -> None:
     with closing(ForkServer(_failing(lambda: os._exit(3)), Schedule.parse("at" + FROM))) as server:
         with pytest.raises(ChildProcessError, match="random:1:from=50us ended without an answer"):
             server.run(Schedule.parse("random:1" + FROM))

@@ -62,7 +62,7 @@ def test_a_forked_flight_has_the_verdict_of_a_whole_one() -> None:
         assert pilot.judge(schedule).trace == trial.run(schedule).trace
 
 
-def test_schedules_that_would_part_after_the_end() -> None:
+def test_schedules_that_differ_only_after_the_end_are_judged() -> None:
     trial = Trial(RunPlan(("capture",), seconds=0.1, tasks="greenlet"))
     with closing(ForkingJudge(trial)) as pilot:
         schedules = [Schedule("random", seed, from_ns=BOOTED_NS) for seed in range(2)]
@@ -82,7 +82,7 @@ def test_forked_flights_have_the_moves_of_whole_ones() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["lost_update", "lock_order"])
-def test_what_is_shrunk_by_forked_flights_is_the_same(name: str) -> None:
+def test_shrinking_by_forked_flights_gives_the_same_result(name: str) -> None:
     trial = Trial(RunPlan((str(MISSIONS / name),), seconds=1.3, tasks="greenlet"))
     schedules = (Schedule("random", seed, from_ns=BOOTED_NS) for seed in range(100))
     failing = next(verdict for verdict in map(trial.run, schedules) if verdict.failures)
@@ -111,7 +111,7 @@ class _Busy(Expenses):
 
 
 @pytest.mark.slow
-def test_a_process_that_waits_for_schedules_is_not_taken_for_a_task_that_spins(
+def test_forked_process_that_waits_for_schedules_is_not_a_stall(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("cfepy.rtos.watchdog.Expenses", _Busy)

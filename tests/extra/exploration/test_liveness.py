@@ -58,7 +58,7 @@ def failures(folder: Path, apps: str, limits: Limits) -> list[tuple[str, str, in
     return [(each.kind, each.text, each.at_ns) for each in found]
 
 
-def test_a_task_that_is_ready_and_does_not_run(tmp_path: Path) -> None:
+def test_ready_task_that_does_not_run_is_starved(tmp_path: Path) -> None:
     ((kind, text, at_ns),) = failures(tmp_path, STARVING, Limits(starved_ns=80 * NS_PER_MS))
     assert kind == "starved"
     assert text.startswith("MEEK (priority 90) was ready for ")
@@ -66,17 +66,17 @@ def test_a_task_that_is_ready_and_does_not_run(tmp_path: Path) -> None:
     assert at_ns == 1_130_000_000  # HOG begins at 1.05 s
 
 
-def test_a_shorter_wait_is_none(tmp_path: Path) -> None:
+def test_shorter_wait_is_not_starvation(tmp_path: Path) -> None:
     assert failures(tmp_path, STARVING, Limits(starved_ns=100 * NS_PER_MS)) == []
 
 
-def test_it_starves_until_the_end_of_the_run_as_well(tmp_path: Path) -> None:
+def test_starvation_until_the_end_of_the_run_is_reported(tmp_path: Path) -> None:
     for_ever = STARVING.replace("range(5)", "range(5000)")
     ((kind, text, _),) = failures(tmp_path, for_ever, Limits(starved_ns=300 * NS_PER_MS))
     assert (kind, text.partition(" was ready")[0]) == ("starved", "MEEK (priority 90)")
 
 
-def test_an_application_that_runs_on_without_a_message(tmp_path: Path) -> None:
+def test_application_that_runs_without_messages_is_livelocked(tmp_path: Path) -> None:
     ((kind, text, at_ns),) = failures(tmp_path, LIVELOCK, Limits(livelock_ns=500 * NS_PER_MS))
     assert kind == "livelock"
     assert "neither sent nor took a message" in text
@@ -84,7 +84,7 @@ def test_an_application_that_runs_on_without_a_message(tmp_path: Path) -> None:
     assert at_ns > 1_000_000_000
 
 
-def test_one_that_seldom_runs_only_idles(tmp_path: Path) -> None:
+def test_rarely_running_application_is_idle(tmp_path: Path) -> None:
     assert failures(tmp_path, LIVELOCK.replace("task_delay(2)", "task_delay(20)"), Limits(0, 500 * NS_PER_MS)) == []
 
 
@@ -95,7 +95,7 @@ class _Last(Policy):
         return decision.width - 1
 
 
-def test_nobody_is_passed_over_more_often_than_that() -> None:
+def test_fair_schedule_limits_how_often_a_task_is_passed_over() -> None:
     tasks = [Task(name, number, None, 50) for number, name in enumerate("ABC")]
     fair = Fair(_Last(), 3)
     ran = "".join("ABC"[fair.choose(Decision(number, 0, tasks, False, False, None))] for number in range(12))

@@ -101,7 +101,7 @@ def test_the_longest_of_all_schedules_is_found(plan: RunPlan) -> None:
 
 
 @pytest.mark.slow
-def test_it_does_not_depend_on_how_many_processes_there_are(plan: RunPlan) -> None:
+def test_worst_case_does_not_depend_on_the_number_of_processes(plan: RunPlan) -> None:
     one, two = (explored(plan, seeds=70, shrink=0, jobs=jobs) for jobs in (1, 2))
     assert worst(one).distribution == worst(two).distribution
     shown = io.StringIO()
@@ -122,18 +122,18 @@ def test_it_does_not_depend_on_how_many_processes_there_are(plan: RunPlan) -> No
         ("latency:0x0884->0x0883", None),
     ],
 )
-def test_what_is_measured(plan: RunPlan, text: str, time_ns: int | None) -> None:
+def test_measure_returns_the_longest_time(plan: RunPlan, text: str, time_ns: int | None) -> None:
     found = MeasuredTrial(plan, measure=Measure.parse(text)).run(Schedule()).longest
     assert (found[0] if found else None) == time_ns
 
 
 @pytest.mark.parametrize("text", ["", "speed:/x", "latency:", "latency:/a->", "response:A->B", "latencies:/x"])
-def test_what_cannot_be_measured(text: str) -> None:
+def test_invalid_measure_is_refused(text: str) -> None:
     with pytest.raises(UsageError):
         Measure.parse(text)
 
 
-def test_a_generation_waits_for_all_verdicts_before_it_and_is_made_of_the_longest() -> None:
+def test_generation_waits_for_earlier_verdicts_and_varies_the_longest() -> None:
     search = WorstSearch(SeededSearch((Schedule("random"),)))
     given = [search.next() for _ in range(FROM_SEEDS)]
     assert None not in given

@@ -49,7 +49,7 @@ def package(tmp_path: Path) -> Path:
     return folder
 
 
-def test_a_changed_file_is_told_by_name(mission: Path, tmp_path: Path) -> None:
+def test_changed_file_is_named(mission: Path, tmp_path: Path) -> None:
     plan = RunPlan((str(mission),), seconds=0.1)
     before = identity_of(plan, files_read(plan), {"policy": "random"})
     ResultsFile(tmp_path / "results", before).close()
@@ -62,7 +62,7 @@ def test_a_changed_file_is_told_by_name(mission: Path, tmp_path: Path) -> None:
         ResultsFile(tmp_path / "results", after)
 
 
-def test_a_mission_is_the_same_elsewhere(mission: Path, tmp_path: Path) -> None:
+def test_shipped_mission_gives_the_same_trace(mission: Path, tmp_path: Path) -> None:
     plan = RunPlan((str(mission),), seconds=0.1, script=str(mission / "checks.txt"))
     here = fly(plan).trace
     shipment = ship(plan, files_read(plan))
@@ -75,7 +75,7 @@ def test_a_mission_is_the_same_elsewhere(mission: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", [NODE, LAUNCH])
-def test_nodes_of_a_package_run_elsewhere(
+def test_shipped_nodes_of_a_package_give_the_same_trace(
     package: Path, tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("ROS_PACKAGE_PATH", str(package.parent))
@@ -95,7 +95,7 @@ def test_nodes_of_a_package_run_elsewhere(
     assert flown.trace == here
 
 
-def test_a_verdict_names_files_as_they_are_here(mission: Path, tmp_path: Path) -> None:
+def test_verdict_has_the_local_paths_of_files(mission: Path, tmp_path: Path) -> None:
     plan = RunPlan((str(mission),), seconds=0.01)
     inside = ship(plan, files_read(plan)).unpack(tmp_path / "elsewhere")
     text = f"File {tmp_path}/elsewhere{mission}/arm_control.py, line 3"
@@ -103,7 +103,7 @@ def test_a_verdict_names_files_as_they_are_here(mission: Path, tmp_path: Path) -
     assert told.failures[0].detail == told.trouble == f"File {mission}/arm_control.py, line 3"
 
 
-def test_too_much_for_a_cluster(mission: Path) -> None:
+def test_too_large_mission_for_a_cluster_is_refused(mission: Path) -> None:
     plan = RunPlan((str(mission),), seconds=0.01)
     with (mission / "big.bag").open("wb") as bag:
         bag.truncate(LIMIT + (1 << 20))

@@ -231,13 +231,13 @@ def same_as_all_schedules(program: Program, most: int = 400) -> tuple[int, int] 
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_it_comes_to_all_that_all_schedules_come_to(seed: int) -> None:
+def test_order_search_finds_all_outcomes(seed: int) -> None:
     same_as_all_schedules(random_program(seed, DATA, 2, 3))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(0, 24, 8))
-def test_it_comes_to_all_that_all_schedules_of_random_programs_come_to(first: int) -> None:
+def test_order_search_finds_all_outcomes_of_random_programs(first: int) -> None:
     taken = []
     for seed in range(first, first + 8):
         some = ((DATA, 2, 4), (DATA, 3, 3), (ALL, 2, 3), (ALL, 3, 2), (NODES, 2, 1), (TABLES, 2, 3))
@@ -248,19 +248,19 @@ def test_it_comes_to_all_that_all_schedules_of_random_programs_come_to(first: in
     assert 10 * sum(own for own, _ in runs) < sum(every for _, every in runs)
 
 
-def test_what_depends_on_nothing_is_flown_once() -> None:
+def test_independent_steps_are_flown_once() -> None:
     found, search = all_orders([[("write", "x")] * 5, [("write", "y")] * 5])
     assert found.flights == search.orders == 1
     assert search.exhausted
 
 
-def test_who_takes_a_lock_first_is_all_that_matters_of_it() -> None:
+def test_lock_has_one_order_for_each_sequence_of_owners() -> None:
     found, search = all_orders([[("lock", "x")], [("lock", "x")], [("lock", "x")]])
     assert search.orders == 6
     assert found.flights == 6
 
 
-def test_nobody_gets_in_where_there_is_no_place() -> None:
+def test_release_without_a_scheduling_point_lets_no_task_in() -> None:
     """Steps after a release without a scheduling point belong to it. They may still come after another task's step."""
     found = same_as_all_schedules([[("leave", "x")], [("write", "y")]])
     assert found is not None
@@ -268,11 +268,11 @@ def test_nobody_gets_in_where_there_is_no_place() -> None:
 
 
 @pytest.mark.parametrize("other", ["leave", "lock", "read"])
-def test_what_follows_a_release_may_come_after_the_one_who_waited(other: str) -> None:
+def test_step_after_a_release_may_follow_the_step_of_the_waiter(other: str) -> None:
     assert same_as_all_schedules([[("leave", "x")], [(other, "x"), ("write", "y")]]) is not None
 
 
-def test_a_task_that_sleeps_has_no_step_of_that() -> None:
+def test_sleep_is_not_a_step() -> None:
     found = same_as_all_schedules([[("load", "y")], [("look", "y"), ("sleep", "x")]])
     assert found is not None
     assert found[0] == 4
@@ -283,7 +283,7 @@ def test_threads_and_greenlets_have_the_same_orders() -> None:
     assert all_orders(program, "thread", 20)[0] == all_orders(program, "greenlet", 20)[0]
 
 
-def test_a_depth_leaves_later_steps_as_they_are() -> None:
+def test_depth_leaves_later_steps_unchanged() -> None:
     program: Program = [[("write", "x")] * 3, [("write", "x")] * 3]
     search, count = OrderSearch(Schedule(), depth=5), 0
     while (schedule := search.next()) is not None:
@@ -292,7 +292,7 @@ def test_a_depth_leaves_later_steps_as_they_are() -> None:
     assert 1 < count < len(all_orders(program)[0].orders)
 
 
-def test_it_tells_where_time_alone_decides() -> None:
+def test_order_decided_by_time_alone_is_counted() -> None:
     """A timer comes while another task computes: that one's deed may come after it only if it takes longer."""
 
     class Computing(World):
@@ -313,7 +313,7 @@ def test_it_tells_where_time_alone_decides() -> None:
     assert timed(Computing, [[("sleep", "x"), ("write", "x")], [("write", "x"), ("write", "y")]]) == 1
 
 
-def test_schedules_do_not_depend_on_when_verdicts_come() -> None:
+def test_schedules_do_not_depend_on_the_arrival_of_verdicts() -> None:
     program = random_program(7, ALL, 3, 2)
 
     def schedules(ahead: int) -> list[Schedule]:

@@ -116,7 +116,7 @@ def explored(plan: RunPlan, points: str, seeds: int = 15) -> Report:
 
 @pytest.mark.parametrize("points", ["attributes", "lines"])
 @pytest.mark.slow
-def test_an_update_in_one_line_is_lost_between_its_accesses(plan_of: Plans, points: str) -> None:
+def test_update_in_one_line_is_lost_between_its_accesses(plan_of: Plans, points: str) -> None:
     plan = plan_of("counter", COUNTER)
     assert explored(plan, "").findings == []
     found = explored(plan, points).findings
@@ -128,7 +128,7 @@ def test_an_update_in_one_line_is_lost_between_its_accesses(plan_of: Plans, poin
 
 
 @pytest.mark.slow
-def test_a_clock_that_was_read_is_old_by_the_time_it_is_used(plan_of: Plans) -> None:
+def test_clock_value_is_outdated_when_a_task_gets_in_before_its_use(plan_of: Plans) -> None:
     plan = plan_of("clock", CLOCK)
     assert explored(plan, "").findings == []
     assert [told.finding.failure.title for told in explored(plan, "calls").findings] == [
@@ -137,21 +137,21 @@ def test_a_clock_that_was_read_is_old_by_the_time_it_is_used(plan_of: Plans) -> 
 
 
 @pytest.mark.slow
-def test_points_may_be_in_some_modules_alone(plan_of: Plans) -> None:
+def test_points_are_limited_to_named_modules(plan_of: Plans) -> None:
     plan = plan_of("counter", COUNTER)
     assert explored(plan, "attributes:other").findings == []
     assert explored(plan, "attributes:other,counter").findings != []
 
 
 @pytest.mark.parametrize("kind", ["lines", "attributes", "calls"])
-def test_points_leave_the_default_run_as_it_is(plan_of: Plans, kind: str) -> None:
+def test_points_do_not_change_the_default_run(plan_of: Plans, kind: str) -> None:
     trial = Trial(plan_of("counter", COUNTER))
     plain, pointed = (trial.run(Schedule.parse(text)) for text in ("at", f"at:points={kind}"))
     assert (plain.failures, plain.trace) == (pointed.failures, pointed.trace)
     assert plain.decisions <= pointed.decisions
 
 
-def test_a_run_with_points_is_the_same_on_greenlets(plan_of: Plans) -> None:
+def test_run_with_points_has_one_trace_on_threads_and_greenlets(plan_of: Plans) -> None:
     pytest.importorskip("greenlet")
     plan = plan_of("counter", COUNTER)
     schedule = Schedule.parse("random:3:points=attributes")
@@ -163,7 +163,7 @@ def test_a_run_with_points_is_the_same_on_greenlets(plan_of: Plans) -> None:
 
 
 @pytest.mark.slow
-def test_apps_have_points_too(plan_of: Plans) -> None:
+def test_apps_have_points(plan_of: Plans) -> None:
     folder = Path(plan_of("app", APP).words[0])
     (folder / "startup.scr").write_text("CFE_APP, app, main, APP, 100, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     plan = RunPlan((str(folder),), seconds=1.0)
@@ -181,7 +181,7 @@ def test_a_command_line_has_points(plan_of: Plans, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.slow
-def test_what_no_schedule_looked_at_is_told(plan_of: Plans) -> None:
+def test_variables_without_points_are_reported_as_gaps(plan_of: Plans) -> None:
     plan = plan_of("counter", COUNTER)
     assert explored(plan, "", 2).breadth.gaps == ["Counter.add (counter.py:14): Counter.n"]
     guarded = COUNTER.replace("self.n = self.n + 1", "with lock: self.n = self.n + 1")

@@ -50,7 +50,7 @@ def test_rate_and_time_left(wall: Wall) -> None:
     assert meter.text() == "1000 of 1000 schedules, 2 failed, 500.0/s"
 
 
-def test_what_an_earlier_run_did_is_not_this_ones_rate(wall: Wall) -> None:
+def test_rate_excludes_schedules_of_an_earlier_run(wall: Wall) -> None:
     meter = CampaignMeter(1000, resumed=400, elapsed_ns=wall.elapsed_ns)
     wall.seconds = 2.0
     count(meter, 400)
@@ -59,7 +59,7 @@ def test_what_an_earlier_run_did_is_not_this_ones_rate(wall: Wall) -> None:
     assert (meter.rate, meter.left_s) == (50.0, 10.0)
 
 
-def test_a_budget_ends_it_as_well(wall: Wall) -> None:
+def test_time_budget_limits_the_time_left(wall: Wall) -> None:
     meter = CampaignMeter(None, elapsed_ns=wall.elapsed_ns, budget_s=60)
     wall.seconds = 2.0
     count(meter, 100)
@@ -100,6 +100,6 @@ def test_a_terminal_gets_a_bar(wall: Wall, monkeypatch: pytest.MonkeyPatch) -> N
     assert "10 of 10 schedules, 1 failed" in stream.getvalue()
 
 
-def test_which_progress() -> None:
+def test_progress_depends_on_the_stream() -> None:
     assert isinstance(make_progress(io.StringIO(), 10), PlainProgress)
     assert isinstance(make_progress(None, 10), NoProgress)

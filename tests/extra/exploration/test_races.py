@@ -46,7 +46,7 @@ def test_a_race_is_found(races_of: Races, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", slow(list(CLEAN), QUICK_CLEAN))
-def test_what_is_ordered_is_no_race(races_of: Races, name: str) -> None:
+def test_ordered_accesses_are_not_a_race(races_of: Races, name: str) -> None:
     assert races_of(CLEAN[name]) == {}
 
 
@@ -56,11 +56,11 @@ def test_a_race_of_an_app_is_found(races_of: Races, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", slow(list(APPS_CLEAN), ("timer",)))
-def test_what_is_ordered_in_an_app_is_no_race(races_of: Races, name: str) -> None:
+def test_ordered_accesses_of_an_app_are_not_a_race(races_of: Races, name: str) -> None:
     assert races_of(APPS_CLEAN[name], prelude=APP_PRELUDE) == {}
 
 
-def test_a_race_tells_both_sides(races_of: Races) -> None:
+def test_race_names_both_accesses(races_of: Races) -> None:
     told = races_of("""
 class Arm:
     def __init__(self): self.n = 0
@@ -79,7 +79,7 @@ both(one, other)
     ]
 
 
-def test_looking_for_races_changes_nothing(tmp_path: Path) -> None:
+def test_race_detection_does_not_change_the_run(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text(SCRIPT, encoding="utf-8")
     (tmp_path / "main.py").write_text(PRELUDE + RACY["two topics"][1], encoding="utf-8")
     plans = [RunPlan((str(tmp_path),), seconds=1.5, races=races) for races in (False, True)]
@@ -88,7 +88,7 @@ def test_looking_for_races_changes_nothing(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_an_exploration_tells_a_race_once(tmp_path: Path) -> None:
+def test_exploration_reports_a_race_once(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text(SCRIPT, encoding="utf-8")
     (tmp_path / "main.py").write_text(PRELUDE + RACY["two locks"][1], encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1.0, races=True)

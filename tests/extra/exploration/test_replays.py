@@ -40,7 +40,7 @@ def results_of(path: Path, mission: Path) -> Path:
 
 
 @pytest.mark.slow
-def test_what_is_gone_is_told_apart_from_what_is_still_there(
+def test_replayed_failures_are_reported_as_present_gone_or_not_possible(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     mission = bank(tmp_path / "bank")
@@ -64,7 +64,7 @@ def test_what_is_gone_is_told_apart_from_what_is_still_there(
 
 
 @pytest.mark.slow
-def test_an_exploration_keeps_the_shrunk_schedule_and_a_mended_mission_is_not_refused(tmp_path: Path) -> None:
+def test_shrunk_schedule_is_kept_and_replayed_in_a_mended_mission(tmp_path: Path) -> None:
     mission, path = bank(tmp_path / "bank"), tmp_path / "f.results"
     plan = RunPlan((str(mission),), seconds=0.7, tasks="greenlet")
     expedition = Expedition(plan, seeds=12, jobs=1, shrink=20, results=str(path))
@@ -80,7 +80,7 @@ def test_an_exploration_keeps_the_shrunk_schedule_and_a_mended_mission_is_not_re
     assert main(["explore", "--replay-all", str(path), "--jobs", "1"]) == 1
 
 
-def test_the_last_line_about_a_failure_counts_and_other_readers_leave_them_out(tmp_path: Path) -> None:
+def test_last_line_of_a_failure_counts_and_other_readers_ignore_it(tmp_path: Path) -> None:
     path = tmp_path / "f.results"
     with_failure = Verdict(Schedule("random", 7), (Failure("died", "A", "x", cause="c"),))
     file = ResultsFile(path, {"a": 1})
@@ -98,7 +98,7 @@ def test_the_last_line_about_a_failure_counts_and_other_readers_leave_them_out(t
     assert [number for number, _ in read_results(path)[1]] == [0, 1]
 
 
-def test_a_line_that_is_no_failure_is_told(tmp_path: Path) -> None:
+def test_invalid_failure_line_is_reported(tmp_path: Path) -> None:
     path = tmp_path / "f.results"
     ResultsFile(path, {"a": 1}).close()
     path.write_text(path.read_text(encoding="utf-8") + '{"failure": {"group": "x"}}\n', encoding="utf-8")
@@ -109,7 +109,7 @@ def test_a_line_that_is_no_failure_is_told(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("options", "said"), [(["--seed", "3"], "--seed"), (["--for", "2"], "--for"), ([], "MISSION")])
-def test_what_decides_a_run_comes_from_the_file(
+def test_replay_refuses_options_that_decide_a_run(
     options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["--replay-all", str(tmp_path / "f.results"), *options] if options else []

@@ -38,7 +38,7 @@ def results(folder: Path, yaml: str) -> list[Result]:
     return list(found)
 
 
-def test_each_way_to_compare(tmp_path: Path) -> None:
+def test_each_comparison_has_its_result(tmp_path: Path) -> None:
     found = results(tmp_path, "{/point: last, /nothing: last, /ram/none.txt: file, POINTER: output}")
     assert [each.name for each in found] == [
         "/point (last)",
@@ -50,7 +50,7 @@ def test_each_way_to_compare(tmp_path: Path) -> None:
     assert [each.text for each in found[1:3]] == ["none", "none"]
 
 
-def test_what_a_node_printed(tmp_path: Path) -> None:
+def test_output_of_a_node_is_a_result(tmp_path: Path) -> None:
     yaml = "{POINTER: output}\nnodes: {POINTER: {name: pointer}}"
     assert [each.text for each in results(tmp_path, yaml)] == ["sent 1.0; sent 2.0"]
 
@@ -68,7 +68,7 @@ def test_patterns_give_a_result_for_each_topic(tmp_path: Path) -> None:
     assert [each.name for each in results(tmp_path, '"/p*": count')] == ["/point (count)"]
 
 
-def test_times_do_not_count_unless_they_shall(tmp_path: Path) -> None:
+def test_times_are_ignored_by_default(tmp_path: Path) -> None:
     (with_times,) = results(tmp_path, "/point: {compare: last, ignore: [point.x]}")
     assert "stamp" in with_times.text
     assert "x:" not in with_times.text
@@ -106,14 +106,14 @@ def test_another_message_is_a_difference_of_all(tmp_path: Path, compare: str, di
 
 
 @pytest.mark.parametrize("ignored", ["point", "point.x", "x"])
-def test_a_field_is_left_out_by_its_path_or_the_end_of_it(tmp_path: Path, ignored: str) -> None:
+def test_field_is_ignored_by_its_path_or_the_end_of_its_path(tmp_path: Path, ignored: str) -> None:
     one, other = varied(tmp_path, f"{{compare: last, ignore: [header.stamp, {ignored}]}}", ("2.0", "3.0"))
     assert one.digest == other.digest
     one, other = varied(tmp_path, "{compare: last, ignore: [header.stamp, oint.x]}", ("2.0", "3.0"))
     assert one.digest != other.digest
 
 
-def test_a_difference_says_both() -> None:
+def test_difference_has_both_values() -> None:
     one, other = Result("/a (last)", "1", "data: 1"), Result("/a (last)", "2", "data: 2")
     assert list(differences([one], [one])) == []
     assert list(differences([one], [other])) == [("/a (last)", "data: 2; under fifo data: 1")]
@@ -134,7 +134,7 @@ def test_a_difference_says_both() -> None:
         ("/a: {compare: last, ignore: [x-y]}", "must be the path of a field"),
     ],
 )
-def test_mistakes_are_told_with_their_place(tmp_path: Path, text: str, error: str) -> None:
+def test_mistakes_are_reported_with_their_line(tmp_path: Path, text: str, error: str) -> None:
     missions.write(tmp_path, {"POINTER": NODE}, f"results:\n  {text}\n")
     with pytest.raises(UsageError) as caught:
         demands_of(read_mission(str(tmp_path)))

@@ -30,7 +30,7 @@ def stored(path: Path) -> list[int]:
     return [number for number, _ in read_results(path)[1]]
 
 
-def test_verdicts_come_back_whatever_their_order(path: Path) -> None:
+def test_verdicts_are_read_in_any_order(path: Path) -> None:
     write(path, 3, 0, 1)
     file = ResultsFile(path, IDENTITY)
     assert len(file) == 3
@@ -45,7 +45,7 @@ def test_verdicts_come_back_whatever_their_order(path: Path) -> None:
     assert read_results(path)[0] == IDENTITY
 
 
-def test_a_write_that_was_cut_off_anywhere(path: Path) -> None:
+def test_write_that_was_cut_off_is_ignored(path: Path) -> None:
     """Whole lines stay, the rest of the file is made anew: also half of the first line."""
     write(path, 0, 1, 2)
     whole = path.read_bytes()
@@ -73,7 +73,7 @@ def test_a_write_that_was_cut_off_anywhere(path: Path) -> None:
         ({"versions": {}}, 'versions was not given, is {}; versions.cfepy was "0.1.0", is not given'),
     ],
 )
-def test_another_campaign_is_refused(path: Path, change: dict[str, object], told: str) -> None:
+def test_results_of_another_campaign_are_refused(path: Path, change: dict[str, object], told: str) -> None:
     write(path, 0)
     before = path.read_bytes()
     with pytest.raises(UsageError) as caught:
@@ -86,7 +86,7 @@ def test_another_campaign_is_refused(path: Path, change: dict[str, object], told
 
 
 @pytest.mark.parametrize("text", ["groceries: milk", "groceries: milk\n", '{"a": 1}\n', "[1]\n", '{"format": 3, "'])
-def test_other_files_are_left_alone(path: Path, text: str) -> None:
+def test_other_file_is_refused_and_not_changed(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match="is not a"):
         ResultsFile(path, IDENTITY)
@@ -96,7 +96,7 @@ def test_other_files_are_left_alone(path: Path, text: str) -> None:
 @pytest.mark.parametrize(
     "line", ["nonsense", "[]", "{}", '{"number": -1, "verdict": {}}', '{"number": 1, "verdict": 2}']
 )
-def test_a_damaged_line_in_the_middle_is_told(path: Path, line: str) -> None:
+def test_damaged_line_in_the_middle_is_reported(path: Path, line: str) -> None:
     write(path, 0, 1)
     lines = path.read_text(encoding="utf-8").splitlines()
     path.write_text("\n".join([lines[0], line, *lines[2:], ""]), encoding="utf-8")
@@ -113,14 +113,14 @@ def test_two_writers_at_once_are_refused(path: Path) -> None:
     ResultsFile(path, IDENTITY).close()
 
 
-def test_reading_while_it_is_written(path: Path) -> None:
+def test_results_are_readable_during_the_campaign(path: Path) -> None:
     file = ResultsFile(path, IDENTITY)
     file.append(0, {"schedule": "fifo"})
     assert list(read_results(path)[1]) == [(0, {"schedule": "fifo"})]
     file.close()
 
 
-def test_a_file_that_cannot_be(tmp_path: Path) -> None:
+def test_unusable_path_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be written: Is a directory"):
         ResultsFile(tmp_path, IDENTITY)
     with pytest.raises(UsageError, match="cannot be written: No such file or directory"):
@@ -136,7 +136,7 @@ def test_lines_are_json(path: Path) -> None:
     assert line == {"number": 5, "verdict": {"schedule": "random:5"}}
 
 
-def test_a_full_disk_is_told_and_what_there_is_can_be_read(path: Path) -> None:
+def test_full_disk_is_reported_and_earlier_lines_stay_readable(path: Path) -> None:
     file = ResultsFile(path, IDENTITY)
     file.append(0, {"schedule": "fifo"})
     with room_for(path.stat().st_size + 9):

@@ -19,7 +19,7 @@ BUSY = """
 """
 
 
-def test_turns_add_up_to_what_was_computed(tmp_path: Path) -> None:
+def test_turns_add_up_to_the_computed_time(tmp_path: Path) -> None:
     times = RunTimes()
     fly(RunPlan((str(missions.write(tmp_path, {"BUSY": BUSY})),), seconds=1.0), attachments=[times])
     assert abs(times.between(600_000_000, 1_000_000_000)["BUSY"] - 160_000_000) < 100_000

@@ -26,24 +26,24 @@ def first(policy: str, count: int, depth: int | None = None, options: str = "at"
     return [found.text(), *(each.text() for each in more if each is not None)]
 
 
-def test_seeds_of_one_policy() -> None:
+def test_seeds_of_one_policy_are_counted_up() -> None:
     assert first("random", 3) == ["random:0", "random:1", "random:2"]
     assert first("pct", 2, seed=7) == ["pct:7:3:50", "pct:8:3:50"]
     assert first("pct", 1, depth=5) == ["pct:0:5:50"]
 
 
-def test_all_is_a_mixture_without_doubles() -> None:
+def test_all_policy_mixes_schedules_without_duplicates() -> None:
     found = first("all", 40)
     assert len(set(found)) == 40
     assert {text.split(":")[0] for text in found} == {"random", "pct", "abreast"}
     assert {text.split(":")[2] for text in found if text.startswith("pct")} >= {"1", "2", "3"}
 
 
-def test_options_go_into_every_schedule() -> None:
+def test_options_are_part_of_every_schedule() -> None:
     assert all(text.endswith(":any:hold=500us") for text in first("all", 8, options="at:any:hold=500us"))
 
 
-def test_pct_reckons_with_the_decisions_that_the_first_schedule_had() -> None:
+def test_pct_uses_the_decisions_of_the_first_schedule() -> None:
     search = make_search("pct", None, 50, Schedule.parse("at"))
     assert [next_of(search), next_of(search)] == ["pct:0:3:50", None]
     search.tell(0, Verdict(Schedule.parse("pct:0:3:50"), decisions=120))
@@ -52,7 +52,7 @@ def test_pct_reckons_with_the_decisions_that_the_first_schedule_had() -> None:
     assert next_of(search) == "pct:3:3:120"
 
 
-def test_each_schedule_is_the_one_that_its_text_means() -> None:
+def test_each_schedule_equals_its_parsed_text() -> None:
     for policy in ("all", "random", "pct", "abreast"):
         search = make_search(policy, None, 50, Schedule.parse("at:any"))
         for number in range(12):
@@ -78,14 +78,14 @@ def test_with_points_between_calls_random_has_the_most_turns() -> None:
     assert texts == [f"{kind}:points=attributes" for kind in kinds]
 
 
-def test_what_is_asked_for_has_its_depth_with_points_as_well() -> None:
+def test_given_depth_is_kept_with_points() -> None:
     search = make_search("all", 5, 50, Schedule.parse("at:points=lines"))
     search.next()
     search.tell(0, Verdict(Schedule("random", 0), decisions=20))
     assert next_of(search) == "pct:1:5:50:points=lines"
 
 
-def test_the_systematic_search_learns_from_verdicts() -> None:
+def test_systematic_search_follows_verdicts() -> None:
     search = make_search("dfs", 1, 50, Schedule.parse("at"))
     assert next_of(search) == "at"
     assert next_of(search) is None

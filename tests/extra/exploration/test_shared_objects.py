@@ -81,7 +81,7 @@ def deeds(look: TaskLook, *verbs: str) -> list[tuple[str, str, str]]:
     return [(deed.verb, deed.thing, deed.place) for deed in look.deeds if deed.verb in verbs]
 
 
-def test_locks_are_called_by_variable_and_line(look: TaskLook) -> None:
+def test_locks_are_named_by_variable_and_line(look: TaskLook) -> None:
     had = [thing for _, thing, _ in deeds(look, HAS) if "self" not in thing and "todo" not in thing]
     names = ["left (locks.py:6)", "right (locks.py:6)", "many[0] (locks.py:7)", "many[1] (locks.py:7)"]
     assert had == [*names, "by_name['a'] (locks.py:8)"]
@@ -93,14 +93,14 @@ def test_objects_of_one_line_are_numbered(look: TaskLook) -> None:
     assert deeds(look, CLEARS) == [(CLEARS, "self.moved (locks.py:14)", "locks.py:31")]
 
 
-def test_taking_having_and_releasing_are_told_apart(look: TaskLook) -> None:
+def test_waiting_for_holding_and_releasing_a_lock_are_distinguished(look: TaskLook) -> None:
     right = [verb for verb, thing, _ in deeds(look, WANTS, HAS, RELEASES) if thing.startswith("right")]
     assert right == [WANTS, HAS, RELEASES]  # it is taken twice, which no other task sees
     rows = [row.text for row in look.rows if row.kind == DOES and "right" in row.text]
     assert rows == ["has right (locks.py:6)", "releases right (locks.py:6)"]
 
 
-def test_waits_and_notifications_of_conditions_are_told(look: TaskLook) -> None:
+def test_waits_and_notifications_of_conditions_are_recorded(look: TaskLook) -> None:
     waited = [thing for _, thing, _ in deeds(look, AWAITS)]
     assert waited[:2] == ["self.moved#2 (locks.py:14)", "self.changed#2 (locks.py:15)"]
     (notified,) = (deed for deed in look.deeds if deed.verb == NOTIFIES)

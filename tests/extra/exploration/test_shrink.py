@@ -29,7 +29,7 @@ def first_failing(trial: Trial, options: str = "") -> Schedule:
 
 
 @pytest.mark.slow
-def test_it_ends_with_few_preemptions_and_the_same_failure(tmp_path: Path) -> None:
+def test_shrinking_ends_with_few_preemptions_and_the_same_failure(tmp_path: Path) -> None:
     trial = Trial(RunPlan((str(missions.write_late(tmp_path)),), seconds=1.5, tasks="greenlet"))
     schedule = first_failing(trial)
     verdict = trial.run(schedule)
@@ -44,12 +44,12 @@ def test_it_ends_with_few_preemptions_and_the_same_failure(tmp_path: Path) -> No
     assert Shrinker(trial, [schedule], verdict.groups[0]).run() == shrunk
 
 
-def test_a_schedule_that_does_not_fail_is_not_shrunk(bank: Path) -> None:
+def test_schedule_that_does_not_fail_is_not_shrunk(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
     assert Shrinker(trial, [Schedule()], f"{INVARIANT}|all paid|x").run() is None
 
 
-def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Path) -> None:
+def test_other_permanent_failure_does_not_end_the_shrinking_early(tmp_path: Path) -> None:
     folder = missions.write_late(tmp_path)
     with (folder / "apps.py").open("a") as apps:
         apps.write("\n\ndef Grumbler(cfe):\n    cfe.evs.register()\n    cfe.evs.send_err(9, 'as always')\n")
@@ -67,7 +67,7 @@ def test_another_failure_that_is_always_there_does_not_end_it_early(tmp_path: Pa
     assert other.group in late.run(shrunk.verdict.schedule).groups
 
 
-def test_it_keeps_to_its_number_of_runs(bank: Path) -> None:
+def test_shrinking_respects_its_number_of_runs(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
     schedule = Schedule.parse("at:1=1,4=1,7=1")
     (group,) = trial.run(schedule).groups
@@ -90,7 +90,7 @@ def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
     assert max(map(len, lines)) <= 100
 
 
-def test_a_move_that_is_not_possible_is_left_out(bank: Path) -> None:
+def test_impossible_move_is_removed(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
     moves = [Move("NOBODY", "BANK"), Move("BANK", "NOBODY")]
     tried = trial.fly(Schedule().by_moves(moves))
@@ -101,7 +101,7 @@ def test_a_move_that_is_not_possible_is_left_out(bank: Path) -> None:
     assert note in tried.notes
 
 
-def test_it_may_take_as_many_runs_as_the_search() -> None:
+def test_shrinking_may_use_as_many_runs_as_the_search() -> None:
     assert [budget_of(flown) for flown in (1, 500, 100_000)] == [LEAST_PROBES, 500, MOST_PROBES]
 
 

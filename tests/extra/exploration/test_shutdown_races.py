@@ -35,7 +35,7 @@ PLANNER = """
 
 
 @pytest.mark.slow
-def test_a_subscription_that_is_served_while_it_is_closed(tmp_path: Path) -> None:
+def test_subscription_served_while_it_is_closed_does_not_fail(tmp_path: Path) -> None:
     """Its task must not give the pipe back before the other one is done with it."""
     folder = missions.write(tmp_path, {"PLANNER": PLANNER, "COMMANDER": COMMANDER})
     trial = Trial(RunPlan((str(folder),), seconds=1.0, tasks="greenlet"))
@@ -69,7 +69,7 @@ class Tasks(Attachment):
 
 
 @pytest.mark.slow
-def test_a_subscription_that_ends_while_its_task_looks_away(tmp_path: Path) -> None:
+def test_subscription_that_ends_while_its_task_is_busy_leaves_no_task(tmp_path: Path) -> None:
     """The request to end comes after the task has checked for it, and before the task waits for a message."""
     trial = Trial(RunPlan((str(missions.write(tmp_path, {"PROBE": UNREGISTERED})),), seconds=1.0, tasks="greenlet"))
     for seed in range(200):

@@ -26,15 +26,15 @@ def explored(name: str, depth: int | None = None) -> Report:
 
 
 @pytest.mark.slow
-def test_a_node_that_ends_is_told() -> None:
+def test_ended_node_is_reported_as_an_unexplored_order() -> None:
     """Its subscriptions end with it, in orders that are not all tried."""
     report = explored("check_then_act")
     assert [told.finding.failure.kind for told in report.findings] == [RAISED]
-    assert any("how the subscriptions of a node end" in line for line in report.breadth.lines())
+    assert any("in which the subscriptions of a stopped node end" in line for line in report.breadth.lines())
 
 
 @pytest.mark.slow
-def test_a_search_to_a_depth_says_so() -> None:
+def test_search_to_a_depth_reports_its_depth() -> None:
     report = explored("lock_order", 16)
     assert any("all orders up to 16 steps were seen" in line for line in report.breadth.lines())
     assert not any("no others" in line for line in report.breadth.lines())
@@ -42,7 +42,7 @@ def test_a_search_to_a_depth_says_so() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "orders"), [("lock_order", 7), ("mutex_order", 6)])
-def test_all_orders_of_two_locks(name: str, orders: int) -> None:
+def test_all_orders_of_two_locks_are_seen(name: str, orders: int) -> None:
     report = explored(name)
     seen = report.breadth.seen
     assert seen is not None
@@ -54,7 +54,7 @@ def test_all_orders_of_two_locks(name: str, orders: int) -> None:
 
 
 @pytest.mark.slow
-def test_the_memory_of_a_table_is_read_by_who_has_its_address() -> None:
+def test_kept_address_of_a_table_reads_its_memory() -> None:
     report = explored("table_kept")
     assert report.breadth.seen is not None
     assert report.breadth.seen.is_complete
@@ -62,7 +62,7 @@ def test_the_memory_of_a_table_is_read_by_who_has_its_address() -> None:
 
 
 @pytest.mark.slow
-def test_the_schedule_of_a_failure_can_be_given() -> None:
+def test_schedule_of_a_failure_reproduces_it() -> None:
     (told,) = explored("lock_order").findings
     schedule = told.finding.verdict.schedule
     assert schedule == Schedule.parse(schedule.text())
@@ -72,7 +72,7 @@ def test_the_schedule_of_a_failure_can_be_given() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["lock_order, mended", "mutex_order, mended", "table_kept", "late_subscription"])
-def test_random_schedules_have_no_other_order(tmp_path: Path, name: str) -> None:
+def test_random_schedules_have_no_unknown_order(tmp_path: Path, name: str) -> None:
     bug = by_name(name.removesuffix(", mended"))
     folder = bug.folder if name == bug.name else bug.write_fixed(tmp_path)
     trial = Trial(RunPlan((str(folder),), seconds=SECONDS, tasks="greenlet"), steps_from_ns=600_000_000)
@@ -89,7 +89,7 @@ def test_random_schedules_have_no_other_order(tmp_path: Path, name: str) -> None
         assert Order(verdict.steps).without(CORE_APPS) in known, seed
 
 
-def test_the_steps_are_the_same_on_threads_and_greenlets() -> None:
+def test_steps_are_the_same_on_threads_and_greenlets() -> None:
     one, other = (
         Trial(RunPlan((str(MISSIONS / "lost_update"),), seconds=0.7, tasks=tasks), steps_from_ns=0).run(
             Schedule.parse("random:3")
@@ -100,7 +100,7 @@ def test_the_steps_are_the_same_on_threads_and_greenlets() -> None:
     assert len(one.steps) > 50
 
 
-def test_keeping_steps_changes_nothing() -> None:
+def test_recording_of_steps_does_not_change_the_run() -> None:
     trial = Trial(RunPlan((str(MISSIONS / "lost_update"),), seconds=0.8, tasks="greenlet"))
     for text in ("fifo", "random:3", "pct:4:2"):
         schedule = Schedule.parse(text) if text != "fifo" else Schedule().at({})
@@ -109,7 +109,7 @@ def test_keeping_steps_changes_nothing() -> None:
         assert replace(kept, steps=(), deviations=()) == replace(trial.run(schedule), deviations=())
 
 
-def test_compiled_code_is_not_seen(tmp_path: Path) -> None:
+def test_compiled_code_is_reported_as_unseen(tmp_path: Path) -> None:
     write_mission(tmp_path, "CFE_APP, app, APP_AppMain, APP, 60, 16384, 0x0, 0;\n!")
     (tmp_path / "app.so").write_bytes(b"\x7fELF")
     with pytest.raises(UsageError, match="APP is compiled") as told:

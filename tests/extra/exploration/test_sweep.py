@@ -25,13 +25,13 @@ def row(rate_hz: float, came_hz: float, seed: int = 0, lost: int = 0) -> SweepRo
     return SweepRow(Point(rate_hz=rate_hz, seed=seed), numbers(came_hz, lost), ())
 
 
-def test_the_knee_is_where_a_rate_no_longer_comes() -> None:
+def test_knee_is_the_first_rate_with_losses() -> None:
     (knee,) = knees([row(10, 10), row(100, 99.5), row(200, 150), row(400, 400)])
     assert (knee.clean_hz, knee.broken_hz) == (100, 200)
     assert knee.text == "small: clean up to 100 Hz; at 200 Hz /a came at 150.0 Hz"
 
 
-def test_a_rate_is_clean_when_it_is_under_all_seeds() -> None:
+def test_rate_is_clean_only_if_it_is_clean_for_all_seeds() -> None:
     (knee,) = knees([row(10, 10), row(10, 10, seed=1), row(20, 20), row(20, 20, seed=1, lost=1)])
     assert (knee.clean_hz, knee.broken_hz, knee.why) == (10, 20, "/a lost 1 of 10")
 
@@ -42,7 +42,7 @@ def test_no_knee() -> None:
     assert knees([SweepRow(Point(), numbers(5), ())]) == []
 
 
-def test_what_went_wrong_is_no_clean_run() -> None:
+def test_failed_run_is_not_clean() -> None:
     assert numbers(10, problem="ARM died").why_not_clean(10) == "ARM died"
     assert PointNumbers().why_not_clean(None) == "no message came"
     assert numbers(5).why_not_clean(None) == ""
@@ -59,7 +59,7 @@ def test_a_point_of_the_board_mission() -> None:
     assert [dict(zip(heads, each, strict=True))["topic"] for each in cells] == list(TOPICS)
 
 
-def test_a_point_that_cannot_be_is_told(tmp_path: Path) -> None:
+def test_invalid_sweep_point_is_a_problem(tmp_path: Path) -> None:
     found = Sweep(RunPlan((str(tmp_path),))).judge(Point())
     assert found.problem
     assert not found.trouble

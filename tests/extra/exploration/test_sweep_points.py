@@ -33,13 +33,13 @@ def test_two_decades_have_the_preferred_numbers() -> None:
 
 
 @pytest.mark.parametrize("text", ["", "5,", "0..10", "10..5", "1..5:0", "..5", "0..1e9:1"])
-def test_no_values(text: str) -> None:
+def test_invalid_values_are_refused(text: str) -> None:
     with pytest.raises(UsageError, match=r"^--set: "):
         values_of(text, "--set")
 
 
 @pytest.mark.parametrize("text", ["fast", "-1", "nan", "inf"])
-def test_no_rate(text: str) -> None:
+def test_invalid_rate_is_refused(text: str) -> None:
     with pytest.raises(UsageError, match="invalid rate"):
         numbers_of(text, "--rate")
 
@@ -71,6 +71,6 @@ def test_unknown_boards_are_reported_before_the_sweep() -> None:
     ]
 
 
-def test_a_rate_that_sets_nothing() -> None:
+def test_rate_without_a_target_is_refused() -> None:
     with pytest.raises(UsageError, match="missing target of --rate"):
         points_of(read_mission("lab"), [None], [50], [], [0])

@@ -8,19 +8,19 @@ from cfepy.rtos import HOLD
 from tests.extra.exploration.made import moved
 
 
-def test_the_tasks_of_the_last_moves_matter_most() -> None:
+def test_tasks_of_the_last_moves_come_first() -> None:
     moves = [moved("A", "B"), moved("B", "C"), moved("C", "D"), moved("D", HOLD)]
     assert important([], moves) == ("D", "C", "B", "A")
     assert important([], [moved("A", HOLD)]) == ("A",)
 
 
-def test_the_task_in_which_the_failure_showed_matters_most_and_those_that_its_text_names_matter() -> None:
+def test_failed_task_comes_first_and_named_tasks_are_included() -> None:
     rows = [Row(number, name, AT, "a.py:1: pass") for number, name in enumerate("FEDCBA")]
     moves = [moved("A", "B"), moved("B", "C"), moved("C", "D")]
     assert important(rows, moves, "E", "F has it; and so on") == ("E", "D", "C", "B", "A", "F")
 
 
-def test_who_ran_last_matters_when_there_would_be_one_only_or_one_was_held_up() -> None:
+def test_last_task_is_included_when_a_column_would_be_alone_or_a_task_was_held() -> None:
     rows = [Row(number, name, AT, "a.py:1: pass") for number, name in enumerate("ABCDD")]
     assert important(rows, [moved("A", "A")]) == ("A", "D")
     assert important(rows, [moved("A", "B")]) == ("B", "A")
@@ -43,14 +43,14 @@ def test_a_wide_terminal_shows_whole_lines() -> None:
     assert source in "\n".join(Story(rows, ("A", "B")).lines(180))
 
 
-def test_where_there_is_no_room_it_is_not_told_where_a_lock_was_made() -> None:
+def test_lock_location_is_omitted_when_the_column_is_too_narrow() -> None:
     rows = (Row(0, "A", DOES, "has self.a_lock_with_a_name (bank.py:12)"), Row(0, "B", AT, "bank.py:14: pass"))
     assert "has self.a_lock_with_a_name (line 12)" in "\n".join(drawn(rows, ("A", "B")))
     narrow = drawn([*rows, Row(0, "C", AT, "bank.py:15: " + "x" * 90)], ("A", "B", "C"))
     assert any("has self.a_lock_with_a_name" in line and "(line 12)" not in line for line in narrow)
 
 
-def test_the_cause_is_told_first() -> None:
+def test_cause_is_the_first_line() -> None:
     story = Story((Row(0, "A", AT, "a.py:1: pass"),), ("A",), "one thing came before another " * 5)
     lines = story.lines()
     assert lines[0].startswith("cause: one thing")
@@ -59,7 +59,7 @@ def test_the_cause_is_told_first() -> None:
     assert lines[2] == ""
 
 
-def test_rows_that_come_again_are_told_once() -> None:
+def test_repeated_rows_are_shown_once() -> None:
     once = [("A", AT, "a.py:1: go()"), ("A", SENDS, "sends /a: data={}"), ("B", WAITS, "waits for /a")]
     rows = [Row(turn * 1000, task, kind, text.format(turn)) for turn in range(4) for task, kind, text in once]
     lines = drawn([Row(0, "A", WAITS, "sleeps"), *rows, Row(5000, "B", AT, "a.py:9: stop()")], ("A", "B"))
@@ -68,21 +68,21 @@ def test_rows_that_come_again_are_told_once() -> None:
     assert "x 4         the 3 rows above, until 0.000003" in lines
 
 
-def test_a_line_is_not_told_again_when_a_task_only_went_on_from_there() -> None:
+def test_line_is_not_repeated_when_its_task_continues_there() -> None:
     rows = [Row(0, "A", AT, "a.py:1: go()"), Row(0, "A", SENDS, "sends /a: 1"), Row(0, "A", AT, "a.py:1: go()")]
     again = [Row(0, "B", WAITS, "sleeps"), Row(0, "A", AT, "a.py:1: go()")]
     assert sum("go()" in line for line in drawn(rows, ("A", "B"))) == 1
     assert sum("go()" in line for line in drawn([*rows, *again], ("A", "B"))) == 2
 
 
-def test_the_name_of_the_only_file_is_told_once() -> None:
+def test_file_name_is_shown_once_when_it_is_the_only_one() -> None:
     rows = [Row(0, "A", AT, "a.py:7: go()"), Row(1, "A", WAITS, "sleeps"), Row(2, "B", AT, "b.py:1: stop()")]
     assert drawn(rows, ("A",))[0] == "lines of a.py"
     assert drawn(rows, ("A",))[4].split() == ["0.000000", "7:", "go()"]
     assert "a.py:7: go()" in "\n".join(drawn(rows, ("A", "B")))
 
 
-def test_rows_far_from_moves_and_end_are_left_out() -> None:
+def test_rows_far_from_moves_and_end_are_omitted() -> None:
     rows = [Row(number, "A", AT, f"a.py:{number}") for number in range(40)]
     rows[15] = Row(15, "A", PREEMPTED, "B")
     lines = drawn([Row(0, "A", AT, "b.py:1"), *rows], ("A", "B"))
@@ -102,8 +102,8 @@ def test_long_texts_are_cut_to_the_column() -> None:
     assert max(map(len, lines)) <= WIDTH
     assert any("xxx..." in line for line in lines)
     assert any("=== PREEMPTED ===" in line for line in lines)
-    assert any("=== HELD UP ===" in line for line in lines)
+    assert any("=== DELAYED ===" in line for line in lines)
 
 
-def test_without_tasks_there_is_nothing_to_draw() -> None:
+def test_timeline_is_empty_without_tasks() -> None:
     assert drawn([], ()) == []

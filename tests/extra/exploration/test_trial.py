@@ -43,7 +43,7 @@ def bank(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return missions.write(tmp_path_factory.mktemp("bank"), {"BANK": missions.LOST_UPDATE}, PAID)
 
 
-def test_the_default_schedule_goes_well_and_counts_decisions(bank: Path) -> None:
+def test_default_schedule_passes_and_counts_decisions(bank: Path) -> None:
     verdict, results, *_ = trial(bank).fly(Schedule())
     assert not verdict.failed
     assert not verdict.trouble
@@ -52,7 +52,7 @@ def test_the_default_schedule_goes_well_and_counts_decisions(bank: Path) -> None
     assert [(each.name, each.text) for each in results] == [("/total (last)", "data: 6")]
 
 
-def test_what_fails_under_a_schedule_fails_again_on_both_contexts(bank: Path) -> None:
+def test_failure_is_reproduced_on_threads_and_greenlets(bank: Path) -> None:
     results = trial(bank).fly(Schedule()).results
     verdict = trial(bank).against(results).run(LOST)
     assert [failure.kind for failure in verdict.failures] == [INVARIANT, RESULTS]
@@ -65,7 +65,7 @@ def test_what_fails_under_a_schedule_fails_again_on_both_contexts(bank: Path) ->
     assert trial(bank, tasks="greenlet").against(results).run(LOST) == verdict
 
 
-def test_trials_and_verdicts_go_to_other_processes(bank: Path) -> None:
+def test_trials_and_verdicts_can_be_pickled(bank: Path) -> None:
     results = trial(bank).fly(Schedule()).results
     sent = pickle.loads(pickle.dumps(trial(bank).against(results)))
     verdict = sent.run(LOST)
@@ -73,7 +73,7 @@ def test_trials_and_verdicts_go_to_other_processes(bank: Path) -> None:
     assert pickle.loads(pickle.dumps(verdict)) == verdict
 
 
-def test_the_command_replays_it(bank: Path) -> None:
+def test_command_replays_its_schedule(bank: Path) -> None:
     assert trial(bank).command(LOST) == f"cfepy run --for 0.7 --schedule {LOST} {bank}"
 
 
@@ -85,7 +85,7 @@ def test_a_deadlock_is_a_failure(tmp_path: Path) -> None:
     assert "held by LOCKS.locks.2.2" in failures[0].text
 
 
-def test_an_exception_in_a_thread_is_a_failure_with_its_traceback(tmp_path: Path) -> None:
+def test_exception_in_a_thread_is_a_failure_with_its_traceback(tmp_path: Path) -> None:
     stock = missions.write(tmp_path, {"STOCK": missions.CHECK_THEN_ACT})
     assert not trial(stock).run(Schedule()).failed
     (failure,) = trial(stock).run(Schedule.parse("at:4=1,7=1")).failures
@@ -151,7 +151,7 @@ rospy.sleep(0.2)
 
 
 @pytest.mark.slow
-def test_a_message_may_come_before_the_constructor_is_done(tmp_path: Path) -> None:
+def test_message_may_arrive_before_the_constructor_ends(tmp_path: Path) -> None:
     echo = missions.write(tmp_path, {"ECHO": HALF_MADE})
     assert not trial(echo, 0.8).run(Schedule()).failed
     found = [trial(echo, 0.8).run(Schedule("random", seed)).failures for seed in range(10)]
@@ -176,7 +176,7 @@ def Ring(cfe):
 
 
 @pytest.mark.slow
-def test_mutexes_in_a_circle_are_one_deadlock_whoever_closes_it(tmp_path: Path) -> None:
+def test_circle_of_mutexes_is_one_deadlock_for_any_last_waiter(tmp_path: Path) -> None:
     (tmp_path / "apps.py").write_text(MUTEXES, encoding="utf-8")
     (tmp_path / "startup.scr").write_text("CFE_APP, apps, Ring, RING, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     verdicts = [trial(tmp_path, 1.0).run(Schedule("random", seed)) for seed in range(30)]
@@ -198,7 +198,7 @@ def app(tmp_path: Path, name: str, action: int = 0, yaml: str = "") -> Trial:
     return trial(tmp_path, 1.0)
 
 
-def test_an_app_that_dies(tmp_path: Path) -> None:
+def test_death_of_an_app_is_a_failure(tmp_path: Path) -> None:
     failure, reset = app(tmp_path, "Dies", action=1).run(Schedule()).failures
     assert (failure.kind, failure.who, failure.text) == (DIED, "DIES", "ValueError: number 17 (apps.py:4)")
     assert failure.at_ns == 550_000_000
@@ -206,12 +206,12 @@ def test_an_app_that_dies(tmp_path: Path) -> None:
     assert (reset.kind, reset.text) == (RESET, "DIES: ValueError: number 17 (apps.py:4)")
 
 
-def test_an_app_that_ends_with_an_error(tmp_path: Path) -> None:
+def test_app_that_ends_with_an_error_is_a_failure(tmp_path: Path) -> None:
     (failure,) = app(tmp_path, "GivesUp").run(Schedule()).failures
     assert (failure.kind, failure.who) == (ENDED, "GIVESUP")
 
 
-def test_a_missed_deadline(tmp_path: Path) -> None:
+def test_missed_deadline_is_a_failure(tmp_path: Path) -> None:
     yaml = "deadlines: {apps: {SLIPS: {period: 100 ms, jitter: 100 us}}}\n"
     (failure,) = replace(app(tmp_path, "Slips", yaml=yaml), events="none").run(Schedule()).failures
     assert (failure.kind, failure.who) == (DEADLINE, "SLIPS")
@@ -220,7 +220,7 @@ def test_a_missed_deadline(tmp_path: Path) -> None:
     assert 700_000_000 < failure.at_ns < 900_000_000
 
 
-def test_failures_come_by_their_time_and_of_those_that_differ_in_numbers_the_first(tmp_path: Path) -> None:
+def test_failures_are_sorted_by_time_and_grouped_without_numbers(tmp_path: Path) -> None:
     yaml = 'invariants: {nothing: {packet: 0x0890, holds: "False"}}\n'
     violated, event = app(tmp_path, "Slips", yaml=yaml).run(Schedule()).failures
     assert (violated.kind, event.kind) == (INVARIANT, EVENT)
@@ -228,14 +228,14 @@ def test_failures_come_by_their_time_and_of_those_that_differ_in_numbers_the_fir
 
 
 @pytest.mark.parametrize(("level", "count"), [("error", 1), ("critical", 0), ("none", 0)])
-def test_which_events_count_can_be_chosen(tmp_path: Path, level: str, count: int) -> None:
+def test_level_selects_the_events_that_are_failures(tmp_path: Path, level: str, count: int) -> None:
     failures = replace(app(tmp_path, "Complains"), events=level).run(Schedule()).failures
     assert len(failures) == count
     for failure in failures:
         assert (failure.kind, failure.text) == (EVENT, "ERROR event 5: something is wrong")
 
 
-def test_a_step_of_the_script_that_fails(tmp_path: Path) -> None:
+def test_failed_step_of_the_script_is_a_failure(tmp_path: Path) -> None:
     script = tmp_path / "checks.txt"
     script.write_text("expect app COMPLAINS RUNNING within 1\nexpect event COMPLAINS 6 within 1\n", encoding="utf-8")
     found = app(tmp_path, "Complains")
@@ -244,12 +244,12 @@ def test_a_step_of_the_script_that_fails(tmp_path: Path) -> None:
     assert (failure.kind, failure.who) == (EXPECTATION, "checks.txt:2")
 
 
-def test_a_mission_that_cannot_be_read_is_no_verdict(tmp_path: Path) -> None:
+def test_unreadable_mission_has_no_verdict(tmp_path: Path) -> None:
     with pytest.raises(UsageError):
         trial(tmp_path / "nothing").run(Schedule())
 
 
-def test_errors_of_cfepy_itself_are_told_apart(bank: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_error_of_cfepy_is_not_a_failure(bank: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object, **__: object) -> object:
         raise AssertionError("a bug in cfepy")
 
@@ -259,28 +259,28 @@ def test_errors_of_cfepy_itself_are_told_apart(bank: Path, monkeypatch: pytest.M
     assert "a bug in cfepy" in verdict.trouble
 
 
-def test_a_systematic_search_gets_the_widths(bank: Path) -> None:
+def test_verdict_has_the_widths_of_a_systematic_search(bank: Path) -> None:
     verdict = replace(trial(bank), keep_widths=True).run(Schedule("at"))
     assert len(verdict.widths) == verdict.decisions
     assert all(abs(width) > 1 for width in verdict.widths)
 
 
 @pytest.mark.parametrize("action", [0, 1])
-def test_a_crash_that_a_fault_plan_asks_for_is_no_failure(tmp_path: Path, action: int) -> None:
+def test_injected_crash_is_not_a_failure(tmp_path: Path, action: int) -> None:
     app(tmp_path, "Waits", action)
     (tmp_path / "plan.yaml").write_text("faults: [{crash: WAITS, at: 0.7}]", encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1.0, faults=str(tmp_path / "plan.yaml"))
     assert Trial(plan).run(Schedule()).failures == ()
 
 
-def test_nor_is_that_of_a_node(tmp_path: Path) -> None:
+def test_injected_crash_of_a_node_is_not_a_failure(tmp_path: Path) -> None:
     node = missions.write(tmp_path, {"ECHO": HALF_MADE})
     (node / "plan.yaml").write_text("faults: [{crash: ECHO, at: 0.6}]", encoding="utf-8")
     plan = RunPlan((str(node),), seconds=1.0, faults=str(node / "plan.yaml"))
     assert Trial(plan).run(Schedule()).failures == ()
 
 
-def test_a_task_that_does_not_give_up_the_cpu_is_a_failure_of_its_schedule(tmp_path: Path) -> None:
+def test_task_that_does_not_give_up_the_cpu_is_a_failure_of_its_schedule(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("CFE_APP, app, main, SPIN, 50, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     (tmp_path / "app.py").write_text("def main(cfe):\n    while True:\n        pass\n", encoding="utf-8")
     plan = RunPlan((str(tmp_path),), seconds=1, stall=0.2)

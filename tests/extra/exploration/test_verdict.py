@@ -13,19 +13,19 @@ def died(text: str) -> Failure:
     return Failure(DIED, "ARM", text, 1)
 
 
-def test_numbers_make_no_other_failure() -> None:
+def test_numbers_are_not_part_of_the_group() -> None:
     assert (
         died("ValueError: 17 of 20.5 at 0x1F (arm.py:12)").group
         == died("ValueError: 3 of 1e-9 at 0x2 (arm.py:12)").group
     )
 
 
-def test_values_in_quotes_make_no_other_failure() -> None:
+def test_values_in_quotes_are_not_part_of_the_group() -> None:
     assert died("KeyError: 'left' (arm.py:12)").group == died("KeyError: 'right' (arm.py:12)").group
     assert died("it isn't so").group != died("it isn't there").group
 
 
-def test_what_tells_causes_apart_counts_in_place_of_the_text() -> None:
+def test_cause_replaces_the_text_in_the_group() -> None:
     assert (
         Failure(EVENT, "ARM", "joint left", cause="event 5").group
         == Failure(EVENT, "ARM", "x", 7, cause="event 5").group
@@ -33,11 +33,11 @@ def test_what_tells_causes_apart_counts_in_place_of_the_text() -> None:
     assert Failure(EVENT, "ARM", "x", cause="event 5").group != Failure(EVENT, "ARM", "x", cause="event 6").group
 
 
-def test_lines_of_source_do() -> None:
+def test_source_line_is_part_of_the_group() -> None:
     assert died("KeyError: 1 (arm.py:12)").group != died("KeyError: 1 (arm.py:13)").group
 
 
-def test_kind_and_who_do() -> None:
+def test_kind_and_task_are_part_of_the_group() -> None:
     groups = {Failure(kind, who, "x").group for kind in (DIED, INVARIANT) for who in ("A", "B")}
     assert len(groups) == 4
 
@@ -52,7 +52,7 @@ def test_plain_data_has_the_schedule_as_text() -> None:
     assert Verdict.from_dict(json.loads(json.dumps(plain))) == verdict
 
 
-def test_each_failure_is_found_once_with_its_first_schedule() -> None:
+def test_failure_is_found_once_with_its_first_schedule() -> None:
     findings = Findings(Verdict(Schedule()))
     bad = Verdict(Schedule("random", 2), (died("x"), Failure(RESULTS, "/total", "other")))
     assert not findings.take(0, Verdict(Schedule("random", 0)))
@@ -63,7 +63,7 @@ def test_each_failure_is_found_once_with_its_first_schedule() -> None:
     assert finding.others == ("results differ: /total: other",)
 
 
-def test_the_runs_with_the_fewest_preemptions_are_those_to_shrink() -> None:
+def test_runs_with_the_fewest_preemptions_are_shrunk() -> None:
     findings = Findings(Verdict(Schedule()))
     for number, preemptions in enumerate((5, 2, 3, 7, 4)):
         findings.take(number, Verdict(Schedule("random", number), (died("x"),), preemptions=preemptions))
@@ -72,7 +72,7 @@ def test_the_runs_with_the_fewest_preemptions_are_those_to_shrink() -> None:
     assert [each.schedule.seed for each in finding.simplest] == [1, 2, 4]
 
 
-def test_what_fails_by_default_does_not_hide_the_rest() -> None:
+def test_failure_under_fifo_does_not_hide_others() -> None:
     known, new = died("always"), died("sometimes")
     findings = Findings(Verdict(Schedule(), (known,)))
     assert not findings.take(0, Verdict(Schedule("random", 0), (known,)))
@@ -83,7 +83,7 @@ def test_what_fails_by_default_does_not_hide_the_rest() -> None:
     ]
 
 
-def test_errors_of_cfepy_are_kept_apart() -> None:
+def test_errors_of_cfepy_are_counted_separately() -> None:
     findings = Findings(Verdict(Schedule()))
     findings.take(0, Verdict(Schedule("random", 0), trouble="Traceback"))
     assert findings.all() == []

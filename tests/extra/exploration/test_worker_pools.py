@@ -28,14 +28,14 @@ from tests.extra.exploration import missions
         ({"jobs": 2, "cluster": "local:2"}, "--jobs: cannot be combined with --cluster"),
     ],
 )
-def test_options_that_make_no_sense(options: dict[str, int], told: str) -> None:
+def test_invalid_combinations_of_options_are_refused(options: dict[str, int], told: str) -> None:
     with pytest.raises(UsageError) as caught:
         make_crew(10, **options)  # type: ignore[arg-type]  # the mistake
     assert str(caught.value) == told
 
 
 @pytest.mark.slow
-def test_worker_processes_find_what_this_process_finds() -> None:
+def test_worker_processes_give_the_same_verdicts_as_this_process() -> None:
     trial = Trial(RunPlan(("capture",), seconds=0.05))
     crew = make_crew(6, jobs=2)
     assert isinstance(crew, Processes)
@@ -54,7 +54,7 @@ def test_worker_processes_find_what_this_process_finds() -> None:
         *(pytest.param(text, marks=pytest.mark.slow) for text in ("pct:3:3:60:hold=1ms", "random:4:from=600ms")),
     ],
 )
-def test_a_schedule_is_one_run_in_any_process_on_any_context_under_any_hash_seed(text: str, tmp_path: Path) -> None:
+def test_schedule_has_one_verdict_in_any_process_and_context_and_for_any_hash_seed(text: str, tmp_path: Path) -> None:
     schedule = Schedule.parse(text)
     bank = missions.write(tmp_path, {"BANK": missions.LOST_UPDATE})
     found: list[Verdict] = []
@@ -79,7 +79,7 @@ class Same:
         """Nothing to learn."""
 
 
-def test_a_file_in_the_working_directory_is_no_module_of_a_worker(
+def test_module_in_the_working_directory_is_not_imported_by_a_worker(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (tmp_path / "random.py").write_text("open('executed', 'w').close()\n", encoding="utf-8")

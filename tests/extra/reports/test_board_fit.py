@@ -16,7 +16,7 @@ from cfepy.reading.resources import shipped
 CAPTURE = shipped("missions") / "capture"
 
 
-def test_a_mission_that_fits() -> None:
+def test_mission_that_fits_needs_no_changes() -> None:
     fit = fit_of(RunPlan(("rx64m_pubsub",), seconds=1))
     assert (fit.board, fit.missing, fit.changes) == ("rx64m", 0, ())
     assert ("LEFT", "stack", 3 * (8192 + 256)) in fit.rows
@@ -43,7 +43,7 @@ def OWNERS_Main(cfe: Cfe) -> None:
 """
 
 
-def test_pools_of_cfe_are_told_by_the_applications_whose_tables_and_blocks_are_in_them(tmp_path: Path) -> None:
+def test_memory_of_pools_is_attributed_to_owners_of_tables_and_blocks(tmp_path: Path) -> None:
     (tmp_path / "owners.py").write_text(OWNERS, encoding="utf-8")
     (tmp_path / "startup.scr").write_text(
         "CFE_APP, owners.py, OWNERS_Main, OWNERS, 50, 8192, 0, 0;\n!\n", encoding="utf-8"
@@ -80,7 +80,7 @@ def test_the_changes_make_capture_fit(tmp_path: Path) -> None:
     assert all(app.state == "RUNNING" for app in pilot.fly(changed).results.apps)
 
 
-def test_fewest_changes_take_the_largest_first_and_no_more_than_is_missing(tmp_path: Path) -> None:
+def test_changes_take_the_largest_first_and_stop_when_the_mission_fits(tmp_path: Path) -> None:
     board = tmp_path / "small.yaml"
     board.write_text(
         (shipped("boards") / "gr716.yaml").read_text(encoding="utf-8").replace("192 KiB}", "200 KiB}"), encoding="utf-8"

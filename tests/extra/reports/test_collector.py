@@ -21,7 +21,7 @@ TIMES = st.lists(st.integers(0, 10**12), min_size=1, max_size=200)
 
 
 @given(TIMES)
-def test_bins_lose_nothing_however_often_they_fold(times: list[int]) -> None:
+def test_bins_keep_the_count_when_they_fold(times: list[int]) -> None:
     found = Bins()
     for time in times:
         found.add(time)
@@ -31,7 +31,7 @@ def test_bins_lose_nothing_however_often_they_fold(times: list[int]) -> None:
 
 
 @given(TIMES)
-def test_runs_stand_for_the_counts(times: list[int]) -> None:
+def test_run_lengths_decode_to_the_counts(times: list[int]) -> None:
     found = Bins()
     for time in times:
         found.add(time)
@@ -51,14 +51,14 @@ def test_spans_are_counted_to_the_ns(spans: list[tuple[int, int]]) -> None:
     assert all(count <= widest * len(spans) for count in found.counts)
 
 
-def test_a_span_lies_in_all_its_bins() -> None:
+def test_span_is_counted_in_each_of_its_bins() -> None:
     found = Bins()
     found.add_span(500, 3200)
     assert found.counts == [500, 1000, 1000, 200]
 
 
 @given(TIMES, st.floats(0.01, 1))
-def test_percentiles_are_nearly_those_of_the_sorted_times(times: list[int], share: float) -> None:
+def test_percentiles_are_within_a_64th_of_the_exact_ones(times: list[int], share: float) -> None:
     found = Histogram()
     for time in times:
         found.add(time)
@@ -85,7 +85,7 @@ def test_every_message_is_counted(shown: Shown) -> None:
         assert (0 if seen is None else seen.latency.count) == topic.delivered, topic.name
 
 
-def test_latency_is_the_time_that_a_message_waits(shown: Shown) -> None:
+def test_latency_is_the_waiting_time_of_a_message(shown: Shown) -> None:
     """The receiver sleeps 120 ms after each tenth message, while one comes every 50 ms."""
     (chat,) = [topic.msg_id for topic in shown.flown.results.topics if topic.name == "/chat"]
     latency = shown.collector.topics[chat].latency
@@ -94,21 +94,21 @@ def test_latency_is_the_time_that_a_message_waits(shown: Shown) -> None:
     assert median < 1_000_000 < highest
 
 
-def test_what_is_dropped_is_counted_where_and_why(shown: Shown) -> None:
+def test_drops_are_counted_by_message_and_pipe(shown: Shown) -> None:
     (dropped,) = [topic for topic in shown.flown.results.topics if topic.dropped]
     assert {(drop.msg_id, drop.pipe): count for drop, count in shown.collector.drops.items()} == {
         (dropped.msg_id, "SLOW_PIPE"): dropped.dropped
     }
 
 
-def test_the_time_on_the_processor_is_that_of_the_report(shown: Shown) -> None:
+def test_processor_time_equals_the_time_of_the_report(shown: Shown) -> None:
     end_ns = shown.flown.mission.kernel.now
     for app in shown.flown.results.apps:
         busy_ns = sum(shown.collector.apps[app.name].busy.counts)
         assert busy_ns == pytest.approx(app.cpu_share * end_ns, abs=20_000), app.name
 
 
-def test_events_and_console_are_all_there(shown: Shown) -> None:
+def test_all_events_and_console_lines_are_collected(shown: Shown) -> None:
     collector, results = shown.collector, shown.flown.results
     assert collector.event_count >= sum(results.events.values())
     assert [line.text for line in collector.lines] == shown.flown.mission.console.lines
@@ -120,7 +120,7 @@ def test_overruns_are_marks(shown: Shown) -> None:
     assert len(missed) == sum(each.overruns for each in shown.flown.results.deadlines)
 
 
-def test_many_marks_of_a_kind_leave_room_for_others(tmp_path: Path) -> None:
+def test_many_marks_of_one_kind_leave_room_for_others(tmp_path: Path) -> None:
     """Thousands of overruns, and then a reset."""
     app = """\
     def WORKER_AppMain(cfe):
@@ -150,5 +150,5 @@ def test_many_marks_of_a_kind_leave_room_for_others(tmp_path: Path) -> None:
         ("[node] DEADLINE 1.5 nobody", None),
     ],
 )
-def test_which_lines_stand_out(line: str, mark: tuple[str, str] | None) -> None:
+def test_special_console_lines_become_marks(line: str, mark: tuple[str, str] | None) -> None:
     assert mark_of(line) == mark

@@ -20,14 +20,14 @@ def recorded() -> SeriesRecorder:
     return recorder
 
 
-def test_an_array_has_a_line_for_each_item(recorded: SeriesRecorder) -> None:
+def test_array_has_a_line_for_each_item(recorded: SeriesRecorder) -> None:
     (curves,) = curves_of(recorded, "/joint_states.position")
     assert [line.label for line in curves.lines][:2] == ["position[0] shoulder_roll", "position[1] shoulder_pitch"]
     assert len(curves.lines) == 7
     assert curves.title == "/joint_states.position, rad or m"
 
 
-def test_units_are_those_of_the_innermost_type_that_has_one(recorded: SeriesRecorder) -> None:
+def test_units_come_from_the_innermost_type_with_units(recorded: SeriesRecorder) -> None:
     titles = {
         word: curves_of(recorded, word)[0].title
         for word in ("/hand_pose.pose.position", "/hand_pose.pose.position.x", "/hand_pose.header.stamp")
@@ -39,7 +39,7 @@ def test_units_are_those_of_the_innermost_type_that_has_one(recorded: SeriesReco
     }
 
 
-def test_a_text_has_its_changes(recorded: SeriesRecorder) -> None:
+def test_text_field_has_its_changes(recorded: SeriesRecorder) -> None:
     (curves,) = curves_of(recorded, "/phase.data")
     assert curves.lines == ()
     assert curves.changes == (Change(0.601021, "approach"),)
@@ -49,7 +49,7 @@ def test_a_pattern_has_curves_of_each_topic(recorded: SeriesRecorder) -> None:
     assert len(curves_of(recorded, "/arm_health/*")) == 4
 
 
-def test_what_cannot_be_drawn(recorded: SeriesRecorder) -> None:
+def test_field_that_cannot_be_drawn_is_refused(recorded: SeriesRecorder) -> None:
     with pytest.raises(UsageError, match="name: cannot be drawn"):
         curves_of(recorded, "/joint_states.name")
 
@@ -74,7 +74,7 @@ def test_thinning_keeps_ends_and_peaks() -> None:
     assert thinned(few, 1_000) is few
 
 
-def test_a_picture_has_axes_for_each_that_has_lines() -> None:
+def test_picture_has_axes_for_each_group_with_lines() -> None:
     pytest.importorskip("matplotlib")
     times = numpy.array([0.0, 1.0])
     curves = Curves("/a", "x", "m", (Curve("x", times, times),))
@@ -86,7 +86,7 @@ def test_a_picture_has_axes_for_each_that_has_lines() -> None:
 
 
 @pytest.mark.parametrize("kind", ["svg", pytest.param("pdf", marks=pytest.mark.slow)])
-def test_the_same_picture_gives_the_same_bytes(kind: str, tmp_path: Path) -> None:
+def test_equal_pictures_have_equal_bytes(kind: str, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     line = Curve("x", numpy.array([0.0, 1.0]), numpy.array([2.0, 3.0]))
     files = [tmp_path / f"{name}.{kind}" for name in ("one", "other")]

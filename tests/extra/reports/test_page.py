@@ -60,17 +60,17 @@ class Reader(HTMLParser):
             self._json_id = None
 
 
-def test_every_number_of_the_results_is_on_it(shown: Shown) -> None:
+def test_page_has_every_number_of_the_results(shown: Shown) -> None:
     wanted = dict(numbers_in(shown.flown.results.to_dict()))
     assert len(wanted) > 300
     assert Reader(shown.page).numbers == wanted
 
 
-def test_the_numbers_are_there_for_programs_too(shown: Shown) -> None:
+def test_page_has_the_numbers_as_json(shown: Shown) -> None:
     assert Reader(shown.page).json["numbers"] == json.loads(json.dumps(shown.flown.results.to_dict()))
 
 
-def test_a_script_and_its_numbers_are_on_it(tmp_path: Path) -> None:
+def test_page_has_a_script_and_its_numbers(tmp_path: Path) -> None:
     mission = looked_at.busy_mission(tmp_path)
     script = tmp_path / "noop.script"
     script.write_text("send CFE_ES_NOOP\nat 2 expect app SLOW RUNNING\n", encoding="utf-8")
@@ -83,7 +83,7 @@ def test_a_script_and_its_numbers_are_on_it(tmp_path: Path) -> None:
     assert wanted.items() <= found.items()
 
 
-def test_faults_and_invariants_are_on_it(tmp_path: Path) -> None:
+def test_page_has_faults_and_invariants(tmp_path: Path) -> None:
     more = "invariants: {never hello: {topic: /chat, holds: msg.data != 'hello'}}\n"
     mission = looked_at.busy_mission(tmp_path, looked_at.DEADLINES + more)
     plan = tmp_path / "faults.yaml"
@@ -97,7 +97,7 @@ def test_faults_and_invariants_are_on_it(tmp_path: Path) -> None:
     assert {"fault", "invariant", "deadline"} <= {mark.kind for mark in collector.marks}
 
 
-def test_it_is_well_formed_and_has_one_script_and_no_handlers(shown: Shown) -> None:
+def test_page_is_well_formed_and_has_one_script_and_no_handlers(shown: Shown) -> None:
     reader = Reader(shown.page)
     assert reader.open == []
     assert reader.handlers == []
@@ -107,20 +107,20 @@ def test_it_is_well_formed_and_has_one_script_and_no_handlers(shown: Shown) -> N
     assert reader.tags.count("caption") == reader.tags.count("table") > 5
 
 
-def test_nothing_on_it_leads_elsewhere(shown: Shown) -> None:
+def test_page_has_no_external_links(shown: Shown) -> None:
     assert not re.search(r"https?:|//[a-z]", re.sub(r"<script.*?</script>", "", shown.page, flags=re.DOTALL))
     assert set(re.findall(r'(?:href|src)="([^#"]*)', shown.page)) <= {"data:,", ""}
     assert "default-src 'none'" in shown.page
 
 
-def test_what_a_node_says_is_text(shown: Shown) -> None:
+def test_output_of_a_node_is_escaped(shown: Shown) -> None:
     assert any(looked_at.NASTY in line for line in shown.flown.mission.console.lines)
     assert escaped(looked_at.NASTY) in shown.page
     assert looked_at.NASTY not in shown.page
     assert "an error &lt;b&gt;of its own&lt;/b&gt;" in shown.page
 
 
-def test_what_somebody_calls_things_is_text(tmp_path: Path) -> None:
+def test_names_of_mission_and_source_are_escaped(tmp_path: Path) -> None:
     """The mission's name and its source can hold anything as well."""
     mission = looked_at.busy_mission(tmp_path, looked_at.DEADLINES + f"name: {json.dumps(looked_at.NASTY)}\n")
     collector = Collector()
@@ -141,7 +141,7 @@ def test_any_text_stays_text(text: str) -> None:
     assert json.loads(json_text({"text": text})) == {"text": text}
 
 
-def test_it_says_what_it_is_about(shown: Shown) -> None:
+def test_page_has_trace_command_board_and_problems(shown: Shown) -> None:
     for text in (shown.flown.trace, f"cfepy run --for 3 {shown.mission}", "rx64m", "Python 3.", "fifo"):
         assert escaped(text) in shown.page
     for problem in shown.flown.results.problems:
@@ -152,12 +152,12 @@ def test_it_says_what_it_is_about(shown: Shown) -> None:
     "title",
     ["Timeline", "Deadlines", "Messages", "Latency", "Dropped messages", "Applications", "Pipes", "Board budget"],
 )
-def test_its_parts_can_be_found(shown: Shown, title: str) -> None:
+def test_page_has_a_link_to_each_section(shown: Shown, title: str) -> None:
     assert f">{title}</h2>" in shown.page
     assert f">{title}</a>" in shown.page
 
 
-def test_the_same_run_gives_the_same_page(shown: Shown) -> None:
+def test_equal_runs_give_equal_pages(shown: Shown) -> None:
     collector, recorder = Collector(), SeriesRecorder()
     flown = looked_at.fly(shown.mission, collector, recorder)
     about = About(f"cfepy run --for 3 {shown.mission}", "fifo", shown.mission)
@@ -226,18 +226,18 @@ def test_the_switches_of_a_schedule_are_marked(tmp_path: Path) -> None:
         assert f"{moment.instead_of} is preempted by {moment.chosen}" in mark.text or not moment.preemption
     assert any("odometer.py:" in mark.text for mark in switches)
     page = page_of(flown, collector, About("", plan.schedule.text(), mission))
-    assert f"The schedule made {len(switches)} switches before" in page
+    assert f"The schedule made {len(switches)} switches in this run:" in page
     assert any("is preempted by" in text for text in items(page))
 
 
 @pytest.mark.slow
-def test_a_failure_is_told_as_a_story(tmp_path: Path) -> None:
+def test_failure_is_shown_as_a_story_with_its_switch(tmp_path: Path) -> None:
     """The run has a shrunk schedule. The problem links to the story, and the switch is marked."""
     mission, page = str(Path(__file__).parents[2] / "quality" / "missions" / "lock_order"), tmp_path / "report.html"
     words = ["report", mission, "--for", "1.3", "--tasks", "greenlet", "-o", str(page)]
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__/2=MAPPER.odom"]) == 0
     text = page.read_text(encoding="utf-8")
-    assert '<a href="#story">What happened</a>: MAPPER.scan.1 has self.map_lock (mapper.py:11) and wants' in text
+    assert '<a href="#story">What happened</a>: MAPPER.scan.1 holds self.map_lock (mapper.py:11) and waits' in text
     assert '<strong class="switch">=== PREEMPTED by MAPPER.odom.2 ===</strong>' in text
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__=MAPPER.odom"]) == 0  # does not fail
     assert "What happened" not in page.read_text(encoding="utf-8")

@@ -53,13 +53,13 @@ def shown_range(browser: Browser) -> tuple[int, int]:
     return int(about["from"]), int(about["to"])
 
 
-def test_it_loads_without_an_error_or_a_request(opened: Browser) -> None:
+def test_page_loads_without_an_error_or_a_request(opened: Browser) -> None:
     assert opened.evaluate("document.title").endswith("cfepy run")
     assert opened.errors == []
     assert opened.requests == []
 
 
-def test_the_errors_and_requests_of_a_page_are_noticed(browser: Browser, tmp_path: Path) -> None:
+def test_browser_reports_errors_and_requests_of_a_page(browser: Browser, tmp_path: Path) -> None:
     """Or the test above could not fail."""
     page = tmp_path / "bad.html"
     page.write_text("<link rel=icon href='data:,'><img src='other.png'><script>nothing()</script>", encoding="utf-8")
@@ -70,7 +70,7 @@ def test_the_errors_and_requests_of_a_page_are_noticed(browser: Browser, tmp_pat
     assert any("nothing is not defined" in error for error in browser.errors)
 
 
-def test_the_numbers_of_the_results_are_on_it(opened: Browser, shown: Shown) -> None:
+def test_page_shows_the_numbers_of_the_results(opened: Browser, shown: Shown) -> None:
     pairs = (
         "[...document.querySelectorAll('data')].map(each => [each.dataset.path, Number(each.value), each.innerText])"
     )
@@ -80,7 +80,7 @@ def test_the_numbers_of_the_results_are_on_it(opened: Browser, shown: Shown) -> 
     assert all(text.strip() for _, text in found.values()), "a number that nobody sees"
 
 
-def test_what_a_node_says_does_nothing(opened: Browser) -> None:
+def test_output_of_a_node_executes_nothing(opened: Browser) -> None:
     assert opened.evaluate("document.title") != "owned"
     assert opened.evaluate("document.images.length") == 0
     assert "<img src=x" in opened.evaluate("document.getElementById('console').innerText")
@@ -103,7 +103,7 @@ def test_the_timeline_zooms_and_moves(opened: Browser) -> None:
     assert opened.evaluate(pixels) == before
 
 
-def test_the_timeline_zooms_where_the_wheel_is_turned(opened: Browser) -> None:
+def test_timeline_zooms_at_the_mouse(opened: Browser) -> None:
     opened.evaluate("document.getElementById('timeline-canvas').scrollIntoView({behavior: 'instant'})")
     place = "(r => [r.left, r.top, r.width])(document.getElementById('timeline-canvas').getBoundingClientRect())"
     left, top, width = opened.evaluate(place)
@@ -116,7 +116,7 @@ def test_the_timeline_zooms_where_the_wheel_is_turned(opened: Browser) -> None:
     assert now[0] - begin > end - now[1], "what is under the mouse stays where it is"
 
 
-def test_the_timeline_has_something_to_see(opened: Browser) -> None:
+def test_timeline_shows_drawn_pixels(opened: Browser) -> None:
     colors = """(() => {
         const canvas = document.getElementById('timeline-canvas');
         const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
@@ -134,7 +134,7 @@ def test_keys_work_on_the_timeline(opened: Browser) -> None:
     assert shown_range(opened)[1] - shown_range(opened)[0] < end - begin
 
 
-def test_a_field_is_drawn_when_it_is_chosen(opened: Browser, shown: Shown) -> None:
+def test_chosen_field_is_drawn(opened: Browser, shown: Shown) -> None:
     is_hidden = "document.getElementById('values-canvas').hidden"
     assert opened.evaluate(is_hidden)
     name = "CFE_EVS_LONG_EVENT_MSG"
@@ -182,7 +182,9 @@ def test_the_time_of_a_problem_leads_to_the_timeline(opened: Browser, shown: Sho
     assert opened.evaluate("document.location.hash") == "#timeline"
 
 
-def test_a_problem_leads_to_its_story_and_that_to_the_timeline(browser: Browser, shown: Shown, tmp_path: Path) -> None:
+def test_problem_links_to_its_story_and_the_story_to_the_timeline(
+    browser: Browser, shown: Shown, tmp_path: Path
+) -> None:
     rows = [StoryRow(1_000_000_000, 0, "a.py:1: go()"), StoryRow(1_000_000_001, 0, "=== PREEMPTED by B ===", True)]
     story = PageStory(
         "B got in", ("A", "B"), [*rows, StoryRow(1_000_000_001, 1, "has lock"), StoryRow(None, None, "x 4")], ""
@@ -228,7 +230,7 @@ def test_tables_sort_by_number(opened: Browser) -> None:
 
 @pytest.mark.parametrize("width", [390, 768, 1280])
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_it_fits_and_can_be_read(opened: Browser, width: int, scheme: str) -> None:
+def test_page_fits_its_window_and_has_enough_contrast(opened: Browser, width: int, scheme: str) -> None:
     opened.prefer(scheme)
     opened.resize(width, 900)
     assert opened.evaluate("document.documentElement.scrollWidth <= innerWidth")

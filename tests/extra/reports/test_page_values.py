@@ -25,7 +25,7 @@ def decoded(line: dict[str, Any], count: int) -> list[float]:
 
 
 @given(st.lists(st.floats(-1e9, 1e9) | st.just(float("nan")), min_size=1, max_size=50))
-def test_values_come_back_as_exact_as_the_steps_are(values: list[float]) -> None:
+def test_decoded_values_are_exact_to_a_step(values: list[float]) -> None:
     array = numpy.array(values)
     found = numpy.array(decoded(encoded(array), len(values)))
     there = ~numpy.isnan(array)
@@ -40,14 +40,14 @@ def test_whole_numbers_in_a_narrow_range_are_exact(values: list[int]) -> None:
     assert decoded(encoded(numpy.array(values, float)), len(values)) == values
 
 
-def test_what_is_not_finite_is_missing() -> None:
+def test_infinite_values_are_missing() -> None:
     found = decoded(encoded(numpy.array([1.0, numpy.inf, 3.0])), 3)
     assert found[0] == 1.0
     assert numpy.isnan(found[1])
     assert numpy.isnan(decoded(encoded(numpy.array([numpy.nan, numpy.nan])), 2)).all()
 
 
-def test_each_stretch_of_many_messages_has_its_lowest_and_highest() -> None:
+def test_thinned_values_keep_the_lowest_and_highest_of_each_stretch() -> None:
     times, values = numpy.arange(1_000) / 100, numpy.zeros(1_000)
     values[123], values[456] = 7.0, -7.0
     bins = TimeBins.of(times, 50)
@@ -72,7 +72,7 @@ def a_set(fields: int, messages: int = 300, most: int | None = None) -> SeriesSe
     return found
 
 
-def test_too_many_fields_get_fewer_points_and_those_of_large_messages_are_left_out(
+def test_too_many_fields_get_fewer_points_and_large_messages_are_omitted(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(page_values, "MOST_BYTES", 20_000)
@@ -83,10 +83,10 @@ def test_too_many_fields_get_fewer_points_and_those_of_large_messages_are_left_o
     large, small = found.plain
     assert [len(group["lines"]) for group in (*large["groups"], *small["groups"])] == [61, 1]
     assert len(small["times"]) == 2 * page_values.FEWEST_PAIRS
-    assert "62 of 101 fields are here" in values_section(found, recorded)
+    assert "62 of 101 fields are included" in values_section(found, recorded)
 
 
-def test_a_series_that_keeps_only_some_messages_says_so() -> None:
+def test_thinned_series_is_mentioned_on_the_page() -> None:
     recorded = a_set(1, 1_000, most=100)
     series = recorded.series("/small")
     assert (series.count, series.every) == (1_000, 16)

@@ -31,13 +31,13 @@ def names(events: list[Event], what: str) -> dict[tuple[int, int], str]:
     return {(each["pid"], each["tid"]): each["args"]["name"] for each in events if each.get("name") == what}
 
 
-def test_looking_on_changes_nothing(shown: Shown) -> None:
+def test_perfetto_trace_does_not_change_the_run(shown: Shown) -> None:
     assert shown.flown.trace == looked_at.fly(shown.mission).trace
     assert looked_at.perfetto(shown.mission)[0].trace == shown.flown.trace
 
 
 @pytest.mark.parametrize("schedule", ["random:3", "pct:5:3", "random:1:any"])
-def test_nor_does_it_under_other_schedules(shown: Shown, schedule: str) -> None:
+def test_perfetto_trace_does_not_change_runs_under_other_schedules(shown: Shown, schedule: str) -> None:
     file = io.StringIO()
     plain = looked_at.fly(shown.mission, seconds=1.5, schedule=schedule)
     seen = looked_at.fly(shown.mission, PerfettoTrace(file), Collector(), seconds=1.5, schedule=schedule)
@@ -46,18 +46,18 @@ def test_nor_does_it_under_other_schedules(shown: Shown, schedule: str) -> None:
         assert [event["ph"] for event in events] == ["B", "E"] * (len(events) // 2)
 
 
-def test_both_task_contexts_give_the_same_file(shown: Shown) -> None:
+def test_threads_and_greenlets_give_the_same_file(shown: Shown) -> None:
     file = io.StringIO()
     looked_at.fly(shown.mission, PerfettoTrace(file), tasks="greenlet")
     assert json.loads(file.getvalue())["traceEvents"] == shown.events
 
 
-def test_every_slice_that_begins_ends(shown: Shown) -> None:
+def test_every_slice_has_a_begin_and_an_end(shown: Shown) -> None:
     for events in tracks(shown.events, "BE").values():
         assert [event["ph"] for event in events] == ["B", "E"] * (len(events) // 2)
 
 
-def test_time_goes_on_in_each_track(shown: Shown) -> None:
+def test_times_rise_in_each_track(shown: Shown) -> None:
     for events in tracks(shown.events, "BEXi").values():
         times = [event["ts"] for event in events]
         assert times == sorted(times)
@@ -78,7 +78,7 @@ def test_messages_lie_inside_the_slice_of_their_task(shown: Shown) -> None:
     assert inside == sum(event["ph"] == "X" for event in shown.events) > 100
 
 
-def test_every_arrow_has_two_ends_on_messages(shown: Shown) -> None:
+def test_every_arrow_connects_two_messages(shown: Shown) -> None:
     starts = {event["id"]: event for event in shown.events if event["ph"] == "s"}
     ends = {event["id"]: event for event in shown.events if event["ph"] == "f"}
     assert starts.keys() == ends.keys()
@@ -96,7 +96,7 @@ def test_every_arrow_has_two_ends_on_messages(shown: Shown) -> None:
         assert sent["args"]["virtual_ns"] <= received["args"]["virtual_ns"]
 
 
-def test_every_message_that_was_taken_has_an_arrow(shown: Shown) -> None:
+def test_every_received_message_has_an_arrow(shown: Shown) -> None:
     taken = sum(topic.delivered for topic in shown.flown.results.topics)
     assert sum(event["ph"] == "f" for event in shown.events) >= taken
 
@@ -112,7 +112,7 @@ def test_tracks_are_named_after_applications_and_tasks(shown: Shown) -> None:
     assert of_slow == ["SLOW"]
 
 
-def test_the_virtual_time_is_told_and_hardly_moved(shown: Shown) -> None:
+def test_slices_have_their_virtual_time_and_are_moved_by_less_than_100_ns(shown: Shown) -> None:
     told = [event for event in shown.events if "virtual_ns" in event.get("args", {})]
     for event in told:
         ahead_ns = event["ts"] * 1000 - event["args"]["virtual_ns"]
@@ -152,7 +152,7 @@ def test_markers_of_the_performance_log_are_paired(shown: Shown) -> None:
     assert not any(depth.values())
 
 
-def test_a_reset_is_seen_and_the_run_goes_on(tmp_path: Path) -> None:
+def test_reset_is_shown_and_the_run_continues(tmp_path: Path) -> None:
     app = """\
     def AGAIN_AppMain(cfe):
         cfe.es.wait_for_startup_sync(1000)

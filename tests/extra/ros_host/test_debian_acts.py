@@ -45,7 +45,7 @@ WINDOW, RATE_HZ = 20, 10  # messages of a window of rostopic; the talker's rate
 ROUNDED_S = 0.001  # precision of rostopic's rounding
 
 
-def test_a_rate_is_measured_alike(real: RosGraph, mission: RosGraph) -> None:
+def test_hz_tool_measures_the_rate_as_with_rospy(real: RosGraph, mission: RosGraph) -> None:
     told = of_both(real, mission, lambda graph: measured(graph, "hz"))
     assert shapes(told[0]) == shapes(told[1])
     for lines in told:
@@ -55,7 +55,7 @@ def test_a_rate_is_measured_alike(real: RosGraph, mission: RosGraph) -> None:
         assert RATE_HZ / 2 < rate < RATE_HZ * 2, lines  # else the computer stood still for as long as the window lasts
 
 
-def test_a_bandwidth_is_measured_alike(real: RosGraph, mission: RosGraph) -> None:
+def test_bw_tool_measures_the_bandwidth_as_with_rospy(real: RosGraph, mission: RosGraph) -> None:
     told = of_both(real, mission, lambda graph: measured(graph, "bw"))
     assert shapes(told[0]) == shapes(told[1])
     assert told[0][-1] == told[1][-1] == f"mean: 9.00B min: 9.00B max: 9.00B window: {WINDOW}"
@@ -84,7 +84,7 @@ def shapes(lines: list[str]) -> set[str]:
     return {re.sub(r"[\d.]+", "N", line) for line in lines} - {"no new messages"}
 
 
-def test_what_a_tool_publishes_reaches_the_node_alike(real: RosGraph, mission: RosGraph) -> None:
+def test_message_of_pub_tool_reaches_the_node_as_with_rospy(real: RosGraph, mission: RosGraph) -> None:
     """The node latches the length of the received message."""
 
     def publish(graph: RosGraph) -> set[str]:
@@ -96,7 +96,7 @@ def test_what_a_tool_publishes_reaches_the_node_alike(real: RosGraph, mission: R
     assert told[0] == told[1]
 
 
-def test_what_a_tool_publishes_of_another_type_is_refused_alike(real: RosGraph, mission: RosGraph) -> None:
+def test_message_of_another_type_is_refused_as_with_rospy(real: RosGraph, mission: RosGraph) -> None:
     def publish(graph: RosGraph) -> set[str]:
         with started(["rostopic", "pub", "/orders", "std_msgs/Int32", "5"], unbuffered(graph)) as process:
             said = lines_of(wait_for_line(process, "topic types do not match"))
@@ -135,7 +135,7 @@ def lines_of(output: str) -> set[str]:
 
 
 @pytest.mark.parametrize(("topic", "count"), [("/chatter", 5), ("/latched", 1)])
-def test_bags_are_the_same(real: RosGraph, mission: RosGraph, topic: str, count: int) -> None:
+def test_recorded_bags_are_equal(real: RosGraph, mission: RosGraph, topic: str, count: int) -> None:
     """The recording's output, topics, types, definitions, connections and messages are equal on both graphs."""
 
     def record(graph: RosGraph) -> tuple[set[str], list[str]]:
@@ -147,7 +147,7 @@ def test_bags_are_the_same(real: RosGraph, mission: RosGraph, topic: str, count:
     assert f"messages:    {count}" in told[0][1]
 
 
-def test_a_bag_is_played_alike(real: RosGraph, mission: RosGraph) -> None:
+def test_played_bag_reaches_the_node_as_with_rospy(real: RosGraph, mission: RosGraph) -> None:
     """Play repeatedly until the data was recorded and has reached the node, so no program need be ready in time."""
     real.run("rosbag record -l 5 -O chatter.bag /chatter")
     bag = real.folder / "chatter.bag"
@@ -175,7 +175,7 @@ def contents(graph: RosGraph, bag: str) -> list[str]:
     return [line for line in lines if not line.startswith(("duration:", "start:", "end:"))]
 
 
-def test_a_run_with_ros_is_replayed_without_it(tmp_path: Path) -> None:
+def test_run_with_ros_is_replayed_without_ros(tmp_path: Path) -> None:
     journal = tmp_path / "run.cfepy"
     words = cfepy_run(mission_of(tmp_path), "--ros-master", "serve:0", "--record", str(journal))
     with started(words) as process:

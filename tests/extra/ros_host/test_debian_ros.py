@@ -60,17 +60,17 @@ def masked(output: str) -> str:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_tool_says_the_same_of_both(real: RosGraph, mission: RosGraph, command: str) -> None:
+def test_tool_prints_the_same_for_mission_and_ros(real: RosGraph, mission: RosGraph, command: str) -> None:
     assert masked(mission.run(command)) == masked(real.run(command))
 
 
-def test_a_parameter_is_set_asked_for_and_deleted(real: RosGraph, mission: RosGraph) -> None:
+def test_parameter_is_set_read_and_deleted_as_on_ros(real: RosGraph, mission: RosGraph) -> None:
     """One after the other, in one test: others may run in another process, against another graph."""
     for command in PARAMETER:
         assert masked(mission.run(command)) == masked(real.run(command)), command
 
 
-def test_rqt_graph_has_the_same_picture(real: RosGraph, mission: RosGraph) -> None:
+def test_rqt_graph_draws_the_same_picture(real: RosGraph, mission: RosGraph) -> None:
     (real.folder / "picture.py").write_text(PICTURE, encoding="utf-8")
     command = f"{PYTHON} {real.folder / 'picture.py'}"
     mission.wait_for("rosnode ping -c 1 /talker", "xmlrpc reply")

@@ -15,7 +15,7 @@ from cfepy.writing.console import Console
 from tests.extra.ros_host.peers import CALLER, SERVER, SET_BOOL, STRING, TALKER, Joined, OutsideSpeaker, joined, text
 
 
-def test_a_run_with_others_is_the_same_without_them(tmp_path: Path) -> None:
+def test_run_with_external_nodes_is_reproduced_without_them(tmp_path: Path) -> None:
     arrivals: list[tuple[int, bytes]] = []
     with joined(tmp_path, {"TALKER": TALKER, "SERVER": SERVER}) as run:
         door = run.mission.outside
@@ -58,7 +58,7 @@ def _session(run: Joined) -> None:
     assert STRING["type"] == run.mission.ros.graph.topics["/orders"].type
 
 
-def test_a_reset_of_the_processor_leaves_the_others_connected(tmp_path: Path) -> None:
+def test_reset_of_the_processor_keeps_external_connections(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         ear = run.subscribed("/chatter")
         ear.header()
@@ -83,7 +83,7 @@ def test_a_reset_of_the_processor_leaves_the_others_connected(tmp_path: Path) ->
 BURST = [f"{number}" for number in range(1, 301)]  # more than the 50 packets of a pipe, and all in one piece
 
 
-def test_a_burst_waits_outside_if_the_queue_is_longer_than_a_pipe(tmp_path: Path) -> None:
+def test_burst_waits_outside_if_the_queue_is_longer_than_a_pipe(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER.replace("heard)", "heard, queue_size=1000)")}) as run:
         assert _heard_of_a_burst(run) == BURST
 
@@ -115,9 +115,7 @@ MESSAGES = 150  # 15 MB: more than sockets hold
 
 
 @pytest.mark.slow
-def test_a_peer_that_does_not_read_loses_its_own_messages_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_slow_peer_loses_only_its_own_messages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(peer_socket, "MOST_WAITING", 3)
     large = text("x" * 100_000)
     with joined(tmp_path, {"TALKER": TALKER}) as run:

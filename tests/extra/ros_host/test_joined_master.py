@@ -94,7 +94,7 @@ def test_the_missions_nodes_register_and_leave(tmp_path: Path, master: RosMaster
     assert state(master) == [[], [], []]
 
 
-def test_the_mission_sees_the_others(tmp_path: Path, master: RosMaster) -> None:
+def test_mission_learns_of_external_publishers(tmp_path: Path, master: RosMaster) -> None:
     master.api.registerPublisher("/other", "/far", "std_msgs/String", NOBODY)
     with joining(tmp_path, master) as run:
         registry = run.mission.ros.switchboard.master.registry
@@ -104,7 +104,7 @@ def test_the_mission_sees_the_others(tmp_path: Path, master: RosMaster) -> None:
         run.run_while(lambda: "/far" in registry.publishers())
 
 
-def test_a_master_that_was_started_again_learns_all_of_it(tmp_path: Path, master: RosMaster) -> None:
+def test_restarted_master_gets_all_registrations_again(tmp_path: Path, master: RosMaster) -> None:
     with joining(tmp_path, master) as run:
         run.mission.ros.graph.params.set("/ours", 5)
         run.run_while(lambda: master.api.getParam(CALLER, "/ours")[2] != 5)
@@ -114,7 +114,7 @@ def test_a_master_that_was_started_again_learns_all_of_it(tmp_path: Path, master
         assert any("is back" in line for line in run.told)
 
 
-def test_parameters_go_both_ways(tmp_path: Path, master: RosMaster) -> None:
+def test_parameters_are_synchronized_in_both_directions(tmp_path: Path, master: RosMaster) -> None:
     master.api.setParam(CALLER, "/before", {"a": 1})
     with joining(tmp_path, master) as run:
         params = run.mission.ros.graph.params
@@ -126,7 +126,7 @@ def test_parameters_go_both_ways(tmp_path: Path, master: RosMaster) -> None:
         run.run_while(lambda: params.find("/later") is not params.MISSING)
 
 
-def test_a_node_does_not_give_way_to_what_a_former_one_has_left(tmp_path: Path, master: RosMaster) -> None:
+def test_node_ignores_registrations_of_a_former_node_of_its_name(tmp_path: Path, master: RosMaster) -> None:
     """The mission's node starts after the query to the master, whose answer has a dead node of that name."""
     with joining(tmp_path, master) as run:
         run.host.seen = OwnGraph({}, [], [], [], {}, {})
@@ -136,9 +136,7 @@ def test_a_node_does_not_give_way_to_what_a_former_one_has_left(tmp_path: Path, 
         assert not run.heard("shutdown request")
 
 
-def test_a_publisher_that_is_told_of_stays_when_an_older_look_does_not_know_it(
-    tmp_path: Path, master: RosMaster
-) -> None:
+def test_announced_publisher_stays_when_an_older_query_lacks_it(tmp_path: Path, master: RosMaster) -> None:
     with joining(tmp_path, master) as run:
         mouth = OutsideSpeaker(run, "/orders", is_known=False)
         talker = run.host.node_uri("/talker")
@@ -157,7 +155,7 @@ def test_a_publisher_that_is_told_of_stays_when_an_older_look_does_not_know_it(
         mouth.close()
 
 
-def test_no_master_is_said_before_the_run(tmp_path: Path, master: RosMaster) -> None:
+def test_missing_master_is_reported_before_the_run(tmp_path: Path, master: RosMaster) -> None:
     master.close()
     with pytest.raises(UsageError, match="no ROS master answers"), joining(tmp_path, master):
         pass

@@ -48,7 +48,7 @@ def test_each_packet_has_a_type_and_is_built(capsys: pytest.CaptureFixture[str],
     assert f"{len(names)} message types of {len(wanted)} packets" in capsys.readouterr().out
 
 
-def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_folder_that_cannot_be_created_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "taken").write_text("", encoding="utf-8")
     assert main(["export", "ros", "lab", "-o", str(tmp_path / "taken")]) == 2
     assert "--output: cannot be written" in capsys.readouterr().err
@@ -56,7 +56,7 @@ def test_a_folder_that_cannot_be_made_is_told(tmp_path: Path, capsys: pytest.Cap
 
 @pytest.mark.slow
 @pytest.mark.skipif(not GENERATOR.exists(), reason="Debian's python3-genpy is not installed")
-def test_ros_makes_the_same_types_of_it(package: Path, tmp_path: Path) -> None:
+def test_ros_generates_the_same_types_from_the_package(package: Path, tmp_path: Path) -> None:
     includes = tmp_path / "std_msgs"
     includes.mkdir()
     (includes / "Header.msg").write_text(HEADER, encoding="utf-8")

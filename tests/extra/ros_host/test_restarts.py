@@ -130,7 +130,7 @@ def check_recoveries(flight: Flight) -> None:
 
 
 @pytest.mark.parametrize("way", ["serve", "join"])
-def test_a_peer_is_killed_and_comes_back(way: str, tmp_path: Path) -> None:
+def test_killed_peer_reconnects(way: str, tmp_path: Path) -> None:
     if way == "serve":
         kill_peers(tmp_path, "serve:0")
     else:
@@ -153,7 +153,7 @@ def kill_peers(folder: Path, master: str) -> None:
     check_recoveries(flight)
 
 
-def test_the_master_is_killed_and_comes_back(tmp_path: Path) -> None:
+def test_killed_master_is_joined_again(tmp_path: Path) -> None:
     """rospy never registers again with a new master, so there is a new peer each time. The mission does register."""
     graph = free_graph(tmp_path)
     flight = Flight(tmp_path, "mission")
@@ -180,7 +180,7 @@ def meet_beside(graph: RosGraph, survivor: Survivor, start: str, master: subproc
         die(outside)
 
 
-def test_the_mission_is_killed_and_comes_back(tmp_path: Path) -> None:
+def test_killed_mission_reconnects(tmp_path: Path) -> None:
     """By turns it is killed, so that its registrations stay behind, and terminated, so that it takes them back."""
     graph = free_graph(tmp_path)
     uri = graph.environ["ROS_MASTER_URI"]

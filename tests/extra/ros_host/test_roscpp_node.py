@@ -49,7 +49,7 @@ def peer(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("way", ["serve", "join"])
-def test_both_speak_with_each_other(way: str, peer: Path, tmp_path: Path) -> None:
+def test_nodes_of_roscpp_and_the_mission_communicate(way: str, peer: Path, tmp_path: Path) -> None:
     if way == "join":
         with rosmaster(tmp_path) as graph:
             speak(peer, tmp_path, graph.environ["ROS_MASTER_URI"])

@@ -29,7 +29,7 @@ rospy.spin()
 NOBODY = "http://127.0.0.1:1/"
 
 
-def test_the_master_tells_of_the_missions_nodes(tmp_path: Path) -> None:
+def test_master_reports_nodes_of_the_mission(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         assert run.told == [f"ROS master at {run.host.world.uri}: export ROS_MASTER_URI={run.host.world.uri}"]
         publishers, subscribers, services = run.master("getSystemState")
@@ -44,7 +44,7 @@ def test_the_master_tells_of_the_missions_nodes(tmp_path: Path) -> None:
         assert ["/chatter", "std_msgs/String"] in run.ask(uri, "getPublications", CALLER)[2]
 
 
-def test_a_subscriber_outside_hears_latched_and_later_messages(tmp_path: Path) -> None:
+def test_external_subscriber_receives_latched_and_later_messages(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         wire = run.subscribed("/chatter")
         header = wire.header()
@@ -66,7 +66,7 @@ def test_a_subscriber_outside_hears_latched_and_later_messages(tmp_path: Path) -
     assert (row["peer"], row["direction"], row["messages"], row["ended"]) == (CALLER, "out", 2, 1)
 
 
-def test_another_type_is_refused_and_counted(tmp_path: Path) -> None:
+def test_other_type_is_refused_and_counted(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         wire = run.subscribed("/chatter", {"type": "std_msgs/String", "md5sum": "0" * 32})
         assert "md5sums do not match" in wire.header()["error"]
@@ -78,7 +78,7 @@ def test_another_type_is_refused_and_counted(tmp_path: Path) -> None:
     assert "md5sums do not match" in row["why"]
 
 
-def test_bytes_that_are_no_tcpros_end_their_connection_alone(tmp_path: Path) -> None:
+def test_bytes_other_than_tcpros_end_only_their_connection(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         wire = run.subscribed("/chatter")
         stranger = run.connected(run.host.service_uri("/talker"), {})
@@ -91,7 +91,7 @@ def test_bytes_that_are_no_tcpros_end_their_connection_alone(tmp_path: Path) -> 
         wire.socket.close()
 
 
-def test_the_mission_hears_a_publisher_outside(tmp_path: Path) -> None:
+def test_mission_receives_from_an_external_publisher(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         speaker = OutsideSpeaker(run, "/orders")
         assert speaker.connect()["callerid"] == "/talker"
@@ -108,7 +108,7 @@ def test_the_mission_hears_a_publisher_outside(tmp_path: Path) -> None:
     assert rows["/orders"]["ended"] == 1
 
 
-def test_a_service_of_the_mission_is_called_from_outside(tmp_path: Path) -> None:
+def test_service_of_the_mission_is_called_from_outside(tmp_path: Path) -> None:
     with joined(tmp_path, {"SERVER": SERVER}) as run:
         uri = run.master("lookupService", "/switch")
         assert uri.startswith("rosrpc://127.0.0.1:")
@@ -128,7 +128,7 @@ def test_a_service_of_the_mission_is_called_from_outside(tmp_path: Path) -> None
 SHORT_REQUEST = b"\x00service cannot process request: "
 
 
-def test_a_short_request_gets_an_error_and_the_next_one_is_answered(tmp_path: Path) -> None:
+def test_short_request_gets_an_error_and_the_next_request_an_answer(tmp_path: Path) -> None:
     with joined(tmp_path, {"SERVER": SERVER}) as run:
         uri = run.master("lookupService", "/switch")
         wire = run.connected(uri, {"service": "/switch", "persistent": "1", **SET_BOOL})
@@ -150,7 +150,7 @@ SHORT_ANSWERS = {"no bytes": b"", "no text": b"\x01\x01"}
 
 
 @pytest.mark.parametrize("body", SHORT_ANSWERS.values(), ids=list(SHORT_ANSWERS))
-def test_an_answer_that_cannot_be_read_is_a_service_exception(tmp_path: Path, body: bytes) -> None:
+def test_unreadable_answer_is_a_service_exception(tmp_path: Path, body: bytes) -> None:
     calling = CALLING.replace("print(switch(True).message)", "switch = rospy.ServiceProxy('/outside/switch', SetBool)")
     with joined(tmp_path, {"CALLING": calling}) as run:
         wires: list[Wire] = []
@@ -170,7 +170,7 @@ def test_an_answer_that_cannot_be_read_is_a_service_exception(tmp_path: Path, bo
         opened.close()
 
 
-def test_the_mission_calls_a_service_outside(tmp_path: Path) -> None:
+def test_mission_calls_an_external_service(tmp_path: Path) -> None:
     with joined(tmp_path, {"CALLING": CALLING}) as run:
         wires: list[Wire] = []
         opened = Listening(
@@ -205,7 +205,7 @@ def test_parameters_are_one_tree(tmp_path: Path) -> None:
         assert run.master("hasParam", "/speed") is False
 
 
-def test_rospys_way_to_take_back_its_registrations(tmp_path: Path) -> None:
+def test_registrations_are_removed_as_by_rospy(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         run.master("registerPublisher", "/a", "std_msgs/String", NOBODY)
         calls = [
@@ -218,7 +218,7 @@ def test_rospys_way_to_take_back_its_registrations(tmp_path: Path) -> None:
         assert not [each for each in run.master("getSystemState")[0] if each[0] == "/a"]
 
 
-def test_a_node_of_the_mission_is_shut_down_from_outside(tmp_path: Path) -> None:
+def test_node_of_the_mission_is_shut_down_from_outside(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         uri = run.master("lookupNode", "/talker")
         assert run.ask(uri, "shutdown", CALLER, "enough")[0] == 1

@@ -44,7 +44,7 @@ def Listener(cfe):
 LISTENER = "CFE_APP, hear, Listener, HEAR, 60, 16384, 0x0, 0;\n"
 
 
-def test_telemetry_is_a_topic_with_a_type_of_its_own(tmp_path: Path) -> None:
+def test_telemetry_is_published_with_its_own_type(tmp_path: Path) -> None:
     with joined(tmp_path, {}, mission_file=FILE) as run:
         types = dict(run.master("getPublishedTopics", "/cfs"))
         assert types == {"/cfs/es_hk": "cfe_tlm/CFE_ES_HK_TLM", "/cfs/es_hk_raw": RAW["type"]}
@@ -68,7 +68,7 @@ def test_telemetry_is_a_topic_with_a_type_of_its_own(tmp_path: Path) -> None:
         run.run_while(lambda: bool(run.mission.ros.outside._shown))
 
 
-def test_topics_are_heard_for_applications(tmp_path: Path) -> None:
+def test_topics_are_subscribed_for_applications(tmp_path: Path) -> None:
     (tmp_path / "hear.py").write_text(APP, encoding="utf-8")
     with joined(tmp_path, {}, LISTENER, FILE) as run:
         packets = OutsideSpeaker(run, "/packets", RAW)
@@ -87,7 +87,7 @@ def test_topics_are_heard_for_applications(tmp_path: Path) -> None:
     assert (rows["/packets"]["messages"], rows["/packets"]["dropped"]) == (2, 1)
 
 
-def test_the_mission_tells_its_time(tmp_path: Path) -> None:
+def test_mission_publishes_its_time_on_clock(tmp_path: Path) -> None:
     """/clock has the mission's time, at the requested rate. Its own nodes do not wait for it."""
     node = "import rospy\nrospy.init_node('n')\nrospy.sleep(0.01)\nprint(f'at {rospy.get_time():.2f}')\nrospy.spin()\n"
     file = "params: {use_sim_time: true}\nros_bridge: {clock: 50}\n"
@@ -140,7 +140,7 @@ def test_texts_structs_and_arrays() -> None:
     ]
 
 
-def test_what_is_wrong_with_the_section_is_told_with_its_line(tmp_path: Path) -> None:
+def test_mistakes_in_the_section_are_reported_with_their_line(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
     (tmp_path / "mission.yaml").write_text(
         "ros_bridge:\n  publish:\n    b: CFE_ES_HK_TLM\n    /c: {raw: true}\n  subscribe: [d]\n", encoding="utf-8"
@@ -158,7 +158,7 @@ def test_what_is_wrong_with_the_section_is_told_with_its_line(tmp_path: Path) ->
         assert any(each.line == line and part in each.text for each in told), told
 
 
-def test_a_run_does_not_begin_with_an_unknown_packet(tmp_path: Path) -> None:
+def test_unknown_packet_is_refused_before_the_run(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
     (tmp_path / "mission.yaml").write_text("ros_bridge: {publish: {/a: CFE_ES_HKK_TLM, /b: X}}\n", encoding="utf-8")
     with (

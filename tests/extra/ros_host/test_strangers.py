@@ -97,7 +97,7 @@ PAGES = {
 
 
 @pytest.mark.parametrize("fields", PAGES.values(), ids=list(PAGES))
-def test_what_a_page_can_send_is_refused_by_master_and_nodes(run: Joined, fields: dict[str, str]) -> None:
+def test_requests_of_web_pages_are_refused_by_master_and_nodes(run: Joined, fields: dict[str, str]) -> None:
     node = run.host.node_uri("/talker")
     for uri in (run.host.world.uri, node):
         found = exchanged(run, request("setParam", "/page", "/pwned", 1, **fields), uri)
@@ -124,7 +124,7 @@ def test_clients_of_ros_are_served(run: Joined, fields: dict[str, str]) -> None:
     assert b"200 OK" in exchanged(run, request("getPid", "/x", **fields))
 
 
-def test_own_names_are_those_of_ros_and_of_the_computer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_own_names_include_names_of_ros_and_of_the_computer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     hosts = tmp_path / "hosts"
     hosts.write_text(
         "127.0.0.1 localhost\n0.0.0.0 ads.example  # none\n127.0.1.1 robot.lab.example robot arm\n", encoding="utf-8"
@@ -172,7 +172,7 @@ BAD_REQUESTS = {
 
 
 @pytest.mark.parametrize("data", BAD_REQUESTS.values(), ids=list(BAD_REQUESTS))
-def test_what_is_no_request_is_refused_before_it_is_read(run: Joined, data: bytes) -> None:
+def test_malformed_request_is_refused_before_its_body_is_read(run: Joined, data: bytes) -> None:
     found = exchanged(run, data)
     assert found == b"" or found.startswith((b"HTTP/1.1 4", b"HTTP/1.1 501")), found[:100]
     assert is_served(run)
@@ -208,7 +208,7 @@ BAD_BODIES = {
 
 
 @pytest.mark.parametrize("body", BAD_BODIES.values(), ids=list(BAD_BODIES))
-def test_what_is_no_xml_rpc_is_a_fault(run: Joined, body: bytes) -> None:
+def test_malformed_xml_rpc_body_is_a_fault(run: Joined, body: bytes) -> None:
     with pytest.raises(RpcError):
         read_body(body)
     head = f"{HEAD}Connection: close\r\nContent-Length: {len(body)}\r\n\r\n".encode()
@@ -291,7 +291,7 @@ def test_requests_wait_for_their_turn(run: Joined) -> None:
     stranger.close()
 
 
-def test_connections_that_are_opened_and_left_give_way(run: Joined, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_idle_connections_are_closed_when_places_are_needed(run: Joined, monkeypatch: pytest.MonkeyPatch) -> None:
     places = run.host.bounds.places
     monkeypatch.setattr(places, "_most", 8)
     service = run.host.service_uri("/server")
@@ -312,7 +312,7 @@ def test_connections_that_are_opened_and_left_give_way(run: Joined, monkeypatch:
         each.close()
 
 
-def test_a_place_is_refused_when_all_others_are_of_use(run: Joined, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_new_connection_is_refused_when_all_others_are_in_use(run: Joined, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(run.host.bounds.places, "_most", 2)
     service = run.host.service_uri("/server")
     fields = {"service": "/switch", "persistent": "1", **SET_BOOL}
@@ -326,7 +326,9 @@ def test_a_place_is_refused_when_all_others_are_of_use(run: Joined, monkeypatch:
     run.run_while(lambda: bool(len(run.host.bounds.places)))
 
 
-def test_the_largest_unfinished_message_gives_way(run: Joined, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_largest_unfinished_message_is_closed_when_memory_is_needed(
+    run: Joined, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(run.host.bounds.room, "_most", 300_000)
     service = run.host.service_uri("/server")
     small, large = opened(run), run.connected(service, {"service": "/switch", **SET_BOOL})
@@ -357,7 +359,7 @@ def test_a_huge_frame_ends_its_connection(run: Joined, size: int) -> None:
     stranger.close()
 
 
-def test_a_caller_that_does_not_wait_is_held_back(run: Joined) -> None:
+def test_caller_that_does_not_wait_gets_all_answers(run: Joined) -> None:
     wire = run.connected(run.host.service_uri("/server"), {"service": "/switch", "persistent": "1", **SET_BOOL})
     wire.header()
     wire.frames.has_status = True
@@ -366,7 +368,7 @@ def test_a_caller_that_does_not_wait_is_held_back(run: Joined) -> None:
     wire.socket.close()
 
 
-def test_a_caller_that_has_left_is_not_served_any_more(run: Joined) -> None:
+def test_caller_that_left_is_not_served_any_more(run: Joined) -> None:
     wire = run.connected(run.host.service_uri("/server"), {"service": "/switch", "persistent": "1", **SET_BOOL})
     wire.header()
     wire.socket.sendall(b"\x01\0\0\0\x01" * 2_000)
@@ -419,7 +421,7 @@ def test_calls_of_a_service_that_wait_are_bounded(tmp_path: Path, monkeypatch: p
         again.socket.close()
 
 
-def test_many_messages_that_cannot_be_read_make_few_lines(tmp_path: Path) -> None:
+def test_unreadable_messages_are_logged_a_limited_number_of_times(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER}) as run:
         before = len(run.mission.console.lines)
         speaker = OutsideSpeaker(run, "/orders")
@@ -505,7 +507,7 @@ BAD_ANSWERS = {
 
 
 @pytest.mark.parametrize("data", BAD_ANSWERS.values(), ids=list(BAD_ANSWERS))
-def test_an_answer_that_is_none_is_an_error(data: bytes) -> None:
+def test_malformed_answer_is_an_error(data: bytes) -> None:
     server = Answering(data)
     found: list[Any] = []
     errands = Errands()
@@ -516,7 +518,7 @@ def test_an_answer_that_is_none_is_an_error(data: bytes) -> None:
     errands.close()
 
 
-def test_many_errands_are_done_by_few_threads_and_too_many_are_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_many_errands_use_few_threads_and_too_many_are_dropped(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(errands_module, "MOST_LINES", 50)
     monkeypatch.setattr(errands_module, "MOST_THREADS", 3)
     gate, done, told = errands_module.threading.Event(), [], []
@@ -537,7 +539,7 @@ def test_many_errands_are_done_by_few_threads_and_too_many_are_left_out(monkeypa
     errands.close()
 
 
-def test_a_master_that_is_none_is_told(tmp_path: Path) -> None:
+def test_peer_that_is_not_a_master_is_reported(tmp_path: Path) -> None:
     from cfepy.extra.ros_host import JoinedMaster
 
     server = Answering(b"HTTP/1.1 200 OK\r\nContent-Length: 5\r\n\r\nhello")

@@ -27,7 +27,7 @@ pytestmark = [
 
 
 @pytest.mark.parametrize("way", ["serve", "join"])
-def test_ten_thousand_messages_each_way_at_once_are_all_there(way: str, tmp_path: Path) -> None:
+def test_ten_thousand_messages_in_each_direction_arrive(way: str, tmp_path: Path) -> None:
     if way == "join":
         with rosmaster(tmp_path) as graph:
             stream(tmp_path, graph.environ["ROS_MASTER_URI"])

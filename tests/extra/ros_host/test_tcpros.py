@@ -16,12 +16,12 @@ def test_a_header_is_a_frame_of_fields() -> None:
 
 
 @pytest.mark.parametrize("damaged", [b"\x01\x00", b"\x09\x00\x00\x00a=b", b"\x03\x00\x00\x00abc"])
-def test_a_damaged_header_is_told(damaged: bytes) -> None:
+def test_damaged_header_is_refused(damaged: bytes) -> None:
     with pytest.raises(WireError):
         parse_header(damaged)
 
 
-def test_frames_come_in_any_pieces() -> None:
+def test_frames_are_parsed_from_any_pieces() -> None:
     stream = frame(b"one") + frame(b"") + frame(b"three")
     for size in range(1, len(stream) + 1):
         frames = TcprosFrames()
@@ -32,7 +32,7 @@ def test_frames_come_in_any_pieces() -> None:
         assert found == [b"one", b"", b"three"], size
 
 
-def test_an_answer_has_a_byte_in_front() -> None:
+def test_answer_begins_with_a_status_byte() -> None:
     frames = TcprosFrames()
     frames.add(frame(b"header") + b"\x01" + frame(b"good") + b"\x00" + frame(b"bad"))
     found = []
@@ -42,7 +42,7 @@ def test_an_answer_has_a_byte_in_front() -> None:
     assert found == [b"header", b"\x01good", b"\x00bad"]
 
 
-def test_a_length_that_no_message_has_ends_the_connection() -> None:
+def test_impossible_length_ends_the_connection() -> None:
     frames = TcprosFrames()
     frames.add(b"GET / HTTP/1.1\r\n\r\n")
     with pytest.raises(WireError, match="not TCPROS"):

@@ -26,7 +26,7 @@ def run(tmp_path: Path) -> Iterator[Bridged]:
         yield run
 
 
-def test_a_connection_that_asks_for_nothing_gives_way(run: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_idle_connection_is_closed_when_places_are_needed(run: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(websocket_listener, "MOST_CLIENTS", 4)
     left = [socket.create_connection((LOOPBACK, run.port)) for _ in range(20)]
     left[0].sendall(b"GET / HTTP/1.1\r\n")
@@ -40,9 +40,7 @@ def test_a_connection_that_asks_for_nothing_gives_way(run: Bridged, monkeypatch:
     client.close()
 
 
-def test_an_idle_client_gives_way_and_one_that_takes_part_does_not(
-    run: Bridged, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_idle_client_is_closed_before_an_active_one(run: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(websocket_listener, "MOST_CLIENTS", 2)
     hears, idle = run.client(), run.client()
     hears.send(op="subscribe", topic="/chatter")
@@ -59,7 +57,7 @@ def test_an_idle_client_gives_way_and_one_that_takes_part_does_not(
         each.close()
 
 
-def test_clients_without_a_sign_of_life_end_when_places_are_few(run: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_silent_clients_are_closed_when_places_are_few(run: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(websocket_listener, "SILENCE_S", 0.0)
     monkeypatch.setattr(websocket_listener, "MOST_CLIENTS", 4)
     alive, other = run.client(), run.client()
@@ -118,7 +116,7 @@ EXCESSIVE_TEXTS = {
 
 
 @pytest.mark.parametrize("text", EXCESSIVE_TEXTS.values(), ids=list(EXCESSIVE_TEXTS))
-def test_json_that_is_too_much_is_refused(run: Bridged, text: str) -> None:
+def test_excessive_json_is_refused(run: Bridged, text: str) -> None:
     for each in (text, text.encode()):
         with pytest.raises(ValueError, match=r"more than|too deeply|Exceeds|Expecting"):
             bounded_json.loads(each)
@@ -139,7 +137,7 @@ TRICKS: dict[str, list[dict[str, Any]]] = {
 
 
 @pytest.mark.parametrize("ops", TRICKS.values(), ids=list(TRICKS))
-def test_a_trick_is_answered_with_an_error(run: Bridged, ops: list[dict[str, Any]]) -> None:
+def test_malicious_message_is_answered_with_an_error(run: Bridged, ops: list[dict[str, Any]]) -> None:
     client = run.client()
     for op in ops:
         client.send(**op)
@@ -179,7 +177,7 @@ def test_names_from_outside_are_bounded(run: Bridged, monkeypatch: pytest.Monkey
     client.close()
 
 
-def test_a_turn_that_is_over_leaves_the_rest_for_the_next(run: Bridged) -> None:
+def test_expired_turn_leaves_the_remaining_messages_for_the_next(run: Bridged) -> None:
     turn, client = run.server._listener._turn, run.client()
     seconds, turn._seconds = turn._seconds, 0.0
     for _ in range(5):
@@ -223,7 +221,7 @@ COMMANDS = [
 ]
 
 
-def test_a_command_that_is_none_is_dropped_and_the_viewer_stays(tmp_path: Path) -> None:
+def test_invalid_command_is_dropped_and_the_viewer_stays_connected(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {"talker": SHOWN_TALKER})) as run, run.client() as client:
         client.advertise(1, "/cfe/CFE_ES_STOP_APP", "x", "json")
         for each in COMMANDS:

@@ -25,7 +25,7 @@ HERE = ListenPlace("127.0.0.1", 9090)
         ("127.example.org:9090", "127.example.org", 9090, False),
     ],
 )
-def test_a_place(text: str, host: str, port: int, is_loopback: bool) -> None:
+def test_listen_place_is_parsed(text: str, host: str, port: int, is_loopback: bool) -> None:
     place = listen_place_of(text)
     assert place == (host, port)
     assert place.is_loopback is is_loopback
@@ -34,23 +34,23 @@ def test_a_place(text: str, host: str, port: int, is_loopback: bool) -> None:
 @pytest.mark.parametrize(
     "text", ["", "x", "65536", "-1", "::1:9090", "http://here:9090", "me@here:1", "9090:", "\u0663"]
 )
-def test_no_place(text: str) -> None:
+def test_invalid_listen_place_is_refused(text: str) -> None:
     with pytest.raises(ValueError, match="invalid address"):
         listen_place_of(text)
 
 
-def test_an_address_is_written_as_it_is_read() -> None:
+def test_address_is_written_as_it_was_parsed() -> None:
     for text in ("127.0.0.1:9090", "[::1]:9090"):
         assert str(listen_place_of(text)) == text
 
 
-def test_on_loopback_nobody_needs_a_token() -> None:
+def test_loopback_needs_no_token() -> None:
     told: list[str] = []
     assert admission_to(HERE, None, environ={}, tell=told.append).token == ""
     assert not told
 
 
-def test_elsewhere_a_token_is_made_and_told() -> None:
+def test_token_is_generated_and_printed_for_other_addresses() -> None:
     told: list[str] = []
     admission = admission_to(OPEN, None, environ={}, tell=told.append)
     assert len(admission.token) >= 24
@@ -58,7 +58,7 @@ def test_elsewhere_a_token_is_made_and_told() -> None:
     assert admission.token != admission_to(OPEN, None, environ={}).token
 
 
-def test_a_token_that_was_given_holds_everywhere_and_is_not_told() -> None:
+def test_given_token_is_used_everywhere_and_not_printed() -> None:
     told: list[str] = []
     for place in (HERE, OPEN):
         assert admission_to(place, None, environ={"CFEPY_VIEWER_TOKEN": "from-outside"}).token == "from-outside"
@@ -69,18 +69,18 @@ def test_a_token_that_was_given_holds_everywhere_and_is_not_told() -> None:
 
 
 @pytest.mark.parametrize("token", ["short", "with a space", "caf\u00e9-caf\u00e9"])
-def test_a_token_that_is_none(token: str) -> None:
+def test_invalid_token_is_refused(token: str) -> None:
     with pytest.raises(UsageError, match="a token must have at least 8"):
         admission_to(HERE, token)
 
 
-def test_who_knows_the_token() -> None:
+def test_token_is_compared_exactly() -> None:
     assert Admission("right-one").knows("right-one")
     assert not any(Admission("right-one").knows(each) for each in ("", "wrong-one", "right-one ", "\ud800"))
     assert not Admission("").knows(""), "where there is no token, nobody knows it"
 
 
-def test_pages_of_this_computer_and_programs_are_welcome_others_are_not() -> None:
+def test_local_pages_and_programs_are_accepted_and_others_refused() -> None:
     here = Admission()
     for origin in (None, "http://localhost:8000", "http://127.0.0.1:1", "https://[::1]:3000"):
         assert here.welcomes(origin)
@@ -93,7 +93,7 @@ def test_pages_of_this_computer_and_programs_are_welcome_others_are_not() -> Non
     assert listen_place_of("127.8.9.10:1").is_loopback
 
 
-def test_origins_that_were_named_are_welcome() -> None:
+def test_named_origins_are_accepted() -> None:
     some = Admission(origins=["https://app.example.org/"])
     assert some.welcomes("https://app.example.org")
     assert not some.welcomes("https://example.org")
@@ -111,7 +111,7 @@ def test_origins_that_were_named_are_welcome() -> None:
         ("file://", "file://"),
     ],
 )
-def test_an_origin_is_found_as_browsers_say_it(said: str, by_browser: str) -> None:
+def test_origin_is_compared_in_the_form_of_browsers(said: str, by_browser: str) -> None:
     assert Admission(origins=[said]).welcomes(by_browser)
 
 
@@ -127,6 +127,6 @@ def test_an_origin_is_found_as_browsers_say_it(said: str, by_browser: str) -> No
         ("file:///home/me/page.html", "pages that are files have the origin null"),
     ],
 )
-def test_what_no_page_can_have_as_its_origin_is_refused(text: str, hint: str) -> None:
+def test_invalid_origin_is_refused(text: str, hint: str) -> None:
     with pytest.raises(UsageError, match=f"--viewer-origin: .*{hint}"):
         admission_to(HERE, None, [text], environ={})

@@ -75,7 +75,7 @@ def printed(lines: Sequence[str]) -> list[str]:
     return [line.removeprefix("[counter] ") for line in lines if line.startswith("[counter] ")]
 
 
-def test_a_node_that_counts_its_starts_has_one_digest(node: Path, tmp_path: Path) -> None:
+def test_node_that_counts_its_starts_has_one_digest(node: Path, tmp_path: Path) -> None:
     runs = [fly(plan_of(node, tasks)) for tasks in ("thread", "greenlet", "thread")]
     assert len({run.trace for run in runs}) == 1
     lines = printed(runs[0].mission.console.lines)
@@ -87,7 +87,7 @@ def test_a_node_that_counts_its_starts_has_one_digest(node: Path, tmp_path: Path
     assert not os.path.exists(name)
 
 
-def test_its_journal_has_what_it_read_and_gives_the_run_again(node: Path, tmp_path: Path) -> None:
+def test_journal_has_the_read_files_and_reproduces_the_run(node: Path, tmp_path: Path) -> None:
     flown = record(plan_of(node), tmp_path / "run.cfepy")
     journal = read_journal(tmp_path / "run.cfepy")
     assert {os.path.basename(path) for path in journal.files} == {"counter.py", "starts"}
@@ -95,7 +95,7 @@ def test_its_journal_has_what_it_read_and_gives_the_run_again(node: Path, tmp_pa
     assert_same_again(journal, flown.trace)
 
 
-def test_what_it_wrote_can_be_kept(node: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_written_files_can_be_saved(node: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     assert main(["node", str(node), "--for", "1", "--save-files", str(out)]) == 0
     said = capsys.readouterr().out
@@ -127,9 +127,7 @@ while not rospy.is_shutdown():
         ["explore", "--for", "3", "--seeds", "100000", "--from", "1s"],
     ],
 )
-def test_a_signal_takes_the_files_of_a_run_away(
-    words: list[str], how: signal.Signals, node: Path, tmp_path: Path
-) -> None:
+def test_signal_removes_the_files_of_a_run(words: list[str], how: signal.Signals, node: Path, tmp_path: Path) -> None:
     node.write_text(WRITER, encoding="utf-8")
     folder = tmp_path / "scratch"
     folder.mkdir()
@@ -180,7 +178,7 @@ print(sorted(os.listdir(scratch)))
 """
 
 
-def test_modules_of_the_standard_library_find_what_the_run_wrote(node: Path, tmp_path: Path) -> None:
+def test_standard_library_finds_files_written_in_the_run(node: Path, tmp_path: Path) -> None:
     node.write_text(LIBRARY, encoding="utf-8")
     flown = fly(plan_of(node))
     assert printed(flown.mission.console.lines) == [
@@ -220,7 +218,7 @@ print(os.stat("starts").st_size)
 """
 
 
-def test_a_process_that_waits_for_schedules_leaves_no_files(node: Path, tmp_path: Path) -> None:
+def test_process_that_waits_for_schedules_leaves_no_files(node: Path, tmp_path: Path) -> None:
     node.write_text(AT_ODDS, encoding="utf-8")
     judge = ForkingJudge(Trial(replace(plan_of(node, "greenlet"), schedule=Schedule.parse("random:0:from=700ms"))))
     try:
@@ -231,7 +229,7 @@ def test_a_process_that_waits_for_schedules_leaves_no_files(node: Path, tmp_path
     assert left(tmp_path) == ["home", "home/counter.py", "home/starts"]
 
 
-def test_processes_that_part_have_files_of_their_own(node: Path, tmp_path: Path) -> None:
+def test_forked_processes_have_separate_files(node: Path, tmp_path: Path) -> None:
     node.write_text(FORKED, encoding="utf-8")
     (node.parent / "lines").write_text("one\ntwo\n", encoding="utf-8")
     another = Overlay()  # of a mission that lives on in this process while others are forked from it

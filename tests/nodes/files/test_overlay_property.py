@@ -128,7 +128,7 @@ def act(system: Any, opening: Callable[..., Any], folder: str, operation: tuple[
 @example([("chmod", "d", 0o644), ("rename", "d", "b")])
 @example([("chmod", "d", 0o644), ("walk", "d")])
 @example([("chmod", "d", 0o555), ("rename", "d", "b")])
-def test_as_on_a_real_folder(script: list[tuple[Any, ...]]) -> None:
+def test_operations_act_as_on_a_real_folder(script: list[tuple[Any, ...]]) -> None:
     with TemporaryDirectory() as host, TemporaryDirectory() as other, Kernel() as kernel:
         if hasattr(os, "geteuid") and os.geteuid() == 0:
             os.chown(other, NOBODY, -1)
@@ -152,7 +152,7 @@ def test_as_on_a_real_folder(script: list[tuple[Any, ...]]) -> None:
 
 
 @pytest.mark.skipif(not os.path.isdir("/proc/self/fd"), reason="needs a system that shows open files as a folder")
-def test_a_folder_may_change_while_it_is_read() -> None:
+def test_folder_may_change_while_it_is_read() -> None:
     with Kernel() as kernel:
         system = Universe(kernel, name="node", overlay=Overlay()).importer.load("os")
         assert "1" in {entry.name for entry in system.scandir("/proc/self/fd")}

@@ -53,7 +53,7 @@ def test_all_files_belong_to_one_user(lines: Callable[[str], list[str]]) -> None
     assert found == [f"{USER} {GROUP} 1"] * 8 + [f"{USER} {GROUP}"]
 
 
-def test_a_program_is_that_user(lines: Callable[[str], list[str]]) -> None:
+def test_child_program_has_the_user_of_the_run(lines: Callable[[str], list[str]]) -> None:
     before = os.getuid(), os.getgid(), os.getgroups()
     found = lines(
         """
@@ -80,7 +80,7 @@ def test_a_program_is_that_user(lines: Callable[[str], list[str]]) -> None:
 
 
 @pytest.mark.parametrize("name", ["anna", "root"])
-def test_names_are_those_of_the_environment(lines: Callable[..., list[str]], name: str) -> None:
+def test_user_names_come_from_the_environment(lines: Callable[..., list[str]], name: str) -> None:
     found = lines(
         """
         import getpass, grp, os, pathlib, pwd
@@ -102,7 +102,7 @@ def test_names_are_those_of_the_environment(lines: Callable[..., list[str]], nam
     assert len(found) == 7
 
 
-def test_a_user_without_a_name_is_node(lines: Callable[[str], list[str]]) -> None:
+def test_user_without_a_name_is_node(lines: Callable[[str], list[str]]) -> None:
     assert lines("import getpass, os\nprint(getpass.getuser(), os.getlogin())") == ["node node"]
 
 
@@ -140,7 +140,7 @@ def test_permissions_do_not_depend_on_the_umask_of_the_computer(lines: Callable[
         ("open('locked', 'w')", "'locked'"),
     ],
 )
-def test_nobody_is_root_in_a_run(lines: Callable[[str], list[str]], tmp_path: Path, act: str, told: str) -> None:
+def test_user_of_a_run_is_not_root(lines: Callable[[str], list[str]], tmp_path: Path, act: str, told: str) -> None:
     (tmp_path / "locked").write_text("host", encoding="utf-8")
     os.chmod(tmp_path / "locked", 0o444)
     before = {path: path.stat().st_mode for path in tmp_path.iterdir()}
@@ -149,7 +149,7 @@ def test_nobody_is_root_in_a_run(lines: Callable[[str], list[str]], tmp_path: Pa
     assert {path: path.stat().st_mode for path in before} == before
 
 
-def test_access_answers_as_the_user(lines: Callable[[str], list[str]]) -> None:
+def test_access_checks_the_user_of_the_run(lines: Callable[[str], list[str]]) -> None:
     found = lines(
         """
         import os
@@ -163,7 +163,7 @@ def test_access_answers_as_the_user(lines: Callable[[str], list[str]]) -> None:
     assert found == [str([True, True, False, False, True, True, True, True, False, False, False, False]), "True"]
 
 
-def test_a_file_of_the_host_is_written_in_the_run_whoever_owns_it(lines: Callable[[str], list[str]]) -> None:
+def test_file_of_the_host_can_be_written_in_the_run_for_any_owner(lines: Callable[[str], list[str]]) -> None:
     before = Path("/etc/passwd").read_bytes()
     found = lines(
         "open('/etc/passwd', 'a').write('x')\nopen('/etc/new', 'w').write('y')\nprint(open('/etc/new').read())"
@@ -173,7 +173,9 @@ def test_a_file_of_the_host_is_written_in_the_run_whoever_owns_it(lines: Callabl
     assert not os.path.exists("/etc/new")
 
 
-def test_an_open_file_of_the_host_keeps_what_it_says(lines: Callable[[str], list[str]], tmp_path: Path) -> None:
+def test_permissions_of_an_open_host_file_are_private_to_the_run(
+    lines: Callable[[str], list[str]], tmp_path: Path
+) -> None:
     host = tmp_path / "host"
     os.chmod(host, 0o640)
     found = lines(
@@ -198,7 +200,7 @@ def test_an_open_file_of_the_host_keeps_what_it_says(lines: Callable[[str], list
     assert stat.S_IMODE(host.stat().st_mode) == 0o640
 
 
-def test_folders_that_nobody_may_enter_go_with_the_run(
+def test_inaccessible_folders_are_removed_after_the_run(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
@@ -217,7 +219,7 @@ print(os.getuid(), os.stat("own"), os.stat("host"), os.access("host", os.W_OK), 
 """
 
 
-def test_a_journal_replays_for_another_user_with_another_umask(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_journal_replays_for_another_user_with_another_umask(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The journal also covers files of root and of others."""
     home = tmp_path / "home"
     home.mkdir()
@@ -249,7 +251,7 @@ def Asking(cfe):
 """
 
 
-def test_an_application_is_the_same_user(tmp_path: Path) -> None:
+def test_application_has_the_user_of_the_run(tmp_path: Path) -> None:
     (tmp_path / "startup.scr").write_text("CFE_APP, asking, Asking, ASKING, 90, 16384, 0x0, 0;\n!\n", encoding="utf-8")
     (tmp_path / "asking.py").write_text(APP, encoding="utf-8")
     found = fly(RunPlan((str(tmp_path),), seconds=1.0)).mission.console.lines

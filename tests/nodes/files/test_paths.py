@@ -20,7 +20,7 @@ def test_the_drive_is_parted_from_a_path(path: str, found: tuple[str, str]) -> N
     assert parted(path) == found
 
 
-def test_a_path_comes_back_from_its_place() -> None:
+def test_path_is_recovered_from_its_place() -> None:
     place = place_below("D:/Temp/run", "C:/a/b.txt")
     assert place == "D:/Temp/run/C/a/b.txt"
     assert path_below("D:/Temp/run", place.replace("/", "\\")) == "C:/a/b.txt"

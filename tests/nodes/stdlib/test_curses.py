@@ -17,7 +17,7 @@ def program_of(*lines: str) -> str:
     return SCREEN.format(body="\n".join(f"    {line}" for line in lines))
 
 
-def test_what_is_refreshed_is_printed_once(run):
+def test_refreshed_text_is_printed_once(run):
     source = program_of(
         "screen.addstr(2, 3, 'speed %d' % 1, curses.A_BOLD)",
         "screen.refresh()",
@@ -39,7 +39,7 @@ def test_arrows_and_plain_keys(run):
     assert run(source, keys=keys).lines == ["True x KEY_LEFT KEY_F(5)"]
 
 
-def test_an_escape_alone_is_a_key(run):
+def test_single_escape_is_a_key(run):
     source = program_of("print([screen.getch() for _ in range(2)])")
     assert run(source, keys=["\x1b", "["]).lines == [f"[27, {ord('[')}]"]
 
@@ -61,7 +61,7 @@ def test_without_a_key(run):
     assert run(source, keys=[]).lines == ["-1", "-1 0.5", "-1 0.7", "no input"]
 
 
-def test_windows_lie_over_the_screen(run):
+def test_windows_cover_the_screen(run):
     source = program_of(
         "screen.addstr(0, 0, 'under')",
         "screen.noutrefresh()",
@@ -74,7 +74,7 @@ def test_windows_lie_over_the_screen(run):
     assert run(source, keys=[]).lines == ["under     +----+", "          |over|", "          +----+"]
 
 
-def test_writing_outside_is_an_error(run):
+def test_write_outside_the_screen_is_an_error(run):
     source = program_of(
         "for place in ((24, 0), (0, 80), (-1, 0)):",
         "    try:",
@@ -91,6 +91,6 @@ def test_ctrl_c_leaves_the_wrapper(run):
     assert program.universe.exit_status == 130
 
 
-def test_without_a_terminal(run):
+def test_curses_without_a_terminal_is_an_error(run):
     program = run(program_of("print('not here')"))
     assert program.lines[-1] == "_curses.error: could not find terminal"

@@ -203,12 +203,12 @@ def test_all_outcomes_are_reached(script: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize(("script", "name"), [(name, name) for name in PROGRAMS], indirect=["script"])
-def test_the_default_schedule_is_the_same_run_when_it_is_asked_for(script: Path, name: str) -> None:
+def test_explicit_default_schedule_gives_the_same_run(script: Path, name: str) -> None:
     assert flown(script, Policy()) == flown(script)
 
 
 @pytest.mark.parametrize("script", ["lock"], indirect=True)
-def test_what_the_standard_library_does_for_itself_needs_no_decisions(script: Path) -> None:
+def test_internal_locks_of_the_standard_library_need_no_decisions(script: Path) -> None:
     noted = NotingPolicy()
     assert flown(script, noted)[0] == "ab"
     lines = ["a starts", "a takes", "a gives", "b starts", "b takes", "b gives", "join"]

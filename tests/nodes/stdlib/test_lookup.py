@@ -135,7 +135,7 @@ def test_lookup(run, tmp_path, body):
     assert "Traceback" not in program.text
 
 
-def test_a_nodes_main_is_not_the_hosts(run):
+def test_main_module_of_a_node_differs_from_the_hosts(run):
     program = run("""
         import pickle, sys
         class OnlyHere: pass

@@ -104,7 +104,7 @@ def test_uncaught_error_shows_the_nodes_lines_only(run):
     assert {os.path.basename(file) for file in files} == {"node.py"}
 
 
-def test_a_nodes_own_tracebacks_hide_the_simulator_too(run):
+def test_own_tracebacks_of_a_node_hide_the_simulator(run):
     program = run("""
         import time, traceback
         try:
@@ -198,13 +198,13 @@ def test_signals_are_the_nodes_own(run):
         "import xmlrpc.client; xmlrpc.client.ServerProxy('http://localhost:1').f()",
     ],
 )
-def test_refused(run, body):
+def test_unsupported_operations_are_refused(run, body):
     program = run(body)
     assert program.universe.exit_status == 1
     assert "is not available on the simulated computer; " in program.lines[-1]
 
 
-def test_modules_that_refuse_their_use_can_be_imported(run):
+def test_modules_with_unsupported_functions_can_be_imported(run):
     program = run("""
         import http.server, logging.handlers, multiprocessing, select, socket, socketserver, subprocess, urllib.request
         print(socket.gethostname(), multiprocessing.cpu_count(), select.select([], [], [], 0.5))
@@ -216,7 +216,7 @@ def test_modules_that_refuse_their_use_can_be_imported(run):
     assert program.lines == ["cfepy 1 ([], [], [])", "caught"]
 
 
-def test_two_nodes_share_nothing(start, tmp_path):
+def test_two_nodes_share_no_state(start, tmp_path):
     (tmp_path / "counter.py").write_text("value = 0\n", encoding="utf-8")
     source = """
         import builtins, counter, logging, os, random, sys, threading, time
@@ -261,7 +261,7 @@ def test_settings_of_a_process_stay_in_the_node(run):
     assert (gc.isenabled(), gc.get_threshold(), len(gc.callbacks), locale.setlocale(locale.LC_ALL)) == before
 
 
-def test_what_was_written_to_open_files_is_in_them_at_the_end(run, tmp_path):
+def test_open_files_are_flushed_at_the_end(run, tmp_path):
     program = run(
         """
         import csv, io, pathlib
@@ -281,12 +281,12 @@ def test_what_was_written_to_open_files_is_in_them_at_the_end(run, tmp_path):
     assert (tmp_path / "text.txt").read_text(encoding="utf-8") == "letters"
 
 
-def test_what_a_killed_program_wrote_is_in_its_files(start, tmp_path):
+def test_files_of_a_killed_program_are_flushed(start, tmp_path):
     program = start("kept = open('kept.txt', 'w'); kept.write('words')\nimport time; time.sleep(100)", cwd=tmp_path)
     program.kernel.run(10**9)
     program.kernel.unwind()
     assert (tmp_path / "kept.txt").read_text(encoding="utf-8") == "words"
 
 
-def test_no_option_brings_encryption(run):
+def test_ssl_is_refused_without_advice_about_realtime(run):
     assert "--realtime" not in run("import ssl").lines[-1]

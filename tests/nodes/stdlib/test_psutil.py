@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-def test_the_load_is_that_of_the_node(run):
+def test_load_shows_the_processor_of_the_node(run):
     program = run(
         """
         import psutil, time
@@ -18,7 +18,7 @@ def test_the_load_is_that_of_the_node(run):
     assert program.lines == ["50.0 0.0 1", "0.0 1 1"]
 
 
-def test_memory_is_an_idle_computers(run):
+def test_memory_shows_an_idle_computer(run):
     program = run(
         """
         import os, psutil
@@ -34,6 +34,6 @@ def test_memory_is_an_idle_computers(run):
     assert program.lines == ["0.0 True True", "{} 0.0 0", "process PID not found (pid=1)"]
 
 
-def test_a_process_has_no_connections(run):
+def test_process_has_no_connections(run):
     program = run("import psutil\nprint(psutil.Process().net_connections(), psutil.Process().connections('tcp'))")
     assert program.lines == ["[] []"]

@@ -223,7 +223,7 @@ def test_servers_of_the_standard_library(run: Run, network: Network) -> None:
     assert program.lines == ["HELLO", "", "b'/status'", "b'cba'"]
 
 
-def test_two_nodes_meet_and_an_ended_one_leaves_nothing(start: Run, network: Network) -> None:
+def test_two_nodes_connect_and_an_ended_node_leaves_nothing(start: Run, network: Network) -> None:
     server = start(
         """
         import socket, time
@@ -263,7 +263,7 @@ def test_names(run: Run) -> None:
 
 
 @pytest.mark.parametrize("body", ["import socket\nsocket.socket()", "import subprocess\nsubprocess.run(['ls'])"])
-def test_a_refusal_says_who_and_where(run: Run, body: str) -> None:
+def test_refusal_names_the_node_and_the_line(run: Run, body: str) -> None:
     program = run(body, name="driver")
     assert program.lines[-1].endswith(f"(node driver, {program.universe.script}:2)")
     assert "is not available on the simulated computer; " in program.lines[-1]

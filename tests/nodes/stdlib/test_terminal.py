@@ -19,7 +19,7 @@ def test_input_reads_lines_as_they_are_typed(run):
     assert program.lines == ["name? bob 0.1", "'two\\n' 1.2", "['three\\n', 'four\\n'] True"]
 
 
-def test_a_line_can_be_corrected_before_it_is_read(run):
+def test_line_can_be_corrected_before_it_is_read(run):
     program = run("print(input(), input())", keys=["abx\x7fc\n", "wrong\x15right\n"])
     assert program.lines == ["abc right"]
 
@@ -68,7 +68,7 @@ except KeyboardInterrupt:
     assert program.lines == ["'w'", "interrupted"]
 
 
-def test_what_was_begun_in_cooked_mode_can_be_read_in_raw_mode(run):
+def test_keys_typed_in_cooked_mode_can_be_read_in_raw_mode(run):
     source = """
         import os, sys, time, tty
         time.sleep(0.15)
@@ -101,12 +101,12 @@ def test_reading_without_waiting(run):
     assert program.lines == ["11", "b'' 0.2"]
 
 
-def test_a_password_is_typed_as_well(run):
+def test_password_is_typed_with_keys(run):
     program = run("import getpass\nprint(getpass.getpass('secret: '))", keys=["x\n"])
     assert program.lines[-1] == "x"
 
 
-def test_the_hosts_terminal_is_out_of_reach(run):
+def test_terminal_of_the_host_is_inaccessible(run):
     source = """
         import os
         for opens in (open, lambda path: os.open(path, os.O_RDWR)):
@@ -118,7 +118,7 @@ def test_the_hosts_terminal_is_out_of_reach(run):
     assert run(source).lines == ["[Errno 6] No such device or address: '/dev/tty'"] * 2
 
 
-def test_flushing_forgets_keys(run):
+def test_flush_discards_keys(run):
     program = run(
         """
         import sys, termios, time, tty
@@ -150,7 +150,7 @@ def test_size_and_names_of_the_terminal(run):
     ]
 
 
-def test_without_keys_there_is_no_terminal(run):
+def test_node_without_keys_has_no_terminal(run):
     program = run(
         """
         import os, sys, termios
@@ -173,7 +173,7 @@ def test_without_keys_there_is_no_terminal(run):
         ("thread.join()", "a thread"),
     ],
 )
-def test_ctrl_c_ends_what_the_main_thread_waits_for(run, wait, where):
+def test_ctrl_c_ends_the_wait_of_the_main_thread(run, wait, where):
     program = run(
         f"""
         import os, queue, threading, time
@@ -191,7 +191,7 @@ def test_ctrl_c_ends_what_the_main_thread_waits_for(run, wait, where):
     assert program.universe.exit_status == 3
 
 
-def test_an_uncaught_ctrl_c_is_told_as_python_does(run):
+def test_uncaught_ctrl_c_has_the_traceback_of_python(run):
     program = run("import time\ntime.sleep(10)", keys=["\x03"])
     assert program.lines[0] == "Traceback (most recent call last):"
     assert program.lines[-1] == "KeyboardInterrupt"
@@ -199,7 +199,7 @@ def test_an_uncaught_ctrl_c_is_told_as_python_does(run):
     assert program.kernel.now < 200_000_000
 
 
-def test_a_handler_of_the_node_gets_ctrl_c(run):
+def test_handler_of_the_node_gets_ctrl_c(run):
     program = run(
         """
         import signal, sys, time

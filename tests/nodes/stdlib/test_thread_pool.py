@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 
-def test_results_come_in_virtual_time(run):
+def test_results_arrive_in_virtual_time(run):
     program = run("""
         import time
         from multiprocessing.pool import ThreadPool

@@ -70,7 +70,7 @@ def test_queue_timer_and_pool(run):
     assert program.universe.tasks == ()
 
 
-def test_same_trace_on_both_contexts(tmp_path):
+def test_trace_is_the_same_on_threads_and_greenlets(tmp_path):
     script = tmp_path / "workers.py"
     script.write_text(dedent(WORKERS), encoding="utf-8")
     seen = set()
@@ -147,7 +147,7 @@ def test_waiters_of_a_lock_are_served_in_order(run):
     assert program.global_("log") == [0, 1, 2, 3, 4]
 
 
-def test_local_belongs_to_a_thread_and_calls_init_in_each(run):
+def test_local_is_separate_for_each_thread_and_calls_init_in_each(run):
     program = run("""
         import threading, time
         class Own(threading.local):
@@ -169,7 +169,7 @@ def test_local_belongs_to_a_thread_and_calls_init_in_each(run):
     assert program.global_("seen") == [10, 11, 12]
 
 
-def test_error_in_a_thread_is_shown_and_the_node_goes_on(run):
+def test_error_in_a_thread_is_shown_and_the_node_continues(run):
     program = run("""
         import threading, time
         def fail():
@@ -235,7 +235,7 @@ def test_killing_a_node_unwinds_all_its_threads(start):
     assert program.text == ""
 
 
-def test_a_thread_that_never_ran_ends_with_the_program(run):
+def test_thread_that_never_ran_ends_with_the_program(run):
     program = run("""
         import _thread
         _thread.start_new_thread(print, ("too late",))
@@ -246,7 +246,7 @@ def test_a_thread_that_never_ran_ends_with_the_program(run):
 
 
 @pytest.mark.parametrize("first", [0, 1, 2])
-def test_the_tasks_of_a_node_can_be_ended_in_any_order(start, first):
+def test_tasks_of_a_node_can_be_ended_in_any_order(start, first):
     program = start("""
         import threading, time
         lock, log = threading.Lock(), []
@@ -276,7 +276,7 @@ def test_the_tasks_of_a_node_can_be_ended_in_any_order(start, first):
     assert not program.kernel.tasks
 
 
-def test_a_lock_handed_to_a_task_that_is_ended_goes_to_the_next(start):
+def test_lock_handed_to_an_ended_task_goes_to_the_next(start):
     program = start("""
         import threading, time
         lock, log = threading.Lock(), []
@@ -301,7 +301,7 @@ def test_a_lock_handed_to_a_task_that_is_ended_goes_to_the_next(start):
     assert not program.global_("lock").locked()
 
 
-def test_a_deadlock_is_reported_by_the_locks_that_are_waited_for(start):
+def test_deadlock_is_reported_with_its_locks(start):
     program = start("""
         import threading, time
         a, b = threading.RLock(), threading.RLock()

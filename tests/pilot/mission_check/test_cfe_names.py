@@ -22,7 +22,7 @@ def told(folder: Path, body: str) -> list[tuple[int, str]]:
     return sorted((problem.line, problem.text) for problem in wrong_names(source, "Main"))
 
 
-def test_wherever_the_handle_goes(tmp_path: Path) -> None:
+def test_unknown_name_is_reported_for_any_use_of_the_handle(tmp_path: Path) -> None:
     found = told(
         tmp_path,
         """\
@@ -81,7 +81,7 @@ def test_wherever_the_handle_goes(tmp_path: Path) -> None:
         ("cfe.sb.create_pipe(name='P', depth=10)", ""),
     ],
 )
-def test_arguments_that_cannot_fit(tmp_path: Path, call: str, said: str) -> None:
+def test_wrong_number_of_arguments_is_reported(tmp_path: Path, call: str, said: str) -> None:
     found = told(tmp_path, f"def Main(cfe):\n    {call}\n")
     assert len(found) == bool(said)
     assert all(said in text for _, text in found)
@@ -110,7 +110,7 @@ def test_arguments_that_cannot_fit(tmp_path: Path, call: str, said: str) -> None
         "HANDLE = None\ndef Main(cfe):\n    global HANDLE\n    HANDLE = cfe\ndef go():\n    HANDLE.sb.nothing()",
     ],
 )
-def test_what_is_not_certain_is_left_alone(tmp_path: Path, body: str) -> None:
+def test_uncertain_use_of_the_handle_is_not_reported(tmp_path: Path, body: str) -> None:
     assert told(tmp_path, body) == []
 
 
@@ -127,7 +127,7 @@ def test_all_files_of_a_package_are_read(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_there_is_no_false_alarm_in_this_repository() -> None:
+def test_code_of_this_repository_has_no_false_alarm() -> None:
     looked_at = 0
     for path in (path for folder in FOLDERS for path in sorted((ROOT / folder).rglob("*.py*"))):
         if path.suffix not in (".py", ".in"):
@@ -144,7 +144,7 @@ def main_functions(path: Path) -> list[str]:
     return [function.name for function in functions if function.args.args[0].arg == "cfe"]
 
 
-def test_names_that_are_imported_from_cfepy(tmp_path: Path) -> None:
+def test_unknown_imports_from_cfepy_are_reported(tmp_path: Path) -> None:
     found = told(
         tmp_path,
         """\
@@ -167,5 +167,5 @@ def test_names_that_are_imported_from_cfepy(tmp_path: Path) -> None:
     ]
 
 
-def test_code_that_is_nested_deeply_is_left_alone(tmp_path: Path) -> None:
+def test_deeply_nested_code_is_not_checked(tmp_path: Path) -> None:
     assert told(tmp_path, "def Main(cfe):\n    return " + " + ".join(["cfe.sb.nothing()"] * 900)) == []

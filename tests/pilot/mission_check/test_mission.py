@@ -31,7 +31,7 @@ def node(folder: Path, name: str = "talker") -> str:
     return f"CFE_APP, {name}.py, __main__, {name.upper()}, 60, 16384, 0, 0;\n"
 
 
-def test_a_good_mission(tmp_path: Path) -> None:
+def test_valid_mission_has_no_problem(tmp_path: Path) -> None:
     assert check(tmp_path, HK + node(tmp_path) + "!", "nodes:\n  TALKER: {name: talker}\n") == []
 
 
@@ -62,7 +62,7 @@ def test_a_good_mission(tmp_path: Path) -> None:
         ("CFE_APP, hk, HK_AppMain, HK2, 60, 16384, 0, 0", "the last entry is ignored, because its ';' is missing"),
     ],
 )
-def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
+def test_invalid_line_is_reported(tmp_path: Path, line: str, said: str) -> None:
     ((file, number, text),) = check(tmp_path, f"{HK}{line}\n!")
     assert (file, number) == ("startup.scr", 2)
     assert said in text
@@ -86,7 +86,7 @@ def test_a_bad_line(tmp_path: Path, line: str, said: str) -> None:
         ),
     ],
 )
-def test_packets_and_functions_that_are_not_there(tmp_path: Path, entry: str, said: str) -> None:
+def test_missing_packages_and_functions_are_reported(tmp_path: Path, entry: str, said: str) -> None:
     (tmp_path / "checks.py").write_text("def seen(event): ...\n\n\nclass Counts: ...\n", encoding="utf-8")
     ((file, line, text),) = check(tmp_path, HK + "!", entry)
     assert (file, line) == ("mission.yaml", 2)
@@ -95,11 +95,11 @@ def test_packets_and_functions_that_are_not_there(tmp_path: Path, entry: str, sa
     assert check(tmp_path, HK + "!", good) == []
 
 
-def test_the_same_name_for_an_app_and_a_library_is_fine(tmp_path: Path) -> None:
+def test_app_and_library_may_have_the_same_name(tmp_path: Path) -> None:
     assert check(tmp_path, HK + "CFE_LIB, hk, NULL, HK, 0, 0, 0, 0;\n!") == []
 
 
-def test_all_problems_are_found_at_once(tmp_path: Path) -> None:
+def test_all_problems_are_reported_at_once(tmp_path: Path) -> None:
     script = "CFE_APP, a;\nCFE_APP, nothere, X, X, 60, 1, 0, 0;\nCFE_APP, hk, Nope, Y, 60, 1, 0, 0;\n!"
     assert [line for _, line, _ in check(tmp_path, script)] == [1, 2, 3]
 
@@ -125,7 +125,7 @@ def test_sources_that_are_not_python(tmp_path: Path) -> None:
         "def __getattr__(name): ...",
     ],
 )
-def test_where_an_entry_point_may_come_from(tmp_path: Path, source: str) -> None:
+def test_entry_point_may_come_from_any_kind_of_statement(tmp_path: Path, source: str) -> None:
     (tmp_path / "app").mkdir()
     (tmp_path / "app/__init__.py").write_text(source, encoding="utf-8")
     (tmp_path / "app/part.py").write_text("def Main(cfe): ...\ndef Main_Function(cfe): ...\n", encoding="utf-8")
@@ -133,7 +133,7 @@ def test_where_an_entry_point_may_come_from(tmp_path: Path, source: str) -> None
 
 
 @pytest.mark.parametrize("source", ["", "def f():\n    Main = 1", "from .part import Main"])
-def test_an_entry_point_that_is_not_there(tmp_path: Path, source: str) -> None:
+def test_missing_entry_point_is_reported(tmp_path: Path, source: str) -> None:
     (tmp_path / "app").mkdir()
     (tmp_path / "app/__init__.py").write_text(source, encoding="utf-8")
     (tmp_path / "app/part.py").write_text("def other(cfe): ...\n", encoding="utf-8")
@@ -142,7 +142,7 @@ def test_an_entry_point_that_is_not_there(tmp_path: Path, source: str) -> None:
     assert "has no function Main" in text
 
 
-def test_a_node_may_be_called_what_ros_scripts_are_called(tmp_path: Path) -> None:
+def test_node_scripts_may_have_any_file_name(tmp_path: Path) -> None:
     (tmp_path / "a_talker_without_suffix").write_text("import rospy\n", encoding="utf-8")
     (tmp_path / "a_script_with_a_long_name.py").write_text("import rospy\n", encoding="utf-8")
     line = "CFE_APP, a_talker_without_suffix, __main__, TALKER, 60, 16384, 0, 0;\n"
@@ -150,14 +150,14 @@ def test_a_node_may_be_called_what_ros_scripts_are_called(tmp_path: Path) -> Non
     assert check(tmp_path, line + "!") == []
 
 
-def test_a_node_from_outside_the_folder(tmp_path: Path) -> None:
+def test_node_outside_the_folder_is_checked(tmp_path: Path) -> None:
     (tmp_path / "mission").mkdir()
     (tmp_path / "talker.py").write_text("import rospy\n", encoding="utf-8")
     found = check(tmp_path / "mission", "CFE_APP, /cf/../talker.py, __main__, TALKER, 60, 16384, 0, 0;\n!")
     assert [line for _, line, text in found if "/cf/../talker.py must be below /cf" in text] == [1]
 
 
-def test_nothing_is_executed(tmp_path: Path) -> None:
+def test_check_executes_nothing(tmp_path: Path) -> None:
     (tmp_path / "app.py").write_text("raise SystemExit('executed')\ndef Main(cfe): ...\n", encoding="utf-8")
     assert check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!") == []
 
@@ -191,7 +191,7 @@ topics:
     ]
 
 
-def test_two_nodes_of_one_name(tmp_path: Path) -> None:
+def test_two_nodes_of_one_name_are_reported(tmp_path: Path) -> None:
     yaml = "nodes:\n  A: {name: robot}\n  B: {name: robot, namespace: /}\n"
     ((_, line, text),) = check(tmp_path, node(tmp_path, "a") + node(tmp_path, "b") + "!", yaml)
     assert line == 3
@@ -221,12 +221,12 @@ def test_stacks_beyond_the_memory(tmp_path: Path) -> None:
     assert check(tmp_path, script, board="linux") == []
 
 
-def test_a_board_given_by_hand(tmp_path: Path) -> None:
+def test_unknown_board_is_reported(tmp_path: Path) -> None:
     ((_, _, text),) = check(tmp_path, HK + "!", board="abacus")
     assert "unknown board 'abacus'" in text
 
 
-def test_no_mission(tmp_path: Path) -> None:
+def test_missing_mission_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError):
         check_mission(str(tmp_path / "nothing"))
 
@@ -237,7 +237,9 @@ def read_all(path: Path) -> None:
 
 
 @pytest.mark.parametrize(("document", "read"), [("mission_file", read_all), ("board_profiles", load_profile)])
-def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: Callable[[Path], object]) -> None:
+def test_example_in_the_documentation_is_up_to_date(
+    tmp_path: Path, document: str, read: Callable[[Path], object]
+) -> None:
     text = (ROOT / "docs/reference" / f"{document}.md").read_text(encoding="utf-8")
     example = tmp_path / "example.yaml"
     example.write_text(text.partition("```yaml\n")[2].partition("```")[0], encoding="utf-8")
@@ -258,7 +260,7 @@ def test_the_example_in_the_documentation(tmp_path: Path, document: str, read: C
         ("CFE_APP, hk, HK_AppMain, HK, 60, 16384, 0, 2;", "the exception action 2 is taken as 1"),
     ],
 )
-def test_what_cfe_reads_otherwise_is_a_warning(tmp_path: Path, line: str, said: str) -> None:
+def test_field_that_cfe_reads_differently_is_a_warning(tmp_path: Path, line: str, said: str) -> None:
     (tmp_path / "startup.scr").write_text(f"\n{line}\n!", encoding="utf-8")
     (problem,) = check_mission(str(tmp_path))
     assert (problem.line, problem.is_warning) == (2, True)
@@ -277,14 +279,14 @@ def test_what_cfe_reads_otherwise_is_a_warning(tmp_path: Path, line: str, said: 
         ("@wrapped\ndef Main():", ""),
     ],
 )
-def test_a_function_that_cannot_be_an_entry_point(tmp_path: Path, head: str, said: str) -> None:
+def test_function_that_cannot_be_an_entry_point_is_reported(tmp_path: Path, head: str, said: str) -> None:
     (tmp_path / "app.py").write_text(f"{head}\n    pass\n", encoding="utf-8")
     found = check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!")
     assert [(file, line) for file, line, _ in found] == ([("app.py", 1)] if said else [])
     assert all(said in text for _, _, text in found)
 
 
-def test_names_asked_of_the_handle(tmp_path: Path) -> None:
+def test_unknown_name_of_the_handle_is_reported(tmp_path: Path) -> None:
     (tmp_path / "app.py").write_text("def Main(cfe):\n    cfe.sb.transmitt_msg(b'')\n", encoding="utf-8")
     found = check(tmp_path, "CFE_APP, app, Main, A, 60, 16384, 0, 0;!")
     assert found == [("app.py", 2, "cfe.sb has no 'transmitt_msg'; did you mean cfe.sb.transmit_msg?")]
@@ -298,12 +300,12 @@ COMPILED = (ROOT / "missions/cfs/startup.scr",)
 
 
 @pytest.mark.slow
-def test_the_missions_of_this_repository_are_good() -> None:
+def test_missions_of_this_repository_are_valid() -> None:
     assert [problem for script in SCRIPTS if script not in COMPILED for problem in check_mission(str(script))] == []
     assert len(SCRIPTS) > 30
 
 
-def test_compiled_applications_that_are_not_there_are_named() -> None:
+def test_missing_compiled_applications_are_named() -> None:
     missing = [problem.text.partition(":")[0] for script in COMPILED for problem in check_mission(str(script))]
     assert missing == [
         f"missing code for /cf/{name}.so" for name in ("lc", "ds", "md", "cf", "sc", "hs", "fm", "mm", "cs")

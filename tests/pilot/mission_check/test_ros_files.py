@@ -49,7 +49,7 @@ def places(mission: str) -> list[tuple[str, int, bool]]:
     return sorted((problem.file.name, problem.line, problem.is_warning) for problem in check_mission(mission))
 
 
-def test_a_node_with_all_that_it_uses(demo: Path) -> None:
+def test_all_problems_of_a_node_and_its_imports_are_reported(demo: Path) -> None:
     assert places("demo/scripts/talker.py") == [*DEFINITIONS, *IMPORTS]
     texts = "\n".join(problem.text for problem in check_mission("demo/scripts/talker.py"))
     for said in (
@@ -114,7 +114,7 @@ def test_a_launch_file_with_many_problems(demo: Path) -> None:
     assert "test t cannot run here" in texts[7]
 
 
-def test_a_launch_file_without_a_node_cannot_fly(demo: Path) -> None:
+def test_launch_file_without_a_node_is_an_error(demo: Path) -> None:
     (demo / "msg/Drive.msg").unlink()
     (demo / "srv/Go.srv").unlink()
     (demo / "launch/empty.launch").write_text("<launch/>", encoding="utf-8")
@@ -136,7 +136,7 @@ def test_launch_files_of_a_mission_are_read_to_the_end(demo: Path) -> None:
     assert found == [2, 2, 3, 3, 4]
 
 
-def test_a_mission_takes_no_arguments_and_what_is_not_there_is_an_error(demo: Path) -> None:
+def test_arguments_of_a_mission_and_missing_launch_files_are_errors(demo: Path) -> None:
     (demo.parent / "startup.scr").write_text("!", encoding="utf-8")
     with pytest.raises(UsageError, match="is not a launch file, so it takes no arguments"):
         check_mission(".", args={"a": "1"})

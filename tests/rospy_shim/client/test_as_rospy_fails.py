@@ -30,7 +30,7 @@ def answers(tmp_path: Path, body: str, seconds: float = 5.0) -> list[str]:
     return [_STAMP.sub("", line) for line in lines]
 
 
-def test_the_master_refuses_some_names(tmp_path: Path) -> None:
+def test_master_refuses_invalid_names_like_rosmaster(tmp_path: Path) -> None:
     body = """
 import warnings
 warnings.simplefilter("ignore")
@@ -64,7 +64,7 @@ print(sorted(name for name, kind in rospy.get_published_topics()))
     ]
 
 
-def test_xml_has_no_control_characters(tmp_path: Path) -> None:
+def test_control_characters_are_refused_in_xml(tmp_path: Path) -> None:
     body = r"""
 for value in ("a\0b", ["a\0"], {"k": "x\0"}, {"k\0": 1}, "\x01", "\ud800", "\ufffe"):
     tried(rospy.set_param, "/q", value)
@@ -145,7 +145,7 @@ rospy.Service("set", SetLoggerLevel, lambda request: SetLoggerLevelResponse())
 """
 
 
-def test_half_a_response_spoils_a_persistent_connection(tmp_path: Path) -> None:
+def test_half_written_response_breaks_a_persistent_connection(tmp_path: Path) -> None:
     body = """
 for persistent in (True, False):
     calls = 0
@@ -165,7 +165,7 @@ for persistent in (True, False):
     assert lines == ["answered", bad, spoilt, spoilt, "answered", bad, "answered", "answered"]
 
 
-def test_half_a_request_spoils_a_persistent_connection(tmp_path: Path) -> None:
+def test_half_written_request_breaks_a_persistent_connection(tmp_path: Path) -> None:
     body = """
 for persistent in (False, True):
     proxy = rospy.ServiceProxy("set", SetLoggerLevel, persistent=persistent)
@@ -181,7 +181,7 @@ print(rospy.get_time() % 100 > 4)
     assert lines[5:] == [bad, "ROSInterruptException: node shutdown interrupted service call", "True"]
 
 
-def test_a_persistent_connection_that_was_closed(tmp_path: Path) -> None:
+def test_closed_persistent_connection_is_an_error(tmp_path: Path) -> None:
     body = """
 for persistent in (True, False):
     proxy = rospy.ServiceProxy("set", SetLoggerLevel, persistent=persistent)

@@ -44,7 +44,7 @@ json.dump([outcome(expression) for expression in expressions], open("outcomes.js
 """
 
 
-def test_same_values_as_on_ros(tmp_path: Path) -> None:
+def test_values_equal_the_record_of_ros(tmp_path: Path) -> None:
     record = json.loads(RECORD.read_text(encoding="utf-8"))
     (tmp_path / "expressions.json").write_text(
         json.dumps([row["expression"] for row in record["rows"]]), encoding="utf-8"

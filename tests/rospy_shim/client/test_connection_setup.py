@@ -58,27 +58,27 @@ def fly(folder: Path, delay_ms: int, latch: bool = False, tasks: str = "thread",
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_what_is_published_before_the_connection_is_lost(tmp_path: Path, tasks: str) -> None:
+def test_message_published_before_the_connection_is_lost(tmp_path: Path, tasks: str) -> None:
     run = fly(tmp_path, 220, tasks=tasks)
     assert run.printed["talks"] == ["peer 0.77 1", "[0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1]", "left 0"]
     assert run.printed["hears"] == ["at first 0", "connected 0.77", "[-1, 5, 6, 7, 8, 9, 10, 11]"]
     assert run.finished
 
 
-def test_without_a_delay_they_are_connected_at_once(tmp_path: Path) -> None:
+def test_subscriber_is_connected_at_once_without_a_delay(tmp_path: Path) -> None:
     run = fly(tmp_path, 0)
     assert run.printed["hears"][:2] == ["at first 1", "connected 0.55"]
 
 
-def test_a_latched_message_comes_with_the_connection(tmp_path: Path) -> None:
+def test_latched_message_arrives_with_the_connection(tmp_path: Path) -> None:
     assert fly(tmp_path, 220, latch=True).printed["hears"][-1] == "[-1, -1, 5, 6, 7, 8, 9, 10, 11]"
 
 
-def test_a_connection_that_comes_before_the_first_callback_loses_nothing(tmp_path: Path) -> None:
+def test_connection_before_the_first_callback_loses_no_message(tmp_path: Path) -> None:
     assert fly(tmp_path, 20, latch=True).printed["hears"][-1] == "[-1, -1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10]"
 
 
-def test_each_publisher_of_a_topic_connects_by_itself(tmp_path: Path) -> None:
+def test_each_publisher_of_a_topic_connects_separately(tmp_path: Path) -> None:
     late = """
         import rospy
         from std_msgs.msg import Int32
@@ -93,7 +93,7 @@ def test_each_publisher_of_a_topic_connects_by_itself(tmp_path: Path) -> None:
     assert heard == "[-1, 3, 4, 5, 6, 7, 8, 102, 9, 103, 10, 104, 11, 105]"
 
 
-def test_who_leaves_before_the_connection_was_never_there(tmp_path: Path) -> None:
+def test_subscriber_that_leaves_before_the_connection_is_never_counted(tmp_path: Path) -> None:
     leaves = """
         import rospy
         from std_msgs.msg import Int32
@@ -111,7 +111,7 @@ def test_who_leaves_before_the_connection_was_never_there(tmp_path: Path) -> Non
     assert run.printed["talks"] == ["peer 0.87 1", "left 0", "[0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0]"]
 
 
-def test_a_publisher_that_comes_again_connects_again(tmp_path: Path) -> None:
+def test_returning_publisher_connects_again(tmp_path: Path) -> None:
     talks = """
         import rospy
         from std_msgs.msg import Int32
@@ -127,13 +127,13 @@ def test_a_publisher_that_comes_again_connects_again(tmp_path: Path) -> None:
     assert run.printed["hears"][-1] == "[3, 4, 5]"
 
 
-def test_a_node_that_ends_does_not_wait_for_its_connections(tmp_path: Path) -> None:
+def test_ending_node_does_not_wait_for_its_connections(tmp_path: Path) -> None:
     run = fly(tmp_path, 60_000)
     assert run.printed["talks"] == [str([0] * 12)]
     assert run.finished
 
 
-def test_services_need_no_connection_of_topics(tmp_path: Path) -> None:
+def test_services_need_no_topic_connection(tmp_path: Path) -> None:
     serves = """
         import rospy
         from std_srvs.srv import Empty, EmptyResponse

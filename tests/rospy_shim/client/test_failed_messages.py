@@ -71,7 +71,7 @@ def fly(tmp_path: Path, scripts: dict[str, str], seconds: float = 6.0) -> Run:
         ("String", ["a", 3, "b", ""], "message.data", ["'a'"], "field data must be of type bytes or an ascii string"),
     ],
 )
-def test_the_topic_is_dead_for_those_who_subscribe(
+def test_failed_message_breaks_the_topic_for_its_subscribers(
     tmp_path: Path, kind: str, messages: list[object], field: str, heard: list[str], error: str
 ) -> None:
     sends = f"[{kind}(each) for each in {messages!r}]"
@@ -87,14 +87,14 @@ def test_the_topic_is_dead_for_those_who_subscribe(
     assert told[at + 1 :] == ["1"] + ["0"] * (len(told) - at - 2)
 
 
-def test_a_header_is_counted_all_the_same(tmp_path: Path) -> None:
+def test_failed_message_still_increments_the_sequence_number(tmp_path: Path) -> None:
     sends = "[PointStamped(), PointStamped(point=Point(1, 'x', 1)), PointStamped(), PointStamped()]"
     field = "message.header.seq"
     run = fly(tmp_path, {"HEARS": hears("PointStamped", field=field), "TALKS": talks(sends, "PointStamped")})
     assert run.printed["hears"] == ["1", "connections 0"]
 
 
-def test_one_who_comes_later_gets_all(tmp_path: Path) -> None:
+def test_later_subscriber_gets_later_messages(tmp_path: Path) -> None:
     scripts = {
         "HEARS": hears(),
         "BETWEEN": hears(start=1.75, name="between"),
@@ -108,14 +108,14 @@ def test_one_who_comes_later_gets_all(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("start", "heard"), [(3.25, ["99", "5", "6"]), (2.5, ["99"])])
-def test_another_publisher_brings_the_connection_back(tmp_path: Path, start: float, heard: list[str]) -> None:
+def test_other_publisher_restores_the_connection(tmp_path: Path, start: float, heard: list[str]) -> None:
     """Once the subscriber has given up, a second after the spoilt message, which came at 2 s."""
     scripts = {"HEARS": hears(), "TALKS": talks(f"[1, {BAD}, 2, 3, 4, 5, 6]"), "OTHER": OTHER.format(start=start)}
     lines = fly(tmp_path, scripts).printed["hears"]
     assert [line for line in lines[1:] if not line.startswith("connections")] == heard
 
 
-def test_a_bad_latched_message_keeps_new_ones_away(tmp_path: Path) -> None:
+def test_bad_latched_message_refuses_new_subscribers(tmp_path: Path) -> None:
     scripts = {
         "HEARS": hears(),
         "LATE": hears(start=1.75, name="late"),
@@ -128,7 +128,7 @@ def test_a_bad_latched_message_keeps_new_ones_away(tmp_path: Path) -> None:
     assert any(line.endswith(text) for line in run.printed["talks"])
 
 
-def test_one_who_takes_any_type_reads_what_the_bytes_say(tmp_path: Path) -> None:
+def test_any_msg_subscriber_gets_the_bytes_after_a_failed_message(tmp_path: Path) -> None:
     scripts = {"HEARS": hears("rospy.AnyMsg"), "TALKS": talks(f"[1, {BAD}, 3, 4]")}
     assert fly(tmp_path, scripts).printed["hears"] == [
         "01000000",
@@ -139,7 +139,7 @@ def test_one_who_takes_any_type_reads_what_the_bytes_say(tmp_path: Path) -> None
     ]
 
 
-def test_one_who_takes_any_type_loses_count(tmp_path: Path) -> None:
+def test_any_msg_subscriber_gets_shifted_messages_after_a_failed_header(tmp_path: Path) -> None:
     sends = "[PointStamped(), PointStamped(point=Point(1, 'x', 1)), PointStamped(), PointStamped()]"
     scripts = {"HEARS": hears("rospy.AnyMsg"), "TALKS": talks(sends, "PointStamped")}
     lines = fly(tmp_path, scripts).printed["hears"]

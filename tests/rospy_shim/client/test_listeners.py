@@ -81,7 +81,7 @@ def listened(tmp_path: Path, does: str, *, latch: bool = False, begins: str = ""
 
 
 @pytest.mark.parametrize("queue_size", [None, 10])
-def test_what_goes_to_all_and_to_the_new_one_keeps_its_order(tmp_path: Path, queue_size: int | None) -> None:
+def test_messages_to_all_and_to_a_new_subscriber_keep_their_order(tmp_path: Path, queue_size: int | None) -> None:
     scripts = {
         "TALKS": TALKS.format(does=IN_TURN, latch=False, begins=""),
         "FIRST": HEARS.format(name="first", start=0.2, stay=0.8, queue_size=queue_size),
@@ -95,7 +95,7 @@ def test_what_goes_to_all_and_to_the_new_one_keeps_its_order(tmp_path: Path, que
 
 @pytest.mark.parametrize("does", ["peer(Int32(-1))", "all(Int32(-1))"])
 @pytest.mark.parametrize("begins", ["", "publisher.publish(9)"])
-def test_a_latched_message_follows_what_the_listener_sends(tmp_path: Path, does: str, begins: str) -> None:
+def test_latched_message_follows_messages_of_the_listener(tmp_path: Path, does: str, begins: str) -> None:
     _, heard = listened(tmp_path, does, latch=True, begins=begins)
     assert heard == ["-1", "-1", "0", "1"]
 
@@ -108,9 +108,7 @@ def test_a_latched_message_follows_what_the_listener_sends(tmp_path: Path, does:
         ("peer(Int32(2**40))", "field data exceeds specified width [int32]", []),
     ],
 )
-def test_a_listener_that_fails_costs_the_subscriber_its_connection(
-    tmp_path: Path, does: str, text: str, heard: list[str]
-) -> None:
+def test_failed_listener_disconnects_its_subscriber(tmp_path: Path, does: str, text: str, heard: list[str]) -> None:
     told, got = listened(tmp_path, does)
     told = [line for line in told if not line.startswith("cfepy:")]
     assert [told[0], told[1].partition(": ")[2], *told[2:]] == [
@@ -121,6 +119,6 @@ def test_a_listener_that_fails_costs_the_subscriber_its_connection(
     assert got == heard
 
 
-def test_a_message_of_another_type_is_sent_as_it_is(tmp_path: Path) -> None:
+def test_message_of_another_type_is_sent_unchanged(tmp_path: Path) -> None:
     _, heard = listened(tmp_path, "all(Int32(5)); peer(Float64(0.5))")
     assert heard == ["5", "0", "0", "1"]

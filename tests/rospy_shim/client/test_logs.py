@@ -71,7 +71,7 @@ def test_log_level_of_init_node(tmp_path: Path) -> None:
     assert lines == ["[ERROR]: e"]
 
 
-def test_rosout_is_published_when_somebody_listens(tmp_path: Path) -> None:
+def test_rosout_is_published_when_a_subscriber_exists(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """

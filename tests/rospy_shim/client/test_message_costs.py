@@ -55,7 +55,7 @@ def _flight(folder: Path, count: int) -> tuple[list[int], list[int]]:
     return [int(line) for line in run.printed["talker"]], [int(line.split()[1]) for line in run.printed["listener"]]
 
 
-def test_each_message_in_an_array_costs_a_call_to_send_and_another_to_receive(tmp_path: Path) -> None:
+def test_message_in_an_array_costs_one_call_to_send_and_two_to_receive(tmp_path: Path) -> None:
     few_sent, few_heard = _flight(tmp_path / "few", 1)
     many_sent, many_heard = _flight(tmp_path / "many", 101)
     assert many_sent[0] - few_sent[0] == 100_000
@@ -89,5 +89,5 @@ def test_items_of_nested_messages_count() -> None:
     assert type(outer).__count_items__(outer) == 4
 
 
-def test_a_type_without_such_arrays_has_no_counter() -> None:
+def test_type_without_message_arrays_has_no_counter() -> None:
     assert message_class("sensor_msgs/JointState").__count_items__ is None

@@ -74,7 +74,7 @@ def test_names_and_arguments(tmp_path: Path) -> None:
     assert found["wrong"] == {}
 
 
-def test_importing_rospy_imports_the_messages_that_it_uses(tmp_path: Path) -> None:
+def test_import_of_rospy_imports_its_message_packages(tmp_path: Path) -> None:
     source = """
     import rospy, std_msgs, roscpp, rosgraph_msgs
     print(std_msgs.msg.Bool().data, roscpp.srv.Empty()._type, rosgraph_msgs.msg.Log.ERROR)
@@ -83,7 +83,7 @@ def test_importing_rospy_imports_the_messages_that_it_uses(tmp_path: Path) -> No
     assert result.printed["NODE"] == ["False roscpp/Empty 8"]
 
 
-def test_a_key_error_names_the_parameter_as_it_was_asked_for(tmp_path: Path) -> None:
+def test_key_error_has_the_requested_parameter_name(tmp_path: Path) -> None:
     source = """
     import rospy
     rospy.init_node("node")
@@ -112,7 +112,7 @@ def test_import_rospy_shows_the_modules_of_rospy_impl(tmp_path: Path) -> None:
     ]
 
 
-def test_no_default_can_be_handed_on(tmp_path: Path) -> None:
+def test_sentinel_for_no_default_can_be_passed_on(tmp_path: Path) -> None:
     asks = """
         import rospy
         rospy.init_node("asks")

@@ -16,7 +16,7 @@ SCENARIOS = json.loads((NODES.parent / "data" / "nodes_on_ros.json").read_text(e
 
 
 @pytest.mark.parametrize("scenario", SCENARIOS, ids=lambda scenario: scenario["name"].replace(" ", "-"))
-def test_same_results_as_on_ros(scenario: dict[str, Any], tmp_path: Path) -> None:
+def test_results_equal_the_record_of_ros(scenario: dict[str, Any], tmp_path: Path) -> None:
     apps = {f"NODE_{number}": node for number, node in enumerate(scenario["nodes"])}
     run = run_nodes(
         tmp_path,

@@ -49,7 +49,7 @@ def both(tmp_path: Path, publisher: str, subscriber: str, priority: int = 100) -
         (5, [0, 495, 496, 497, 498, 499, 995, 996, 997, 998, 999]),
     ],
 )
-def test_a_slow_callback_gets_the_newest(tmp_path: Path, queue_size: int, seen: list[int]) -> None:
+def test_slow_callback_gets_the_newest_messages(tmp_path: Path, queue_size: int, seen: list[int]) -> None:
     """Half a thousand messages come during each of two callbacks: more than the platform lets wait."""
     result = both(
         tmp_path,
@@ -63,7 +63,7 @@ def test_a_slow_callback_gets_the_newest(tmp_path: Path, queue_size: int, seen: 
     assert not any("Pipe Overflow" in line or "Msg Limit" in line for line in result.lines)
 
 
-def test_without_queue_size_the_bus_reports_what_is_lost(tmp_path: Path) -> None:
+def test_bus_reports_lost_messages_when_no_queue_size_is_set(tmp_path: Path) -> None:
     result = both(
         tmp_path,
         'publisher = rospy.Publisher("q", UInt32, queue_size=10)\nfor n in range(60): publisher.publish(n)',
@@ -75,7 +75,7 @@ def test_without_queue_size_the_bus_reports_what_is_lost(tmp_path: Path) -> None
     assert any("Pipe Overflow" in line for line in result.lines)
 
 
-def test_the_last_queue_size_counts(tmp_path: Path) -> None:
+def test_last_queue_size_counts(tmp_path: Path) -> None:
     result = both(
         tmp_path,
         'publisher = rospy.Publisher("q", UInt32, queue_size=10)\nfor n in range(9): publisher.publish(n)',
@@ -86,7 +86,7 @@ def test_the_last_queue_size_counts(tmp_path: Path) -> None:
     assert result.printed["sub"][-1] == "[0, 6, 7, 8]"
 
 
-def test_a_queue_size_that_comes_later_counts_for_any_number_of_messages(tmp_path: Path) -> None:
+def test_later_queue_size_applies_to_any_number_of_messages(tmp_path: Path) -> None:
     result = both(
         tmp_path,
         'publisher = rospy.Publisher("q", UInt32, queue_size=10)\nfor n in range(200): publisher.publish(n)',
@@ -97,7 +97,7 @@ def test_a_queue_size_that_comes_later_counts_for_any_number_of_messages(tmp_pat
     assert result.printed["sub"][-1] == "[0, 199]"
 
 
-def test_a_slow_callback_gets_the_newest_long_message_whole(tmp_path: Path) -> None:
+def test_slow_callback_gets_the_newest_long_message_completely(tmp_path: Path) -> None:
     result = both(
         tmp_path,
         'publisher = rospy.Publisher("big", String, queue_size=1)\n'
@@ -121,7 +121,7 @@ def test_an_image_arrives_at_every_subscriber(tmp_path: Path, megabytes: int) ->
     assert result.printed["sub"] == result.printed["other"] == expected
 
 
-def test_a_message_longer_than_the_pool_waits_for_room_in_it(tmp_path: Path) -> None:
+def test_message_longer_than_the_pool_waits_for_memory(tmp_path: Path) -> None:
     publisher = 'publisher = rospy.Publisher("big", String, queue_size=1)\npublisher.publish("A" * 300_000)'
     startup = {"sub.py": COUNTER, "pub.py": PUBLISHER + publisher}
     for name, source in startup.items():

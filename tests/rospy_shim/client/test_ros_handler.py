@@ -1,6 +1,6 @@
 """`rospy.impl.masterslave.ROSHandler`: programs find its only object through `gc`, and get changes of parameters.
 
-Duckietown's nodes look for it there. The expected calls are those of rospy 1.15 and rosmaster 1.15.
+Duckietown's nodes look for it there. The expected calls are the calls of rospy 1.15 and rosmaster 1.15.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ add.close()
     assert result.printed["client"] == ["3 7 5", "/server /add AddTwoIntsRequest"]
 
 
-def test_calls_take_no_longer_than_the_handler(tmp_path: Path) -> None:
+def test_call_takes_no_longer_than_its_handler(tmp_path: Path) -> None:
     """Short and long ones, also while another caller waits for its answer."""
     result = two(
         tmp_path,
@@ -67,7 +67,7 @@ for long in (False, True):
     assert result.printed["client"] == ["1 True", "100000 True"]
 
 
-def test_what_handlers_may_return(tmp_path: Path) -> None:
+def test_handler_return_values_are_converted_or_refused(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """
@@ -171,7 +171,7 @@ for size in (32_000, 32_760, 100_000, 3_000_000):
     assert lines == ["1 {'x'} !"] * 4
 
 
-def test_handlers_run_side_by_side(tmp_path: Path) -> None:
+def test_handlers_run_concurrently(tmp_path: Path) -> None:
     """One handler waits for another call of the same service, and another is called from within itself."""
     lines = run(
         tmp_path,
@@ -211,7 +211,7 @@ print(rospy.ServiceProxy("head", Trigger, persistent=True, headers={"who": "me"}
     assert "('callerid', '/probe')" in lines[0]
 
 
-def test_a_service_made_before_init_node_is_offered_after_it(tmp_path: Path) -> None:
+def test_service_made_before_init_node_is_offered_after_it(tmp_path: Path) -> None:
     script = """
 early = rospy.Service("early", Trigger, lambda request: (True, "here"))
 attempt(rospy.Service, "early", Trigger, None)
@@ -233,7 +233,7 @@ attempt(rospy.wait_for_service, "gone", 0.1)
     ]
 
 
-def test_a_response_that_cannot_be_serialized_is_an_error_of_the_handler(tmp_path: Path) -> None:
+def test_response_that_cannot_be_serialized_is_an_error_of_the_handler(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """
@@ -246,7 +246,7 @@ attempt(rospy.ServiceProxy("odd", Trigger))
     assert lines == ["handled field success is not a bool", f"ServiceException {refused}"]
 
 
-def test_an_error_in_a_handler_is_logged_with_its_traceback_as_a_list(tmp_path: Path) -> None:
+def test_error_in_a_handler_is_logged_with_its_traceback_as_a_list(tmp_path: Path) -> None:
     result = two(
         tmp_path,
         'rospy.Service("halve", SetBool, lambda r: 1 / 0)\nrospy.spin()',

@@ -173,7 +173,7 @@ except TypeError as error:
     ]
 
 
-def test_end_of_the_run_is_a_ctrl_c(tmp_path: Path) -> None:
+def test_end_of_the_run_shuts_nodes_down_like_ctrl_c(tmp_path: Path) -> None:
     result = run(
         tmp_path,
         """
@@ -239,7 +239,7 @@ finally:
     assert result.finished
 
 
-def test_es_asks_a_node_to_end(tmp_path: Path) -> None:
+def test_es_request_shuts_a_node_down(tmp_path: Path) -> None:
     app = """
 def KILLER_AppMain(cfe):
     cfe.os.task_delay(1000)
@@ -273,7 +273,7 @@ print("end")
     assert any("Stop Application PROBE Completed" in line for line in console.lines)
 
 
-def test_node_that_does_not_listen_is_ended_with_its_threads(tmp_path: Path) -> None:
+def test_node_that_ignores_the_shutdown_is_ended_with_its_threads(tmp_path: Path) -> None:
     scripts = {
         "DEAF": """
 import rospy, threading
@@ -294,7 +294,7 @@ rospy.sleep(1.0)
     assert not any("Traceback" in line for line in result.lines)
 
 
-def test_same_name_twice_ends_the_first(tmp_path: Path) -> None:
+def test_second_node_of_a_name_ends_the_first(tmp_path: Path) -> None:
     script = """
 import rospy
 rospy.sleep({delay})
@@ -317,7 +317,7 @@ def test_failing_node_ends_its_application(tmp_path: Path) -> None:
     assert any("Exit Application PROBE" in line for line in result.lines)
 
 
-def test_nothing_is_left_of_a_node_that_ended(tmp_path: Path) -> None:
+def test_ended_node_leaves_no_publishers(tmp_path: Path) -> None:
     result = run_nodes(
         tmp_path,
         {
@@ -331,7 +331,7 @@ def test_nothing_is_left_of_a_node_that_ended(tmp_path: Path) -> None:
     assert result.printed["long"] == ["1", "0"]
 
 
-def test_spinning_on_the_api_makes_time_pass(tmp_path: Path) -> None:
+def test_polling_of_the_api_makes_time_pass(tmp_path: Path) -> None:
     lines = printed(
         tmp_path,
         """
@@ -345,7 +345,7 @@ print("through")
     assert lines == ["through"]
 
 
-def test_two_names_for_one_module(tmp_path: Path) -> None:
+def test_rospy_and_rospy_shim_are_one_module(tmp_path: Path) -> None:
     lines = printed(
         tmp_path,
         """
@@ -362,7 +362,7 @@ print(message[0].data, message[1] == rospy.Time(5), repr(message[2]))
     assert lines == ["True True True", "True True True", "x True rospy.Duration[1000000000]"]
 
 
-def test_the_end_of_the_run_interrupts_a_node_that_keeps_its_signals(tmp_path: Path) -> None:
+def test_end_of_the_run_interrupts_a_node_with_disabled_signals(tmp_path: Path) -> None:
     script = """
 import rospy, time
 rospy.init_node("probe", disable_signals=True)
@@ -377,7 +377,7 @@ except KeyboardInterrupt:
     assert result.printed["probe"] == ["interrupted False", "hook"]
 
 
-def test_remap_name_resolves_only_what_is_remapped(tmp_path: Path) -> None:
+def test_remap_name_resolves_only_remapped_names(tmp_path: Path) -> None:
     config = NodeConfig("PROBE", remap={"old": "new", "new": "newest"})
     lines = printed(
         tmp_path,

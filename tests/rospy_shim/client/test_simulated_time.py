@@ -38,7 +38,7 @@ def run(tmp_path: Path, body: str) -> list[str]:
     return result.printed.get("probe", result.lines)
 
 
-def test_time_is_what_clock_says(tmp_path: Path) -> None:
+def test_time_follows_clock(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """

@@ -13,7 +13,7 @@ DATA = Path(__file__).parents[2] / "data"
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_same_answers_as_on_ros(tmp_path: Path, tasks: str) -> None:
+def test_answers_equal_the_record_of_ros(tmp_path: Path, tasks: str) -> None:
     config = NodeConfig("PROBE", args=("_own:=7", "old:=new"))
     run = run_nodes(tmp_path, {"PROBE": DATA / "rospy_stages.py"}, seconds=60, nodes={"PROBE": config}, tasks=tasks)
     answers = [*run.printed["PROBE"], *run.printed["stages"]]

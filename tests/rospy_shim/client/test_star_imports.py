@@ -13,7 +13,7 @@ def printed(folder: Path, script: str) -> list[str]:
     return lines
 
 
-def test_messages_bring_the_modules_that_generated_sources_import(tmp_path: Path) -> None:
+def test_star_import_has_the_modules_that_generated_sources_import(tmp_path: Path) -> None:
     script = """
         from nav_msgs.msg import *
         print(Odometry.__name__, sys.version_info[0], struct.calcsize("<I"), codecs.__name__, genpy.Time(3), python3)
@@ -22,7 +22,7 @@ def test_messages_bring_the_modules_that_generated_sources_import(tmp_path: Path
     assert printed(tmp_path, script) == ["Odometry 3 4 codecs 3000000000 True", "0.0 True"]
 
 
-def test_they_are_the_nodes_own(tmp_path: Path) -> None:
+def test_star_import_has_modules_of_the_node(tmp_path: Path) -> None:
     script = """
         import sys as mine
         from std_srvs.srv import *
@@ -31,7 +31,7 @@ def test_they_are_the_nodes_own(tmp_path: Path) -> None:
     assert printed(tmp_path, script) == ["True True"]
 
 
-def test_actionlib_brings_what_it_stands_on(tmp_path: Path) -> None:
+def test_star_import_of_actionlib_has_its_imported_modules(tmp_path: Path) -> None:
     script = """
         from actionlib import *
         print(threading.current_thread().name, time.time() > 0, rospy.Time.__name__, Header.__name__)

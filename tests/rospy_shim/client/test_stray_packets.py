@@ -13,7 +13,7 @@ LENGTHS = (7, 8, 9, 11, 12, 15, 16, 17, 20, 21, 40)
 FLAGS = (0xC0, 0x40, 0x00, 0x80)
 
 
-def test_stray_packets_on_all_msg_ids_of_ros_end_no_node(tmp_path: Path) -> None:
+def test_stray_packets_on_msg_ids_of_ros_end_no_node(tmp_path: Path) -> None:
     with joined(tmp_path, {"TALKER": TALKER, "SERVER": SERVER}) as run:
         uri = run.master("lookupService", "/switch")
         wire = run.connected(uri, {"service": "/switch", "persistent": "1", **SET_BOOL})
@@ -38,7 +38,7 @@ def test_stray_packets_on_all_msg_ids_of_ros_end_no_node(tmp_path: Path) -> None
         assert not run.heard("died of an exception")
 
 
-def test_a_long_request_of_which_the_end_never_comes_is_forgotten() -> None:
+def test_incomplete_long_request_is_forgotten() -> None:
     pieces = Pieces(REQUEST_LEAD)
     first = bytes([0x18, 0, 0x40, 0]) + bytes(20)
     for number in range(3 * MOST_BEGUN):

@@ -13,7 +13,7 @@ def run(tmp_path: Path, body: str, **options: object) -> list[str]:
     return [line for lines in result.printed.values() for line in lines] or result.lines
 
 
-def test_nothing_tells_the_time_before_init_node(tmp_path: Path) -> None:
+def test_time_is_not_available_before_init_node(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """
@@ -34,7 +34,7 @@ print(rospy.is_shutdown())
     ]
 
 
-def test_rate_keeps_its_grid_catches_up_and_starts_anew(tmp_path: Path) -> None:
+def test_rate_keeps_its_grid_catches_up_and_restarts(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """
@@ -53,7 +53,7 @@ print(rate.sleep_dur, rate.remaining().to_sec() > 0, type(rate.remaining()).__na
     assert lines == ["[2, 4, 7, 8, 10, 20, 22, 24]", "20000000 True Duration -1000000000"]
 
 
-def test_one_clock_for_all(tmp_path: Path) -> None:
+def test_all_clock_functions_show_one_time(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """
@@ -100,7 +100,7 @@ print(len(count), dying.is_alive(), count[0].last_real, type(count[0]).__name__)
     assert any("in a timer" in line for line in lines[1:-1])
 
 
-def test_slow_timer_callbacks_do_not_pile_up(tmp_path: Path) -> None:
+def test_slow_timer_callbacks_do_not_accumulate(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """

@@ -53,7 +53,7 @@ print(seen[0][2] != threading.get_ident())
     assert lines == ["[0, 1, 2] 1 1", "1 1", "True"]
 
 
-def test_messages_wait_for_a_subscriber_from_the_moment_it_subscribes(tmp_path: Path) -> None:
+def test_messages_are_queued_from_the_moment_of_the_subscription(tmp_path: Path) -> None:
     """ES starts its task 50 ms later. It then gets the messages published meanwhile, and the last latched one."""
     lines = run(
         tmp_path,
@@ -79,7 +79,7 @@ print(seen)
     assert lines == ["1 1", "['at once', 'soon', 'soon', 'later']"]
 
 
-def test_a_subscriber_that_ends_before_its_task_starts_leaves_nothing(tmp_path: Path) -> None:
+def test_subscriber_that_ends_before_its_task_starts_leaves_no_pipe(tmp_path: Path) -> None:
     """A sixty-fourth pipe more would be one too many."""
     lines = run(
         tmp_path,
@@ -121,7 +121,7 @@ print(sorted(seen[0]._connection_header), seen[0]._connection_header["callerid"]
     ]
 
 
-def test_callback_errors_are_logged_and_the_next_message_comes(tmp_path: Path) -> None:
+def test_callback_errors_are_logged_and_the_next_message_is_processed(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """
@@ -205,7 +205,7 @@ rospy.sleep(0.1)
     assert lines == ["03000000616e79 std_msgs/String"]
 
 
-def test_other_type_is_reported_and_not_connected(tmp_path: Path) -> None:
+def test_subscriber_of_another_type_is_reported_and_not_connected(tmp_path: Path) -> None:
     result = both(
         tmp_path,
         'publisher = rospy.Publisher("t", UInt32, queue_size=1)\npublisher.publish(1)\n'
@@ -238,7 +238,7 @@ rospy.sleep(0.1)
 
 
 @pytest.mark.parametrize(("size", "priority"), [(40_000, 90), (40_000, 100), (300_000, 120)])
-def test_long_messages_arrive_whole(tmp_path: Path, size: int, priority: int) -> None:
+def test_long_messages_arrive_complete(tmp_path: Path, size: int, priority: int) -> None:
     result = both(
         tmp_path,
         'publisher = rospy.Publisher("big", String, queue_size=1)\n'
@@ -353,7 +353,7 @@ rospy.sleep(0.1)
     assert lines == ["ndarray 6.0"]
 
 
-def test_class_that_genpy_generated(tmp_path: Path) -> None:
+def test_class_generated_by_genpy_is_accepted(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
         """

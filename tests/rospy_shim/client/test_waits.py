@@ -24,7 +24,7 @@ def timed(function, *arguments):
 """
 
 
-def test_wait_for_service_looks_every_three_tenths_of_a_second(tmp_path: Path) -> None:
+def test_wait_for_service_polls_every_300_ms(tmp_path: Path) -> None:
     waits = """
 rospy.init_node("waits")
 for limit in (0.1, 0.5, 0.7, 1.0, -1, rospy.Duration(0.5), 0):
@@ -36,7 +36,7 @@ for limit in (0.1, 0.5, 0.7, 1.0, -1, rospy.Duration(0.5), 0):
     assert lines == [*(f"{time:.2f} {gone}" for time in times), "0.00 timeout must be non-zero"]
 
 
-def test_what_comes_between_two_looks_is_found_at_the_next(tmp_path: Path) -> None:
+def test_service_offered_between_two_polls_is_found_at_the_next(tmp_path: Path) -> None:
     waits = """
 rospy.init_node("waits")
 timed(rospy.wait_for_service, "late", 2)
@@ -56,7 +56,7 @@ rospy.spin()
     assert lines == ["0.60 None", "0.00 None", "0.90 timeout exceeded while waiting for service /later"]
 
 
-def test_wait_for_message_looks_every_hundredth_of_a_second(tmp_path: Path) -> None:
+def test_wait_for_message_polls_every_10_ms(tmp_path: Path) -> None:
     waits = """
 rospy.init_node("waits")
 timed(rospy.wait_for_message, "no", String, 0)

@@ -21,7 +21,7 @@ def test_msg_ids_are_stable_and_in_range() -> None:
     assert (msg_id_of("/joint_states"), msg_id_of("/chatter"), msg_id_of("/rosout")) == (0x0CF4, 0x0FB4, 0x0900)
 
 
-def test_collision_names_both_topics_and_the_way_out() -> None:
+def test_collision_names_both_topics_and_the_remedy() -> None:
     by_id: dict[int, str] = {}
     pair = None
     for number in range(5000):
@@ -66,7 +66,7 @@ def test_names_are_resolved(name: str, resolved: str) -> None:
     assert own.resolve_name(name) == resolved
 
 
-def test_names_for_others_and_helpers() -> None:
+def test_names_of_other_nodes_and_helper_functions_resolve() -> None:
     own = names.Names(["script"], {"ROS_NAMESPACE": "/env"})
     own.give("node")
     assert (own.get_name(), own.get_namespace()) == ("/env/node", "/env/")
@@ -82,11 +82,11 @@ def test_names_for_others_and_helpers() -> None:
     ("name", "caller_id", "resolved"),
     [("~foo", "/", "/foo"), ("~/foo", "/ns/node", "/foo"), ("~foo//bar/", "/ns/node", "/ns/node/foo/bar")],
 )
-def test_private_names_of_others(name: str, caller_id: str, resolved: str) -> None:
+def test_private_names_of_other_nodes_resolve(name: str, caller_id: str, resolved: str) -> None:
     assert names.Names(["script"], {}).resolve_name(name, caller_id) == resolved
 
 
-def test_which_arguments_are_the_programs_own() -> None:
+def test_arguments_of_the_program_are_separated_from_remappings() -> None:
     ros = ["a:=b", "/a:=/b", "~p:=1", "_x:=1", "__name:=n", "a/b:=c", "x:="]
     own = ["-bar:=baz", "--x=y:=z", ":=", ":=y", "9a:=b", "a-b:=c", "a b:=c"]
     assert names.program_arguments(["s", *ros, *own]) == ["s", *own]
@@ -157,7 +157,7 @@ def test_missing_segment_loses_the_message() -> None:
     assert assembler.lost == 2
 
 
-def test_segments_from_elsewhere_follow_their_sequence_counts() -> None:
+def test_segments_from_outside_follow_their_sequence_counts() -> None:
     packets = [bytearray(packet) for packet in segments(0x0901, bytes(2500), 1000)]
     for packet, count in zip(packets, (0x3FFE, 0x3FFF, 0), strict=True):
         packet[2:4] = (packet[2] << 8 | count).to_bytes(2, "big")
@@ -166,7 +166,7 @@ def test_segments_from_elsewhere_follow_their_sequence_counts() -> None:
     assert whole[2] is not None
 
 
-def test_module_on_the_host_says_how_to_run_a_node() -> None:
+def test_module_on_the_host_explains_how_to_run_a_node() -> None:
     import rospy_shim
 
     assert rospy_shim.Time(1.5) - rospy_shim.Duration(1) == rospy_shim.Time(0, 500_000_000)

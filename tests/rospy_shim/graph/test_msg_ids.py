@@ -14,13 +14,13 @@ NAMES = [f"/topic{number}" for number in range(100)]
 FIRST, SECOND = next(pair for pair in combinations(NAMES, 2) if msg_id_of(pair[0]) == msg_id_of(pair[1]))
 
 
-def test_spread_topics_take_the_next_free_id_in_their_order() -> None:
+def test_colliding_topics_get_the_next_free_id_in_order() -> None:
     ids = MsgIds(RosConfig(spread=True))
     taken = [ids.of_topic(name) for name in (SECOND, FIRST, SECOND)]
     assert taken == [msg_id_of(FIRST), msg_id_of(FIRST) + 1, msg_id_of(FIRST)]
 
 
-def test_a_spread_topic_stays_off_ids_that_files_give() -> None:
+def test_colliding_topic_avoids_ids_of_the_mission_files() -> None:
     after = msg_id_of(FIRST) + 1
     config = RosConfig(topics={"/pin": TopicConfig("/pin", after)}, locked_services={"/srv": after + 1}, spread=True)
     ids = MsgIds(config)
@@ -28,7 +28,7 @@ def test_a_spread_topic_stays_off_ids_that_files_give() -> None:
     assert (ids.of_topic("/pin"), ids.of_service("/srv")) == (after, after + 1)
 
 
-def test_a_lock_gives_every_name_an_id_of_its_own() -> None:
+def test_lock_has_a_unique_id_for_each_name() -> None:
     topics, services = locked(RosConfig(), NAMES, ["/reset", FIRST])
     given = [*topics.values(), *services.values()]
     assert len(set(given)) == len(given) == 102
@@ -36,11 +36,11 @@ def test_a_lock_gives_every_name_an_id_of_its_own() -> None:
     assert topics[SECOND] != msg_id_of(SECOND)
 
 
-def test_the_order_of_registration_does_not_matter_for_a_lock() -> None:
+def test_lock_does_not_depend_on_the_order_of_registration() -> None:
     assert locked(RosConfig(), NAMES, []) == locked(RosConfig(), reversed(NAMES), [])
 
 
-def test_what_is_locked_never_moves_and_new_names_go_round_it() -> None:
+def test_locked_ids_are_kept_and_new_names_avoid_them() -> None:
     before, _ = locked(RosConfig(), [SECOND], [])
     config = RosConfig(locked_topics=before, topics={"/pin": TopicConfig("/pin", 0x0901)})
     after, services = locked(config, [FIRST, SECOND, "/pin"], [])
@@ -51,14 +51,14 @@ def test_what_is_locked_never_moves_and_new_names_go_round_it() -> None:
     assert ids.claimed() == ([], [])
 
 
-def test_a_new_topic_that_falls_on_a_locked_id_is_an_error_that_names_the_command() -> None:
+def test_new_topic_on_a_locked_id_is_an_error_that_names_the_command() -> None:
     ids = MsgIds(RosConfig(locked_topics={SECOND: msg_id_of(SECOND)}))
     command = "`cfepy graph --lock MISSION`"
     with pytest.raises(UsageError, match=rf"{SECOND} and {FIRST} have the same MsgId .*{command}"):
         ids.of_topic(FIRST)
 
 
-def test_there_is_an_end_of_ids() -> None:
+def test_too_many_topics_are_an_error() -> None:
     full = dict.fromkeys(range(FIRST_MSG_ID, LAST_MSG_ID + 1), "/x")
     del full[0x0950]
     assert next_free(LAST_MSG_ID, full) == 0x0950

@@ -23,7 +23,7 @@ ASKS = """
 """
 
 
-def test_the_master_cannot_be_ended(tmp_path: Path) -> None:
+def test_shutdown_of_the_master_is_refused(tmp_path: Path) -> None:
     script = """
         import rospy
         rospy.init_node("n")
@@ -44,7 +44,7 @@ def test_the_master_answers_as_rosmaster(tmp_path: Path) -> None:
         assert mine == answer, f"{method}{arguments}"
 
 
-def test_nodes_are_known_and_can_be_unregistered(tmp_path: Path) -> None:
+def test_nodes_are_registered_and_can_be_unregistered(tmp_path: Path) -> None:
     talks = """
         import rospy
         from std_msgs.msg import String
@@ -74,7 +74,7 @@ def test_nodes_are_known_and_can_be_unregistered(tmp_path: Path) -> None:
     assert run.printed["hears"] == ["0 True", "1", "0 ['/rosout']", "1", "[]"]
 
 
-def test_a_node_of_another_address_takes_a_name_over(tmp_path: Path) -> None:
+def test_node_of_another_address_takes_over_a_name(tmp_path: Path) -> None:
     old = """
         import rospy
         rospy.init_node("same")
@@ -93,7 +93,7 @@ def test_a_node_of_another_address_takes_a_name_over(tmp_path: Path) -> None:
     assert run.printed["OTHER"] == ["http://elsewhere:5/ [['/words', 'std_msgs/String']]"]
 
 
-def test_all_nodes_have_addresses_of_their_own(tmp_path: Path) -> None:
+def test_nodes_have_different_addresses(tmp_path: Path) -> None:
     script = """
         import rospy, rosgraph
         rospy.init_node("{name}")

@@ -8,7 +8,7 @@ from rospy_shim.types.config import NodeConfig
 from tests.rospy_shim.missions import run_nodes
 
 
-def test_names_are_the_nodes_own(tmp_path: Path) -> None:
+def test_names_resolve_as_in_the_node(tmp_path: Path) -> None:
     script = """
         import rospy, rospy.msproxy
         rospy.init_node("node")

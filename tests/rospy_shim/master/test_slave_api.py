@@ -54,7 +54,7 @@ def test_connections(tmp_path: Path) -> None:
     assert printed[3] == "[['/words', 5, [[1, 5, 1, True]]]] [['/numbers', [[2, 0, 0, -1, True]]]] []"
 
 
-def test_parameters_and_publishers_are_told(tmp_path: Path) -> None:
+def test_updates_of_parameters_and_publishers_are_accepted(tmp_path: Path) -> None:
     questions = """
     uri = rosgraph.Master("/x").lookupNode("/asked")
     print(node.paramUpdate("/x", "/p", 1))

@@ -10,7 +10,7 @@ from rospy_shim.types.config import NodeConfig
 from tests.rospy_shim.missions import run_nodes
 
 
-def test_types_and_errors_are_those_of_xmlrpc(tmp_path: Path) -> None:
+def test_types_and_errors_match_xmlrpc(tmp_path: Path) -> None:
     script = """
         import rospy, xmlrpc.client
         from xmlrpc.client import Binary, Fault, MultiCall, ServerProxy, Transport
@@ -54,7 +54,7 @@ def test_types_and_errors_are_those_of_xmlrpc(tmp_path: Path) -> None:
     ]
 
 
-def test_nobody_else_answers(tmp_path: Path) -> None:
+def test_uris_without_a_server_are_refused(tmp_path: Path) -> None:
     script = """
         from xmlrpc.client import ServerProxy
         for uri in ("http://localhost:1", "http://cfepy:1234/", "http://cfepy"):
@@ -75,7 +75,7 @@ def test_nobody_else_answers(tmp_path: Path) -> None:
     assert run.printed["ASKS"] == ["111 Connection refused"] * 3 + ["OSError", "unsupported XML-RPC protocol"]
 
 
-def test_the_environment_names_the_master(tmp_path: Path) -> None:
+def test_environment_names_the_master(tmp_path: Path) -> None:
     script = """
         import os, rosgraph
         print(os.environ["ROS_MASTER_URI"], rosgraph.is_master_online())
@@ -86,7 +86,7 @@ def test_the_environment_names_the_master(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_a_loop_that_asks_takes_time_and_is_deterministic(tmp_path: Path, tasks: str) -> None:
+def test_polling_loop_takes_time_and_is_deterministic(tmp_path: Path, tasks: str) -> None:
     if tasks == "greenlet":
         pytest.importorskip("greenlet")
     script = """
@@ -107,7 +107,7 @@ def test_a_loop_that_asks_takes_time_and_is_deterministic(tmp_path: Path, tasks:
     assert digests[0] == digests[1]
 
 
-def test_a_tool_that_the_node_brings_runs_on_it(tmp_path: Path) -> None:
+def test_tool_in_the_folder_of_the_node_uses_the_client(tmp_path: Path) -> None:
     """This is a small form of such a source: a package of the node's own called rosnode, on the shipped rosgraph."""
     (tmp_path / "rosnode").mkdir()
     (tmp_path / "rosnode" / "__init__.py").write_text(
@@ -126,7 +126,7 @@ def test_a_tool_that_the_node_brings_runs_on_it(tmp_path: Path) -> None:
     assert run.printed["asks"] == ["['/asks'] 1 False"]
 
 
-def test_a_request_takes_time_so_that_a_loop_of_them_ends(tmp_path: Path) -> None:
+def test_requests_take_time_so_that_a_loop_of_them_ends(tmp_path: Path) -> None:
     script = """
         import time
         from xmlrpc.client import ServerProxy

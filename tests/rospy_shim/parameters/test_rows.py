@@ -43,7 +43,7 @@ def same(first: Any, second: Any) -> bool:
 
 
 @given(VALUES)
-def test_a_text_stands_for_the_very_value(value: Any) -> None:
+def test_text_represents_the_exact_value(value: Any) -> None:
     text = text_of(value)
     assert text.isascii()
     assert "\n" not in text
@@ -68,13 +68,13 @@ def test_a_text_stands_for_the_very_value(value: Any) -> None:
         (math.inf, "Infinity"),
     ],
 )
-def test_how_values_look(value: Any, text: str) -> None:
+def test_values_have_the_expected_text(value: Any, text: str) -> None:
     assert text_of(value) == text
     assert same(value_of(text), value)
 
 
 @pytest.mark.parametrize("text", ["[1", "null", "[null]", "3000000000", '{"!!binary": 3}', '{"!!binary": "?"}', '"'])
-def test_texts_that_stand_for_nothing(text: str) -> None:
+def test_invalid_texts_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match=r"null|bits|base 64|JSON"):
         value_of(text)
 
@@ -89,7 +89,7 @@ def test_any_name_can_be_written(parts: list[str]) -> None:
 
 
 @given(st.dictionaries(NAMES, VALUES, max_size=4))
-def test_a_tree_comes_back_from_its_rows(tree: dict[str, Any]) -> None:
+def test_tree_is_restored_from_its_rows(tree: dict[str, Any]) -> None:
     rows = [row for name, text in leaves_of("", tree) for row in rows_for(name, text)]
     problems: list[str] = []
     found, _ = tree_of(unpack(b"".join(map(pack, rows))), problems)
@@ -99,7 +99,7 @@ def test_a_tree_comes_back_from_its_rows(tree: dict[str, Any]) -> None:
 
 @settings(max_examples=60)
 @given(st.lists(st.tuples(KEYS, st.none() | VALUES), max_size=12), st.integers(4, 40))
-def test_rows_follow_the_tree_whatever_is_done(steps: list[tuple[str, Any]], count: int) -> None:
+def test_rows_follow_the_tree_after_any_changes(steps: list[tuple[str, Any]], count: int) -> None:
     tree, rows = ParameterTree(), ParameterRows([FREE] * count, {})
     tree.keep_in(rows, bool, {})
     written_rows = list(rows.rows)
@@ -123,7 +123,7 @@ def test_rows_follow_the_tree_whatever_is_done(steps: list[tuple[str, Any]], cou
         assert rows.free == count - sum(record.length for record in good.values())
 
 
-def test_one_value_of_many_changes_one_row() -> None:
+def test_change_of_one_value_changes_one_row() -> None:
     tree = ParameterTree({"arm": {f"gain{number}": number for number in range(50)}})
     rows = ParameterRows([FREE] * 60, {})
     tree.keep_in(rows, bool, {})
@@ -135,7 +135,7 @@ def test_one_value_of_many_changes_one_row() -> None:
     assert list(rows.changed) == [9]
 
 
-def test_free_rows_are_moved_together_when_a_long_value_needs_them() -> None:
+def test_free_rows_are_joined_when_a_long_value_needs_them() -> None:
     tree, rows = ParameterTree({str(number): number for number in range(10)}), ParameterRows([FREE] * 10, {})
     tree.keep_in(rows, bool, {})
     for number in range(0, 10, 2):
@@ -146,7 +146,7 @@ def test_free_rows_are_moved_together_when_a_long_value_needs_them() -> None:
         tree.set("more", "x" * 100)
 
 
-def test_rows_that_make_no_sense_are_left_out_and_emptied() -> None:
+def test_invalid_rows_are_ignored_and_emptied() -> None:
     content = [("+", "lost"), ("/a", "1"), ("/b", "[1"), ("/a", "2"), ("/a/c", "3"), FREE, ("/d", "4")]
     problems: list[str] = []
     found, good = tree_of(content, problems)
@@ -159,7 +159,7 @@ def test_rows_that_make_no_sense_are_left_out_and_emptied() -> None:
 
 @settings(max_examples=50)
 @given(st.binary(min_size=128, max_size=128))
-def test_rows_that_no_parameter_has_can_be_written_again(image: bytes) -> None:
+def test_unused_rows_can_be_rewritten(image: bytes) -> None:
     assert unpack(b"".join(map(pack, unpack(image)))) == unpack(image)
 
 
@@ -209,7 +209,7 @@ def test_depth_of_a_parameter_is_bounded(depth: int) -> None:
             tree.set("/ns/deep", value)
 
 
-def test_rows_of_a_long_text_are_made_in_linear_work() -> None:
+def test_rows_of_a_long_text_are_made_in_linear_time() -> None:
     text = "abcdefgh" * 80_000
     rows = rows_for("/long", text)
     assert len(rows) == 8_000
@@ -217,7 +217,7 @@ def test_rows_of_a_long_text_are_made_in_linear_work() -> None:
 
 
 @given(st.text("abc", max_size=300), st.text("abc", max_size=300))
-def test_number_of_rows_is_known_before_they_are_made(name: str, text: str) -> None:
+def test_number_of_rows_is_known_in_advance(name: str, text: str) -> None:
     assert count_rows(name, text) == len(rows_for(name, text))
     assert list(leaf_names(name, {"a": {}, "b": {"c": text}})) == [
         each for each, _ in leaves_of(name, {"a": {}, "b": {"c": text}})

@@ -36,7 +36,7 @@ COUNTING = """
 
 
 @pytest.mark.parametrize("tasks", ["thread", "greenlet"])
-def test_parameters_outlive_a_processor_reset_and_no_power_on_reset(tmp_path: Path, tasks: str) -> None:
+def test_parameters_survive_a_processor_reset_but_no_power_on_reset(tmp_path: Path, tasks: str) -> None:
     everything = {"b": True, "e": {}, "f": 1.0, "i": 1, "l": [1, 2.5, "x", {"y": []}], "s": "1"}
     with fly(tmp_path, COUNTING, tasks=tasks) as mission:
         mission.run_for(2)
@@ -51,7 +51,7 @@ def test_parameters_outlive_a_processor_reset_and_no_power_on_reset(tmp_path: Pa
     assert "'n', {'count': 1}" in boots[1]
 
 
-def test_what_a_node_set_counts_more_than_the_mission_file_after_a_reset(tmp_path: Path) -> None:
+def test_parameter_set_by_a_node_overrides_the_mission_file_after_a_reset(tmp_path: Path) -> None:
     node = """
         import rospy
         rospy.init_node("n")
@@ -70,7 +70,7 @@ def test_what_a_node_set_counts_more_than_the_mission_file_after_a_reset(tmp_pat
     assert boots == ["[10, 1, 'slow', [1]]", "[20, None, 'fast', [1]]", "[10, 1, 'slow', [1]]"]
 
 
-def test_what_was_set_right_before_a_node_dies_is_kept(tmp_path: Path) -> None:
+def test_parameter_set_right_before_a_node_dies_is_kept(tmp_path: Path) -> None:
     node = """
         import rospy
         rospy.init_node("n")
@@ -85,7 +85,7 @@ def test_what_was_set_right_before_a_node_dies_is_kept(tmp_path: Path) -> None:
         assert mission.ros.graph.params.find("/deaths") == 2
 
 
-def test_a_reset_before_the_tables_are_loaded_leaves_nothing_in_their_way(
+def test_reset_before_the_tables_are_loaded_does_not_block_them(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Table Services begin to restore images that the CDS does not have yet, and keep those loads in progress."""
@@ -110,7 +110,7 @@ def test_a_reset_before_the_tables_are_loaded_leaves_nothing_in_their_way(
         assert mission.ros.graph.params.find("/n/count") == 2
 
 
-def test_bytes_come_back_as_bytes(tmp_path: Path) -> None:
+def test_bytes_stay_bytes_after_a_reset(tmp_path: Path) -> None:
     node = """
         import rospy
         rospy.init_node("n")
@@ -125,7 +125,7 @@ def test_bytes_come_back_as_bytes(tmp_path: Path) -> None:
         assert printed(mission) == ["NoneType", "Binary"]
 
 
-def test_dates_are_those_of_xmlrpc_and_come_back(tmp_path: Path) -> None:
+def test_dates_match_xmlrpc_and_survive_a_reset(tmp_path: Path) -> None:
     node = """
         import datetime, rospy, xmlrpc.client
         rospy.init_node("n")
@@ -151,7 +151,7 @@ def test_dates_are_those_of_xmlrpc_and_come_back(tmp_path: Path) -> None:
         assert row in rows_of(mission)
 
 
-def test_the_ground_reads_the_rows_of_a_dump(tmp_path: Path) -> None:
+def test_ground_reads_the_rows_of_a_dump(tmp_path: Path) -> None:
     node = """
         import rospy
         rospy.init_node("n")
@@ -184,7 +184,7 @@ WATCHING = """
     """
 
 
-def test_a_table_from_the_ground_changes_what_nodes_read(tmp_path: Path) -> None:
+def test_table_from_the_ground_changes_parameters_of_nodes(tmp_path: Path) -> None:
     with fly(tmp_path, WATCHING) as mission:
         mission.run_for(2)
         load(mission, 0, {"/mode": "safe", "/arm/gain": "2.5", "/arm/on": "true"})
@@ -203,7 +203,7 @@ def test_a_table_from_the_ground_changes_what_nodes_read(tmp_path: Path) -> None
         ({"/mode": "5000000000"}, "Params01, row 0: 5000000000 has more than 32 bits"),
     ],
 )
-def test_a_table_that_makes_no_sense_is_refused(tmp_path: Path, values: dict[str, str], said: str) -> None:
+def test_invalid_table_is_refused(tmp_path: Path, values: dict[str, str], said: str) -> None:
     with fly(tmp_path, WATCHING) as mission:
         mission.run_for(2)
         load(mission, 0, values)
@@ -211,7 +211,7 @@ def test_a_table_that_makes_no_sense_is_refused(tmp_path: Path, values: dict[str
         assert any(said in text for text in events(mission)), events(mission)
 
 
-def test_a_long_text_fits_and_one_that_does_not_is_refused(tmp_path: Path) -> None:
+def test_long_text_is_stored_and_too_long_text_is_refused(tmp_path: Path) -> None:
     node = """
         import rospy
         rospy.init_node("n")
@@ -234,7 +234,7 @@ def test_a_long_text_fits_and_one_that_does_not_is_refused(tmp_path: Path) -> No
         assert len(mission.ros.graph.params.find("/another")) == 100000
 
 
-def test_only_what_changed_is_written(tmp_path: Path) -> None:
+def test_changed_parameters_alone_are_written(tmp_path: Path) -> None:
     node = """
         import rospy
         rospy.init_node("n")
@@ -250,7 +250,7 @@ def test_only_what_changed_is_written(tmp_path: Path) -> None:
         assert rows_of(mission) == [("/a/x", "1"), ("/a/y", "5"), ("/a/z", "{}"), ("/b/c", "2")]
 
 
-def test_the_application_can_be_restarted_and_then_has_its_parameters(tmp_path: Path) -> None:
+def test_restarted_application_has_its_parameters(tmp_path: Path) -> None:
     with fly(tmp_path, WATCHING) as mission:
         mission.run_for(2)
         mission.cfe.es.restart_app(mission.cfe.es.app_named("ROS").app_id)
@@ -263,7 +263,7 @@ def test_the_application_can_be_restarted_and_then_has_its_parameters(tmp_path: 
         assert rows_of(mission) == [("/mode", "later"), ("/meanwhile", "true")]
 
 
-def test_parameters_work_on_when_the_application_is_deleted(tmp_path: Path) -> None:
+def test_parameters_work_after_the_application_is_deleted(tmp_path: Path) -> None:
     """Then there are no tables that could be full."""
     with fly(tmp_path, WATCHING, board="rx64m") as mission:
         mission.run_for(2)
@@ -276,7 +276,7 @@ def test_parameters_work_on_when_the_application_is_deleted(tmp_path: Path) -> N
         assert params.find("/long") == "x" * 5000
 
 
-def test_a_board_without_room_keeps_parameters_until_the_reset(tmp_path: Path) -> None:
+def test_board_without_memory_keeps_parameters_until_the_reset(tmp_path: Path) -> None:
     with fly(tmp_path, COUNTING, limits={"tbl_max_num_tables": 1, "tbl_max_critical_tables": 1}) as mission:
         mission.run_for(2)
         assert mission.ros.graph.params.find("/n/count") == 1
@@ -287,7 +287,7 @@ def test_a_board_without_room_keeps_parameters_until_the_reset(tmp_path: Path) -
         assert any("parameters do not outlive a reset" in line for line in mission.console.lines)
 
 
-def test_the_small_board_has_one_table(tmp_path: Path) -> None:
+def test_small_board_has_one_table(tmp_path: Path) -> None:
     with fly(tmp_path, COUNTING, board="rx64m") as mission:
         mission.run_for(2)
         assert events(mission)[0].endswith("1 tables (new), 0 parameters")

@@ -70,12 +70,12 @@ def without_defaults(fields: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case["expected"] is not None])
-def test_a_file_means_the_same(name: str, tmp_path: Path) -> None:
+def test_launch_file_has_the_recorded_meaning(name: str, tmp_path: Path) -> None:
     assert as_recorded(read_case(CASES[name], tmp_path), tmp_path) == CASES[name]["expected"]
 
 
 @pytest.mark.parametrize("name", [name for name, case in CASES.items() if case["expected"] is None])
-def test_a_file_is_refused_with_its_place(name: str, tmp_path: Path) -> None:
+def test_invalid_launch_file_is_refused_with_its_line(name: str, tmp_path: Path) -> None:
     with pytest.raises(UsageError) as raised:
         read_case(CASES[name], tmp_path)
     assert raised.value.file is not None
@@ -83,7 +83,7 @@ def test_a_file_is_refused_with_its_place(name: str, tmp_path: Path) -> None:
     assert raised.value.text
 
 
-def test_what_a_check_finds_begins_with_what_a_run_refuses(tmp_path: Path) -> None:
+def test_findings_of_a_check_include_the_error_of_a_run(tmp_path: Path) -> None:
     """This includes damaged files. Files that a run accepts have no mistake."""
     random = Random(3)
     seen = {True: 0, False: 0}

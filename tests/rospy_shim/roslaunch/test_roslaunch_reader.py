@@ -49,25 +49,25 @@ def read_file(file: Path, args: Mapping[str, str] | None = None, environ: Mappin
         ('<param name="" value="1"/>', "x.launch:3: <param>: must not name all parameters"),
     ],
 )
-def test_an_error_says_where_and_what(tmp_path: Path, tag: str, said: str) -> None:
+def test_error_has_file_line_and_reason(tmp_path: Path, tag: str, said: str) -> None:
     with pytest.raises(UsageError) as raised:
         launch(tmp_path, f"\n{tag}\n")
     assert said in str(raised.value)
     assert str(raised.value).count("x.launch:") <= 1
 
 
-def test_a_date_and_time_is_a_parameter(tmp_path: Path) -> None:
+def test_date_and_time_is_a_valid_parameter(tmp_path: Path) -> None:
     found = launch(tmp_path, "<rosparam>when: 2026-11-21 18:50:00</rosparam>").params
     assert found == {"/when": DateTime("20261121T18:50:00")}
 
 
-def test_an_error_in_an_included_file_names_that_file(tmp_path: Path) -> None:
+def test_error_in_an_included_file_names_that_file(tmp_path: Path) -> None:
     (tmp_path / "inner.launch").write_text('<launch>\n\n<node pkg="p" type="t" name="a/b"/></launch>', encoding="utf-8")
     with pytest.raises(UsageError, match=r"inner\.launch:3: <node name>: invalid node name 'a/b'"):
         launch(tmp_path, '<include file="$(dirname)/inner.launch"/>')
 
 
-def test_a_file_that_includes_itself_ends(tmp_path: Path) -> None:
+def test_file_that_includes_itself_is_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="check for a file that includes itself"):
         launch(tmp_path, '<include file="$(dirname)/x.launch"/>')
 
@@ -83,13 +83,13 @@ def test_a_file_that_includes_itself_ends(tmp_path: Path) -> None:
         ('<param name="a" value="1"/><param name="a/b" value="1"/>', "parameter /a/b replaces its parent /a"),
     ],
 )
-def test_what_does_not_count_is_noted(tmp_path: Path, tag: str, said: str) -> None:
+def test_ignored_tags_are_noted(tmp_path: Path, tag: str, said: str) -> None:
     (note,) = map(str, launch(tmp_path, tag).remarks)
     assert said in note
     assert note.startswith(f"{tmp_path}/x.launch:2: ")
 
 
-def test_an_argument_that_nobody_declares_is_noted(tmp_path: Path) -> None:
+def test_undeclared_argument_is_noted(tmp_path: Path) -> None:
     remarks = launch(tmp_path, '<arg name="x" default="1"/><param name="x" value="$(arg x)"/>', x="2", y="3").remarks
     assert list(map(str, remarks)) == [f"{tmp_path}/x.launch: unknown argument 'y'; y:=3 is ignored"]
 
@@ -108,7 +108,7 @@ def test_packages_are_found_near_and_on_the_package_path(tmp_path: Path) -> None
     assert found.params["/a"] == f"{tmp_path}/ws/here {tmp_path}/ws/beside {tmp_path}/far/away"
 
 
-def test_the_namespace_of_the_environment_is_around_everything(tmp_path: Path) -> None:
+def test_namespace_of_the_environment_applies_to_everything(tmp_path: Path) -> None:
     file = tmp_path / "x.launch"
     file.write_text('<launch><param name="a" value="1"/><node pkg="p" type="t" name="n"/></launch>', encoding="utf-8")
     found = read_file(file, environ={"ROS_NAMESPACE": "robot"})
@@ -116,7 +116,7 @@ def test_the_namespace_of_the_environment_is_around_everything(tmp_path: Path) -
     assert found.nodes[0].full_name == "/robot/n"
 
 
-def test_cat_and_xacro_are_stood_in_for(tmp_path: Path) -> None:
+def test_cat_and_xacro_are_replaced_by_builtins(tmp_path: Path) -> None:
     (tmp_path / "a.txt").write_text("12", encoding="utf-8")
     assert launch(tmp_path, '<param name="a" command="cat $(dirname)/a.txt"/>').params == {"/a": 12}
     with pytest.raises(UsageError, match=r"must name one file for xacro|requires the Python package xacro"):
@@ -134,7 +134,7 @@ def collected(folder: Path, body: str, **args: str) -> list[tuple[str, int, str]
     return sorted(errors + [(remark.file.name, remark.line, remark.text) for remark in remarks])
 
 
-def test_a_file_is_read_to_the_end(tmp_path: Path) -> None:
+def test_check_reads_a_file_to_the_end(tmp_path: Path) -> None:
     (tmp_path / "inner.launch").write_text(
         '<launch>\n<arg name="rate"/>\n<param name="$(arg rate)" value="1"/></launch>', encoding="utf-8"
     )
@@ -207,7 +207,7 @@ def test_unknown_words_get_the_nearest_known_one(tmp_path: Path) -> None:
     ]
 
 
-def test_what_a_mistake_brings_about_is_not_told(tmp_path: Path) -> None:
+def test_consequences_of_a_mistake_are_not_reported(tmp_path: Path) -> None:
     found = collected(
         tmp_path,
         """\
@@ -223,7 +223,7 @@ def test_what_a_mistake_brings_about_is_not_told(tmp_path: Path) -> None:
     assert [line for _, line, _ in found] == [2, 3, 7]
 
 
-def test_a_file_that_includes_itself_twice_ends(tmp_path: Path) -> None:
+def test_file_that_includes_itself_twice_is_refused(tmp_path: Path) -> None:
     include = '<include file="$(dirname)/x.launch"/>\n'
     assert [line for _, line, _ in collected(tmp_path, include * 2)] == [2]
 
@@ -241,7 +241,7 @@ def test_a_file_that_includes_itself_twice_ends(tmp_path: Path) -> None:
         ('<arg name="x" default="1"/><rosparam file="$(dirname)/a.yaml" subst_value="true"/>', []),
     ],
 )
-def test_arguments_that_nothing_uses(tmp_path: Path, body: str, unused: list[str]) -> None:
+def test_unused_arguments_are_reported(tmp_path: Path, body: str, unused: list[str]) -> None:
     (tmp_path / "a.yaml").write_text("a: $(arg x)\n", encoding="utf-8")
     (tmp_path / "in.launch").write_text(
         '<launch><arg name="z" default="1"/><param name="$(arg z)" value="2"/></launch>', encoding="utf-8"
@@ -250,7 +250,7 @@ def test_arguments_that_nothing_uses(tmp_path: Path, body: str, unused: list[str
     assert found == [f"unused argument {name!r}; remove it, or use $(arg ...)" for name in unused]
 
 
-def test_tags_that_are_nested_too_deeply(tmp_path: Path) -> None:
+def test_tags_nested_too_deeply_are_refused(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=r"x\.launch:2: <group>: is nested more than 100 tags deep"):
         launch(tmp_path, "<group>" * 2000 + "</group>" * 2000)
 

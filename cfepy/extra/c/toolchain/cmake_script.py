@@ -81,7 +81,7 @@ class CMakeBudget:
         """Count a file or folder that a pattern examines. It raises the errors of `spend`."""
         self._files -= 1
         if self._files < 0:
-            raise self._error(f"has patterns that look at more than {CMAKE_FILES:,} files")
+            raise self._error(f"has patterns that match more than {CMAKE_FILES:,} files")
 
     @contextmanager
     def inside(self) -> Iterator[None]:

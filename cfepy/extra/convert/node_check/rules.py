@@ -69,7 +69,7 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("library-outside", _E, _E, _E),
             "a header of a library from outside ROS",
-            "no cFE build of the library comes with cfepy",
+            "cfepy has no build of the library for cFE",
             "leave the library out, or build the node with it by hand",
         ),
         CheckRule(
@@ -81,7 +81,7 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("ros-library", _E, _E, _E),
             "a header of a ROS library that is not in the interface library",
-            "without it the node would be built against another ROS, whose code waits in threads and sockets",
+            "the node would be built with another ROS, whose code waits in threads and sockets",
             "leave the library out; docs/how_to/convertor.md lists the available libraries",
         ),
         CheckRule(
@@ -92,26 +92,26 @@ RULES: dict[str, CheckRule] = {
         ),
         CheckRule(
             *("system-ros", _E, _E, _E),
-            "a header that came from a ROS on this computer",
+            "a header of a ROS that is installed on this computer",
             "two libraries with the same names cannot be combined in one program",
             "report it: the interface library should have refused the header",
         ),
         CheckRule(
             *("api-missing", _E, _E, _E),
             "a class, function or overload of ROS that the interface library does not have",
-            "it has no implementation on cFE yet",
+            "it is not implemented on cFE",
             "use another call; docs/how_to/convertor.md lists the available calls",
         ),
         CheckRule(
             *("message-definition", _E, _E, _E),
             "a message whose definition is wrong, or names a missing message",
-            "its header cannot be made",
+            "its header cannot be generated",
             "fix the .msg, .srv or .action file, or put the package of the other message on ROS_PACKAGE_PATH",
         ),
         CheckRule(
             *("configuration", _E, _E, _E),
             "a script in cfg/ that fails",
-            "the header of the configuration cannot be made of it",
+            "the header of the configuration cannot be generated from it",
             "fix the script; it is run as by a catkin build",
         ),
         CheckRule(
@@ -123,7 +123,7 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("arena-too-small", None, _E, _E),
             "the messages of all subscriptions do not fit into the node's arena",
-            "they are set aside there when the node starts",
+            "the node reserves their memory when it starts",
             "give a larger `arena_bytes` under `cpp_nodes:` of a mission file, smaller capacities, or shorter queues",
         ),
         CheckRule(
@@ -153,68 +153,68 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("exit", _W, _W, _W),
             "exit() or a similar function",
-            "it is made to end this application; the processor and its other applications go on",
+            "cfepy makes it end only this application; the processor and other applications continue",
             "return from main, or call ros::shutdown()",
         ),
         CheckRule(
             *("abort", _W, _W, _W),
             "abort()",
-            "it is made to end this application with an error; the processor and its other applications go on",
+            "cfepy makes it end only this application, with an error; the processor and other applications continue",
             "call ros::shutdown() and return from main",
         ),
         CheckRule(
             *("assert", _W, _W, _W),
             "assert() or std::terminate()",
-            "where it is carried out it ends the processor with all of its applications",
+            "if it fails, it ends the processor with all its applications",
             "log and return, or build with NDEBUG",
         ),
         CheckRule(
             *("signal", _W, _E, _E),
             "a signal handler",
-            "signals belong to the processor: handlers of SIGINT and SIGTERM run when the application is asked to end, "
-            "others never",
-            "wait with ros::ok(), which ends when the application is asked to",
+            "signals belong to the processor: handlers of SIGINT and SIGTERM run when the application must end, "
+            "other handlers never run",
+            "wait with ros::ok(), which becomes false when the application must end",
         ),
         CheckRule(
             *("heap-in-callback", None, _N, _E),
             "memory is allocated in a callback",
-            "memory is the application's own, and does not grow after its start",
+            "an application does not allocate memory after its start",
             "reserve it before the first callback",
         ),
         CheckRule(
             *("queue-unbounded", _W, _W, _W),
             "a subscription with queue size 0, which in ROS has no bound",
-            "memory is set aside when the node starts, so the queue has a bound",
+            "the node reserves memory when it starts, so the queue needs a bound",
             "set the number of messages that may wait",
         ),
         CheckRule(
             *("queue-large", _W, _W, _W),
-            "a subscription whose queue is longer than a node keeps",
-            "memory for all of its messages would be set aside when the node starts",
+            "a subscription whose queue is longer than the bound of a node",
+            "the node would reserve memory for all of its messages when it starts",
             "set the number of messages that may wait, or raise the bound for the node",
         ),
         CheckRule(
             *("thread", _E, _E, _E),
             "a thread that is not cFE's, or a condition that another thread has to make true",
-            "cFE knows only one task of the node: only that task may call ROS, and the thread would outlive it",
+            "the node is one task of cFE: only this task may call ROS, and the thread would outlive it",
             "use a timer or a callback",
         ),
         CheckRule(
             *("socket", _E, _E, _E),
             "a socket of the operating system, or a wait in boost::asio",
-            "cFE does not know of it: it stays open after a restart, and a wait in it holds up the task",
+            "cFE does not close it at a restart, and a wait in it blocks the task",
             "use OSAL's sockets, or a bridge application",
         ),
         CheckRule(
             *("serial", _E, _E, _E),
             "a device or terminal of the operating system",
-            "a driver belongs to the board: a wait in it holds up the task, and it stays open after a restart",
-            "put the device behind a driver application that speaks on the Software Bus",
+            "a driver belongs to the board: a wait in it blocks the task, and it stays open after a restart",
+            "write a driver application that sends the data over the Software Bus",
         ),
         CheckRule(
             *("file", _W, _W, _E),
             "a file of the operating system",
-            "the names of files are OSAL's virtual ones on cFE, and this goes past them",
+            "file names on cFE are OSAL's virtual names, and this call does not use them",
             "use OSAL's files, parameters or a table",
         ),
         CheckRule(
@@ -226,7 +226,7 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("getchar", _E, _E, _E),
             "the keyboard is read",
-            "an application has no keyboard, and a wait for it holds up the task",
+            "an application has no keyboard, and the wait blocks the task",
             "subscribe to a topic or offer a service",
         ),
         CheckRule(
@@ -238,31 +238,31 @@ RULES: dict[str, CheckRule] = {
         CheckRule(
             *("sleep", _W, _W, _W),
             "a sleep of the operating system",
-            "it is made to wait as ROS's sleeps do, in cFE's time; messages wait meanwhile",
+            "cfepy makes it wait like ROS's sleeps, in cFE's time; messages wait in the meantime",
             "use ros::Rate, ros::Duration::sleep or a timer",
         ),
         CheckRule(
             *("topic-not-constant", _W, _W, _W),
             "the name of a topic or service that is computed when the node runs",
-            "MsgIds are given out before the node is built: a name that has none ends the application",
+            "MsgIds are assigned before the node is built: a name without a MsgId ends the application",
             "write the name in the mission file",
         ),
         CheckRule(
             *("message-too-long", _W, _W, _W),
             "a subscription to messages whose structure alone is longer than a packet of the Software Bus",
             "the Software Bus carries packets of 32,768 bytes",
-            "take a smaller message, or smaller capacities",
+            "use a smaller message, or smaller capacities",
         ),
         CheckRule(
             *("global-state", _N, _N, _N),
             "a variable outside of functions and classes",
-            "it is kept apart from other nodes by the way the node is linked, and begins anew at a restart",
+            "each node is linked with its own copy, which is initialized again at a restart",
             "nothing, if this is intended",
         ),
         CheckRule(
             *("static-local", _N, _N, _N),
             "a variable that outlives its function",
-            "it is kept apart from other nodes by the way the node is linked, and begins anew at a restart",
+            "each node is linked with its own copy, which is initialized again at a restart",
             "nothing, if this is intended",
         ),
     )

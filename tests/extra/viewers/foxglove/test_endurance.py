@@ -168,7 +168,7 @@ def test_10_000_bad_frames_do_no_harm(tmp_path: Path) -> None:
         assert run.mission.record.deaths() == []
 
 
-def test_frames_that_are_no_websocket_end_their_connection(tmp_path: Path) -> None:
+def test_frames_other_than_websocket_end_their_connection(tmp_path: Path) -> None:
     choose = random.Random(2)
     with shown(spec_of(tmp_path, {"talker": TALKER})) as run:
         run.until(1)
@@ -182,7 +182,7 @@ def test_frames_that_are_no_websocket_end_their_connection(tmp_path: Path) -> No
         assert connections(run) == (201, 201, 0)
 
 
-def test_who_does_not_read_holds_nobody_up(tmp_path: Path) -> None:
+def test_slow_viewer_loses_messages_and_another_gets_all(tmp_path: Path) -> None:
     """One viewer reads nothing while 64 MB are sent: it loses messages, which are counted, and another gets all."""
     sender = """
         import rospy

@@ -64,7 +64,7 @@ def ask(op: str, **fields: Any) -> str:
         (b"\x02" + struct.pack("<III", 1, 2, 4) + b"ros1\x01", Called(1, 2, "ros1", b"\x01")),
     ],
 )
-def test_what_a_viewer_asks_for(frame: str | bytes, op: object) -> None:
+def test_requests_of_a_viewer_are_parsed(frame: str | bytes, op: object) -> None:
     assert ops_of(frame) == [op]
 
 
@@ -83,7 +83,7 @@ def test_what_a_viewer_asks_for(frame: str | bytes, op: object) -> None:
         ({}, None),
     ],
 )
-def test_parameters_that_are_set(given: dict[str, Any], value: Any) -> None:
+def test_set_parameters_are_parsed(given: dict[str, Any], value: Any) -> None:
     (op,) = ops_of(ask("setParameters", parameters=[{"name": "/p", **given}], id="1"))
     assert op == ParametersSet({"/p": value}, "1")
     assert isinstance(op, ParametersSet)
@@ -125,7 +125,7 @@ def test_parameters_that_are_set(given: dict[str, Any], value: Any) -> None:
         (b"\x02" + struct.pack("<III", 1, 2, 5) + b"ros1", "longer than the request"),
     ],
 )
-def test_what_is_no_message_of_the_protocol(frame: str | bytes, why: str) -> None:
+def test_malformed_message_of_the_protocol_is_refused(frame: str | bytes, why: str) -> None:
     with pytest.raises(FrameError, match=why):
         ops_of(frame)
 
@@ -135,7 +135,7 @@ def test_what_is_no_message_of_the_protocol(frame: str | bytes, why: str) -> Non
         st.binary(max_size=40), st.text(max_size=40), st.builds(bytes.__add__, st.just(b"\x02"), st.binary())
     )
 )
-def test_whatever_comes_is_understood_or_refused(frame: str | bytes) -> None:
+def test_any_frame_is_parsed_or_refused(frame: str | bytes) -> None:
     try:
         ops_of(frame)
     except FrameError as error:
@@ -150,7 +150,7 @@ JSON_VALUES = st.recursive(
 
 
 @given(op=st.sampled_from(["subscribe", "advertise", "setParameters"]), value=JSON_VALUES, type_=JSON_VALUES)
-def test_values_of_any_type_where_others_belong(op: str, value: Any, type_: Any) -> None:
+def test_values_of_wrong_types_are_parsed_or_refused(op: str, value: Any, type_: Any) -> None:
     lists = {"subscriptions": [{"id": value}], "channels": [{**CHANNEL, "id": value}]}
     frame = ask(op, **lists, parameters=[{"name": "/p", "value": value, "type": type_}])
     try:
@@ -173,13 +173,13 @@ def test_values_of_any_type_where_others_belong(op: str, value: Any, type_: Any)
         (None, {}),
     ],
 )
-def test_parameters_that_are_told(value: Any, told: dict[str, Any]) -> None:
+def test_parameters_are_serialized_with_their_types(value: Any, told: dict[str, Any]) -> None:
     message = json.loads(parameters([("/p", value)], "7"))
     assert message == {"op": "parameterValues", "parameters": [{"name": "/p", **told}], "id": "7"}
     assert "id" not in json.loads(parameters([("/p", value)]))
 
 
-def test_the_graph_is_told_as_a_difference() -> None:
+def test_graph_update_has_only_differences() -> None:
     before = ({"/a": ["/n"], "/b": []}, {"/a": [], "/b": []}, {"/s": ["/n"], "/t": ["/n"]})
     now = ({"/a": [], "/c": ["/m"]}, {"/a": ["/m"], "/c": []}, {"/t": ["/n"]})
     assert json.loads(graph_update(before, now)) == {

@@ -49,7 +49,7 @@ def test_topics_are_channels_in_the_encoding_of_ros(run: ShownRun) -> None:
         assert (log.name, log.msg) == ("/talker", "late")
 
 
-def test_who_comes_late_gets_what_is_latched_and_nobody_else_gets_it_again(run: ShownRun) -> None:
+def test_late_subscriber_gets_the_latched_message_and_others_do_not_get_it_again(run: ShownRun) -> None:
     with run.client() as first, run.client() as second:
         first.subscribe("/latched")
         first.wait_for(lambda: first.of("/latched"))
@@ -61,7 +61,7 @@ def test_who_comes_late_gets_what_is_latched_and_nobody_else_gets_it_again(run: 
         assert first.of("/latched") == [text("once")]
 
 
-def test_telemetry_is_json_that_its_schema_describes(run: ShownRun) -> None:
+def test_telemetry_is_json_that_matches_its_schema(run: ShownRun) -> None:
     with run.client() as client:
         client.subscribe("/cfe/CFE_ES_HK_TLM", "/cfe/CFE_EVS_LONG_EVENT_MSG", "/cfe/CFE_TIME_TONE_CMD")
         client.advertise(1, "/cfe/CFE_ES_NOOP", "", "json")
@@ -89,7 +89,7 @@ def test_events_are_a_log(run: ShownRun) -> None:
         assert (log["name"], log["line"], log["level"]) == ("CFE_ES", 3, 2)
 
 
-def test_the_clock_is_that_of_the_mission(run: ShownRun) -> None:
+def test_clock_is_mission_time(run: ShownRun) -> None:
     with run.client() as client:
         run.viewer._look_at_s = 0.0
         client.wait_for(lambda: len(client.times) > 1)
@@ -121,7 +121,7 @@ def _parameters(client: Any) -> list[dict[str, Any]]:
     return [each for told in client.told("parameterValues") for each in told["parameters"]]
 
 
-def test_a_parameter_that_cannot_be_set_is_told(run: ShownRun) -> None:
+def test_parameter_that_cannot_be_set_is_reported(run: ShownRun) -> None:
     run.until(0.7)
     with run.client() as client:
         client.send(op="setParameters", parameters=[{"name": "/huge", "value": 2**40}])
@@ -144,7 +144,7 @@ def test_services_are_called(run: ShownRun) -> None:
         assert "off is not possible" in client.told("serviceCallFailure")[0]["message"]
 
 
-def test_a_request_that_is_too_short_fails_and_the_run_goes_on(run: ShownRun) -> None:
+def test_too_short_request_fails_and_the_run_continues(run: ShownRun) -> None:
     with run.client() as client:
         for number, request in enumerate((b"", b"\xff\xff\xff\xff")):
             client.call("/talker/set_logger_level", number, request)
@@ -184,7 +184,7 @@ def test_a_client_publishes(run: ShownRun) -> None:
         ("/cfe/CFE_ES_NOOP", "std_msgs/String", "ros1", "a command must have the encoding json"),
     ],
 )
-def test_what_cannot_be_published_is_told(run: ShownRun, topic: str, kind: str, encoding: str, why: str) -> None:
+def test_invalid_advertisement_is_reported(run: ShownRun, topic: str, kind: str, encoding: str, why: str) -> None:
     run.until(0.7)
     with run.client() as client:
         client.advertise(1, topic, kind, encoding)
@@ -204,7 +204,7 @@ def test_what_cannot_be_published_is_told(run: ShownRun, topic: str, kind: str, 
         ("std_msgs/String", "json", b"\xff", "invalid std_msgs/String"),
     ],
 )
-def test_what_is_no_message_is_dropped_and_counted(
+def test_malformed_message_of_a_client_is_dropped_and_counted(
     run: ShownRun, kind: str, encoding: str, data: bytes, why: str
 ) -> None:
     run.until(0.7)
@@ -217,7 +217,7 @@ def test_what_is_no_message_is_dropped_and_counted(
     assert (row["messages"], row["dropped"]) == (1, 1)
 
 
-def test_a_viewer_changes_nothing_in_the_run(tmp_path: Path) -> None:
+def test_viewer_does_not_change_the_run(tmp_path: Path) -> None:
     spec = spec_of(tmp_path, {"talker": TALKER})
     with Mission(spec) as mission:
         mission.run_for(2)
@@ -230,7 +230,7 @@ def test_a_viewer_changes_nothing_in_the_run(tmp_path: Path) -> None:
         assert run.mission.trace.digest() == alone
 
 
-def test_what_enters_is_written_down_and_does_the_same_again(tmp_path: Path) -> None:
+def test_recorded_arrivals_reproduce_the_run(tmp_path: Path) -> None:
     spec = spec_of(tmp_path, {"talker": TALKER})
     arrivals: list[tuple[int, Arrival]] = []
 
@@ -258,7 +258,7 @@ def test_what_enters_is_written_down_and_does_the_same_again(tmp_path: Path) -> 
     assert len(arrivals) > 3
 
 
-def test_at_the_end_everything_is_out(tmp_path: Path) -> None:
+def test_viewers_get_all_messages_before_the_end(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {"talker": TALKER})) as run:
         client = run.client()
         client.subscribe("/cfe/events")
@@ -289,7 +289,7 @@ def test_a_processor_reset_leaves_viewers_connected(run: ShownRun) -> None:
         assert client.of("/chatter") == [text("AGAIN of /foxglove_1")]
 
 
-def test_packets_that_the_mission_file_shows_are_messages_of_ros_as_well(tmp_path: Path) -> None:
+def test_packets_of_the_ros_bridge_section_are_ros_messages_too(tmp_path: Path) -> None:
     """With the types that ROS nodes outside see."""
     spec = spec_of(tmp_path, {"talker": TALKER})
     bridge = RosBridge({"/cfs/es_hk": BridgedPacket("CFE_ES_HK_TLM"), "/cfs/raw": BridgedPacket("0x0800", True)})

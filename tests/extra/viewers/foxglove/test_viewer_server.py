@@ -30,7 +30,7 @@ def refused(run: ShownRun, path: str = "/", origin: str | None = None) -> int:
     return 101
 
 
-def test_pages_of_strangers_are_refused_and_foxglove_is_not(tmp_path: Path) -> None:
+def test_strange_pages_are_refused_and_foxglove_is_accepted(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {})) as run:
         for origin in (None, "https://app.foxglove.dev", "http://localhost:8080", "file://", "app://lichtblick"):
             assert refused(run, origin=origin) == 101, origin
@@ -51,7 +51,7 @@ def test_pages_of_strangers_are_refused_and_foxglove_is_not(tmp_path: Path) -> N
         assert "example.org" in row["why"]
 
 
-def test_a_token_is_wanted_of_everybody_where_there_is_one(tmp_path: Path) -> None:
+def test_token_is_required_of_each_client_when_one_is_set(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {}), Admission(TOKEN)) as run:
         assert refused(run) == 401
         assert refused(run, "/?token=wrong-one", "https://app.foxglove.dev") == 401
@@ -62,7 +62,7 @@ def test_a_token_is_wanted_of_everybody_where_there_is_one(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     "data", [b"", b"GET / HTTP/1.1\r\n", b"\x16\x03\x01" + b"\xff" * 300 + b"\r\n\r\n", b"x" * 70_000]
 )
-def test_what_is_no_request_harms_nobody(tmp_path: Path, data: bytes) -> None:
+def test_malformed_request_does_not_stop_the_server(tmp_path: Path, data: bytes) -> None:
     with shown(spec_of(tmp_path, {})) as run:
         with socket.create_connection((run.viewer.place.host, run.viewer.place.port)) as peer:
             peer.sendall(data)
@@ -71,12 +71,12 @@ def test_what_is_no_request_harms_nobody(tmp_path: Path, data: bytes) -> None:
         assert refused(run) == 101
 
 
-def test_a_port_that_is_taken_is_told(tmp_path: Path) -> None:
+def test_taken_port_is_reported(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {})) as run, pytest.raises(UsageError, match=r"--foxglove: .*give another port"):
         FoxgloveViewer(ListenPlace("127.0.0.1", run.viewer.place.port), Admission(), "other", PeerCounts())
 
 
-def test_who_leaves_too_much_unread_that_is_not_to_be_lost_is_sent_away(tmp_path: Path) -> None:
+def test_viewer_with_too_much_unread_status_is_disconnected(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {})) as run, socket.socket() as idle:
         idle.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
         idle.connect(tuple(run.viewer.place))
@@ -95,7 +95,7 @@ def test_who_leaves_too_much_unread_that_is_not_to_be_lost_is_sent_away(tmp_path
         assert (row["connections"], row["ended"], row["why"]) == (1, 1, "too much is unread")
 
 
-def test_a_viewer_watches_so_many_parameters_and_no_more(tmp_path: Path) -> None:
+def test_number_of_watched_parameters_is_limited(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {})) as run, run.client() as client:
         for part in range(3):
             names = [f"/p{part}_{number}" for number in range(5_000)]
@@ -105,7 +105,7 @@ def test_a_viewer_watches_so_many_parameters_and_no_more(tmp_path: Path) -> None
         assert run.rows()["(connections)", "in"]["dropped"] == 1
 
 
-def test_what_cannot_be_subscribed_to_is_told(tmp_path: Path) -> None:
+def test_invalid_subscription_is_reported(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {})) as run, run.client() as client:
         client.subscribe("/cfe/events")
         number, other = (client.channels[name]["id"] for name in ("/cfe/events", "/cfe/CFE_ES_HK_TLM"))
@@ -116,7 +116,7 @@ def test_what_cannot_be_subscribed_to_is_told(tmp_path: Path) -> None:
         assert told == ["subscription 1000", f"subscription {number}", "unknown channel 77777"]
 
 
-def test_a_service_that_is_not_called_as_it_should_be(tmp_path: Path) -> None:
+def test_invalid_service_call_is_reported(tmp_path: Path) -> None:
     with shown(spec_of(tmp_path, {"talker": TALKER})) as run, run.client() as client:
         client.call("/switch", 1, b"{}", encoding="json")
         client.services["/none"] = {"id": 4_000}
@@ -126,7 +126,7 @@ def test_a_service_that_is_not_called_as_it_should_be(tmp_path: Path) -> None:
         assert told == {1: "the encoding of a request must be ros1, not json", 2: "unknown service"}
 
 
-def test_a_service_that_does_not_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_service_without_an_answer_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     sleeper = """
         import rospy
         from std_srvs.srv import Empty
@@ -144,9 +144,7 @@ def test_a_service_that_does_not_answer(tmp_path: Path, monkeypatch: pytest.Monk
         assert client.told("serviceCallFailure")[-1]["message"] == "the service has not answered"
 
 
-def test_a_service_that_nobody_can_describe_is_not_offered_and_may_end(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_service_of_an_unknown_type_is_not_advertised(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A compiled node's, of a type that no node in Python knows."""
     short = """
         import rospy

@@ -62,7 +62,7 @@ ros_bridge:
 TYPE = "cfe_tlm/CFE_ES_HK_TLM"
 
 
-def test_packets_that_the_mission_file_shows(tmp_path: Path) -> None:
+def test_packets_of_the_ros_bridge_section_are_topics(tmp_path: Path) -> None:
     """They are topics of the node /cfe, with the types for external nodes. The mission itself does not have them."""
     with bridged(tmp_path, {}, SHOWN) as run:
         client = run.client()
@@ -92,7 +92,7 @@ def test_packets_that_the_mission_file_shows(tmp_path: Path) -> None:
         client.close()
 
 
-def test_a_packet_that_is_too_short_for_its_type_is_counted(tmp_path: Path) -> None:
+def test_packet_too_short_for_its_type_is_counted(tmp_path: Path) -> None:
     with bridged(tmp_path, {}, SHOWN) as run:
         client = run.client()
         client.send(op="subscribe", topic="/cfs/es_hk", type=TYPE)

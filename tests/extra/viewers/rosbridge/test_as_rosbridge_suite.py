@@ -18,7 +18,7 @@ PEER = Path(__file__).parents[3] / "ros_nodes" / "rosbridge_peer.py"
 
 
 @pytest.mark.slow
-def test_the_exchanges_on_record() -> None:
+def test_recorded_exchanges_are_reproduced() -> None:
     rows = json.loads(DATA.read_text(encoding="utf-8"))
     assert len(rows) > 140
     with bridged_mission(spec_of_node([str(PEER)])) as run:

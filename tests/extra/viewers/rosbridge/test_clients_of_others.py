@@ -178,7 +178,7 @@ def test_roslibjs_in_a_browser(tmp_path: Path, pages: tuple[Path, str]) -> None:
 
 
 @pytest.mark.skipif(not CAN_BROWSE and not IS_REQUIRED, reason=NEEDS)
-def test_a_page_of_others_needs_the_token(tmp_path: Path, pages: tuple[Path, str]) -> None:
+def test_page_without_an_origin_needs_the_token(tmp_path: Path, pages: tuple[Path, str]) -> None:
     """A page that is a file has no origin that could be known."""
     folder, _ = pages
     connect = """new Promise(done => {

@@ -87,7 +87,7 @@ def _grown(what: str, before: tuple[int, int, int]) -> tuple[int, int, int]:
 
 
 @pytest.mark.slow
-def test_reconnects_and_nonsense_leave_nothing(tmp_path: Path) -> None:
+def test_reconnects_and_malformed_messages_leave_nothing(tmp_path: Path) -> None:
     with bridged(tmp_path, {"TALKER": TALKER}) as run:
         numbers = random.Random(1)
         for _ in range(5):

@@ -26,7 +26,7 @@ rospy.spin()
 """
 
 
-def test_a_run_with_clients_is_the_same_without_them(tmp_path: Path) -> None:
+def test_run_with_clients_is_reproduced_without_them(tmp_path: Path) -> None:
     arrivals: list[tuple[int, bytes]] = []
     with bridged(tmp_path, {**NODES, "CALLER": CALLER}) as run:
         door = run.mission.outside
@@ -89,7 +89,7 @@ def test_a_refusal_is_repeated(tmp_path: Path) -> None:
     _repeat(tmp_path, arrivals, end_ns, digest, lines)
 
 
-def test_who_only_looks_leaves_no_trace(tmp_path: Path) -> None:
+def test_client_that_only_observes_does_not_change_the_trace(tmp_path: Path) -> None:
     """Asking rosapi, hearing a topic, sending nonsense and leaving again changes nothing of the run."""
     digests = []
     for looks in (False, True):

@@ -29,7 +29,7 @@ ALL = from_full_text(
 ).message_class("pkg/All")
 
 
-def test_a_header_without_a_stamp_gets_the_time() -> None:
+def test_header_without_a_stamp_gets_the_time() -> None:
     message: Any = READING.message({"header": {"frame_id": "map"}}, message_class("geometry_msgs/PoseStamped"))
     assert (message.header.stamp.secs, message.header.stamp.nsecs, message.header.frame_id) == (100, 5, "map")
     message = READING.message({"header": {"stamp": {"secs": 1}}}, message_class("geometry_msgs/PoseStamped"))
@@ -43,7 +43,7 @@ def test_now_is_the_missions_time() -> None:
     assert message.data == Time(100, 5)
 
 
-def test_a_publisher_numbers_its_messages() -> None:
+def test_publisher_numbers_its_messages() -> None:
     kind = message_class("geometry_msgs/PoseStamped")
     message: Any = kind().deserialize(READING.serialized({"header": {"seq": 9}}, kind, 4))
     assert message.header.seq == 4
@@ -69,7 +69,7 @@ def test_a_publisher_numbers_its_messages() -> None:
         ({"n": [1]}, "requires a bool for field n"),
     ],
 )
-def test_what_is_no_message(values: dict[str, Any], said: str) -> None:
+def test_values_of_a_wrong_type_are_refused(values: dict[str, Any], said: str) -> None:
     with pytest.raises(WrongMessage, match=said):
         READING.serialized(values, ALL)
 
@@ -84,7 +84,7 @@ JSON = st.recursive(
 @pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(st.dictionaries(st.sampled_from("abcdefghijklmno"), JSON | st.fixed_dictionaries({"secs": JSON, "nsecs": JSON})))
-def test_whatever_comes_is_a_message_or_refused(values: dict[str, Any]) -> None:
+def test_any_values_are_a_message_or_refused(values: dict[str, Any]) -> None:
     try:
         payload = READING.serialized(values, ALL)
     except WrongMessage:

@@ -17,13 +17,13 @@ def _paced(*wishes: Wish) -> Pacing[int]:
     return pacing
 
 
-def test_without_a_rate_all_go_at_once() -> None:
+def test_all_messages_are_sent_at_once_without_a_rate() -> None:
     pacing = _paced(Wish())
     assert [pacing.add(each, 0.0) for each in range(3)] == [0, 1, 2]
     assert pacing.due(9.0) is None
 
 
-def test_a_rate_leaves_out_what_comes_too_early() -> None:
+def test_rate_drops_messages_that_come_too_early() -> None:
     pacing = _paced(Wish(throttle_ms=100))
     assert [pacing.add(each, each * 0.06) for each in range(5)] == [0, None, 2, None, 4]
     assert pacing.due(9.0) is None
@@ -37,7 +37,7 @@ def test_a_queue_keeps_the_newest_for_their_time() -> None:
     assert [pacing.due(at_s) for at_s in (0.05, 0.1, 0.15, 0.2, 0.3)] == [None, 3, None, 4, None]
 
 
-def test_what_waits_goes_first() -> None:
+def test_waiting_messages_are_sent_first() -> None:
     pacing = _paced(Wish(throttle_ms=100, queue_length=2))
     assert pacing.add(0, 0.0) == 0
     assert pacing.add(1, 0.0) is None
@@ -45,7 +45,7 @@ def test_what_waits_goes_first() -> None:
     assert pacing.due(0.2) == 1
 
 
-def test_several_subscriptions_have_one_pace() -> None:
+def test_several_subscriptions_share_the_fastest_pace() -> None:
     pacing = _paced(Wish(200, 5, "png"), Wish(100, 3, "cbor"), Wish(300, 4, "no such"))
     assert pacing.compression == "cbor"
     assert pacing.add(0, 0.0) == 0
@@ -68,7 +68,7 @@ def test_pieces_make_the_text_again_in_any_order(size: int) -> None:
         assert found == [*[None] * (len(pieces) - 1), text]
 
 
-def test_pieces_that_are_too_much() -> None:
+def test_too_large_or_too_many_incomplete_messages_are_refused() -> None:
     assembly = Assembly(10)
     with pytest.raises(UsageError, match="more than 10 characters"):
         assembly.add({"id": 1, "num": 0, "total": 2, "data": "x" * 11}, 0.0)
@@ -85,7 +85,7 @@ def test_pieces_that_are_too_much() -> None:
 
 
 @pytest.mark.parametrize("now_s", [0.0, 1.0, 599.0, 1e6])
-def test_a_piece_that_is_refused_takes_no_place_at_any_time_since_the_boot(now_s: float) -> None:
+def test_refused_piece_takes_no_place(now_s: float) -> None:
     assembly = Assembly(10)
     for name in range(40):
         with pytest.raises(UsageError, match="append fragment 2"):

@@ -49,7 +49,7 @@ def test_messages_both_ways(tmp_path: Path) -> None:
         assert (rows["/orders", "in"], rows["/orders", "out"], rows["/chatter", "out"]) == (2, 1, 5)
 
 
-def test_a_publisher_outlives_its_client_for_a_while(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_publisher_outlives_its_client_for_a_while(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from cfepy.extra.viewers.rosbridge import bridge_node
 
     with bridged(tmp_path, {"TALKER": TALKER}) as run:
@@ -98,7 +98,7 @@ def test_a_service_of_a_client(tmp_path: Path) -> None:
         asker.close()
 
 
-def test_a_caller_that_leaves_is_forgotten(tmp_path: Path) -> None:
+def test_disconnected_caller_is_forgotten(tmp_path: Path) -> None:
     with bridged(tmp_path, {"CALLER": CALLER}) as run:
         asker, server = run.client(), run.client()
         server.send(op="advertise_service", service="/mine", type=TRIGGER)
@@ -123,7 +123,7 @@ def test_long_messages_in_pieces(tmp_path: Path) -> None:
         client.close()
 
 
-def test_a_reset_of_the_processor_leaves_clients_connected(tmp_path: Path) -> None:
+def test_reset_of_the_processor_keeps_clients_connected(tmp_path: Path) -> None:
     with bridged(tmp_path, {"TALKER": TALKER, "SERVER": SERVER}) as run:
         client = run.client()
         client.send(op="subscribe", topic="/chatter")

@@ -87,7 +87,7 @@ def talker(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Bridged]:
         yield run
 
 
-def test_what_is_wrong_is_told_and_the_connection_stays(talker: Bridged) -> None:
+def test_problem_of_a_message_is_reported_and_the_connection_stays(talker: Bridged) -> None:
     client = talker.client()
     for sent, said in PROBLEMS:
         named = sent.get("op") in client_ops() if isinstance(sent, dict) and isinstance(sent.get("op"), str) else False
@@ -112,7 +112,7 @@ def client_ops() -> set[str]:
     return {sent["op"] for sent, _ in PROBLEMS if isinstance(sent, dict) and isinstance(sent.get("op"), str)}
 
 
-def test_statuses_come_as_far_as_they_are_wanted(talker: Bridged) -> None:
+def test_statuses_are_sent_from_the_requested_level_on(talker: Bridged) -> None:
     client = talker.client()
     client.send(op="set_level", level="none")
     client.send(op="nonsense")
@@ -133,7 +133,7 @@ BAD_BYTES = {
 
 
 @pytest.mark.parametrize("data", BAD_BYTES.values(), ids=list(BAD_BYTES))
-def test_what_is_no_request_ends_the_connection(talker: Bridged, data: bytes) -> None:
+def test_malformed_request_ends_the_connection(talker: Bridged, data: bytes) -> None:
     stranger = socket.create_connection((LOOPBACK, talker.port))
     stranger.setblocking(False)
     over = _sent_until_over(talker, stranger, data)
@@ -155,7 +155,7 @@ BAD_FRAMES = {
 
 
 @pytest.mark.parametrize(("data", "code"), BAD_FRAMES.values(), ids=list(BAD_FRAMES))
-def test_what_is_no_frame_ends_the_connection(talker: Bridged, data: bytes, code: int) -> None:
+def test_malformed_frame_ends_the_connection(talker: Bridged, data: bytes, code: int) -> None:
     client = talker.client()
     client.socket.setblocking(True)
     client.socket.sendall(data)
@@ -187,7 +187,7 @@ def _still_served(run: Bridged) -> None:
     client.close()
 
 
-def test_who_has_left_before_it_was_let_in(talker: Bridged) -> None:
+def test_client_that_left_before_it_was_accepted_is_ignored(talker: Bridged) -> None:
     for _ in range(20):
         stranger = socket.create_connection((LOOPBACK, talker.port))
         stranger.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))  # it is reset, not closed
@@ -195,7 +195,7 @@ def test_who_has_left_before_it_was_let_in(talker: Bridged) -> None:
     _still_served(talker)
 
 
-def test_what_is_too_much_for_a_piece_of_the_run_is_lost_and_counted(
+def test_messages_beyond_the_limit_of_an_exchange_are_dropped_and_counted(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(bridge_node, "MOST_WAITING", 10)
@@ -215,7 +215,7 @@ def test_what_is_too_much_for_a_piece_of_the_run_is_lost_and_counted(
 
 
 @pytest.mark.parametrize("origin", ["https://example.org", "null", "http://localhost.example.org:8000"])
-def test_a_page_of_others_is_refused(talker: Bridged, origin: str) -> None:
+def test_page_of_another_origin_is_refused(talker: Bridged, origin: str) -> None:
     client = talker.client(headers={"Origin": origin})
     assert client.refused is not None
     assert client.refused[0] == 403
@@ -224,7 +224,7 @@ def test_a_page_of_others_is_refused(talker: Bridged, origin: str) -> None:
     _still_served(talker)
 
 
-def test_a_page_of_this_computer_is_welcome(talker: Bridged) -> None:
+def test_page_of_this_computer_is_accepted(talker: Bridged) -> None:
     client = talker.client(headers={"Origin": "http://localhost:3000"})
     assert client.is_open
     client.close()
@@ -253,7 +253,7 @@ def test_without_the_token_the_first_op_ends_the_connection(guarded: Bridged, pa
         ("/", {"Authorization": f"Bearer {TOKEN}"}),
     ],
 )
-def test_who_shows_the_token_is_let_in(guarded: Bridged, path: str, headers: dict[str, str]) -> None:
+def test_client_with_the_token_is_accepted(guarded: Bridged, path: str, headers: dict[str, str]) -> None:
     client = guarded.client(path, headers)
     assert "/talker" in client.call("/rosapi/nodes")["nodes"]
     client.close()
@@ -265,7 +265,7 @@ def _auth(token: str = TOKEN, t: int = NOW_S, end: int = NOW_S + 60, **changed: 
     return {**op, "mac": hashlib.sha512(text.encode()).hexdigest(), **changed}
 
 
-def test_auth_as_rosauth_checks_it(guarded: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_auth_is_checked_as_by_rosauth(guarded: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(client_module.time, "time", lambda: NOW_S)
     client = guarded.client()
     client.send(**_auth())
@@ -290,7 +290,7 @@ def test_auth_as_rosauth_checks_it(guarded: Bridged, monkeypatch: pytest.MonkeyP
         {"op": "auth"},
     ],
 )
-def test_auth_that_does_not_fit(op: dict[str, Any]) -> None:
+def test_wrong_auth_is_refused(op: dict[str, Any]) -> None:
     assert not MacCheck(TOKEN).admits(op, NOW_S)
 
 
@@ -301,7 +301,7 @@ def test_auth_is_not_needed_without_a_token(talker: Bridged) -> None:
     client.close()
 
 
-def test_no_more_clients_than_there_is_room_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_number_of_clients_is_limited(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(listener_module, "MOST_CLIENTS", 2)
     with bridged(tmp_path, {"TALKER": TALKER}) as run:
         clients = [run.client() for _ in range(3)]
@@ -314,7 +314,7 @@ def test_no_more_clients_than_there_is_room_for(tmp_path: Path, monkeypatch: pyt
             each.close()
 
 
-def test_who_asks_for_nothing_is_dropped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_client_without_a_request_is_disconnected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with bridged(tmp_path, {"TALKER": TALKER}) as run:
         stranger = socket.create_connection((LOOPBACK, run.port))
         stranger.setblocking(False)
@@ -354,7 +354,7 @@ def test_a_message_waits_until_the_mission_has_room(tmp_path: Path, monkeypatch:
         client.close()
 
 
-def test_a_flood_does_not_hold_up_the_run(talker: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_flood_does_not_delay_the_run(talker: Bridged, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(listener_module, "MOST_MESSAGES", 10)
     client = talker.client()
     for _ in range(100):
@@ -375,9 +375,7 @@ def _received(run: Bridged) -> int:
 
 
 @pytest.mark.slow
-def test_a_client_that_does_not_read_loses_its_own_messages_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_slow_client_loses_only_its_own_messages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     from cfepy.io import peer_socket
 
     monkeypatch.setattr(peer_socket, "MOST_WAITING", 3)
@@ -398,7 +396,7 @@ def test_a_client_that_does_not_read_loses_its_own_messages_alone(
 
 
 @pytest.mark.slow
-def test_a_burst_is_held_back_and_nothing_of_it_is_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_burst_is_delayed_without_loss(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Far more than a pipe holds, at once."""
     monkeypatch.setattr(client_module, "MOST_PATIENCE_S", 1e9)
     count = 2_000
@@ -414,7 +412,7 @@ def test_a_burst_is_held_back_and_nothing_of_it_is_lost(tmp_path: Path, monkeypa
         client.close()
 
 
-def test_a_system_without_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_system_without_epoll_and_kqueue_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(listener_module, "DefaultSelector", selectors.SelectSelector)
     with pytest.raises(UsageError, match="--rosbridge: requires epoll or kqueue"):
         RosbridgeServer(ListenPlace(LOOPBACK, 0), Admission(), PeerCounts())

@@ -48,7 +48,7 @@ def both(tmp_path: Path) -> Iterator[Both]:
     server.close()
 
 
-def test_messages_and_calls_between_them(both: Both) -> None:
+def test_clients_and_external_nodes_exchange_messages_and_calls(both: Both) -> None:
     client = both.client()
     client.send(op="subscribe", topic="/orders", type="std_msgs/String")
     mouth = OutsideSpeaker(both, "/orders")
@@ -88,7 +88,7 @@ def test_messages_and_calls_between_them(both: Both) -> None:
     client.close()
 
 
-def test_bytes_of_nodes_outside_that_are_no_messages_end_nothing(both: Both) -> None:
+def test_malformed_messages_of_external_nodes_end_nothing(both: Both) -> None:
     """A short request to a service that a client offers, a short message, and a short answer."""
     client = both.client()
     client.send(op="advertise_service", service="/mine", type="std_srvs/SetBool")

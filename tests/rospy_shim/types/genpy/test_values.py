@@ -34,7 +34,7 @@ def test_width() -> None:
     assert "position: [1.5, -2.]" in strify_message(joints, fixed_numeric_width=3)
 
 
-def test_filter_chooses_and_does_not_order() -> None:
+def test_filter_selects_but_does_not_order() -> None:
     text = strify_message(pose().header, field_filter=lambda message: ["frame_id", "seq"])
     assert text == "seq: 7\nframe_id: ''"
 
@@ -52,7 +52,7 @@ def test_filter_chooses_and_does_not_order() -> None:
         ("string", "\u4eca", "field f is a non-ascii string"),
     ],
 )
-def test_why_a_field_does_not_fit(kind: str, value: Any, problem: str) -> None:
+def test_error_explains_why_a_field_does_not_fit(kind: str, value: Any, problem: str) -> None:
     with pytest.raises(genpy.SerializationError) as found:
         check_type("f", kind, value)
     assert str(found.value) == problem
@@ -111,7 +111,7 @@ def test_values_of_all_kinds() -> None:
         ),
     ],
 )
-def test_values_that_do_not_fit(name: str, arguments: Any, error: type[Exception], problem: str) -> None:
+def test_values_that_do_not_fit_are_refused(name: str, arguments: Any, error: type[Exception], problem: str) -> None:
     with pytest.raises(error) as found:
         filled(name, arguments)
     assert str(found.value) == problem

@@ -80,9 +80,7 @@ def written(message: Any, module: Any = None) -> tuple[str, str, str]:
         ({"d": genpy.Time(1, 2)}, "", "", "00" * 63 + ONE_TIME),
     ],
 )
-def test_what_stands_before_the_field_that_does_not_fit_is_written(
-    fields: dict[str, Any], kind: str, text: str, octets: str
-) -> None:
+def test_fields_before_the_invalid_one_are_written(fields: dict[str, Any], kind: str, text: str, octets: str) -> None:
     message = Mixed()
     for name, value in fields.items():
         setattr(message, name, value)
@@ -104,7 +102,7 @@ def test_what_stands_before_the_field_that_does_not_fit_is_written(
         ({"f": numpy.array([1, 2], "<i2")}, "", "", "00" * 31 + "02000000" + "01000200" + "00" * 36),
     ],
 )
-def test_arrays_of_numpy_are_written_as_they_are(fields: dict[str, Any], kind: str, text: str, octets: str) -> None:
+def test_numpy_arrays_are_written_unconverted(fields: dict[str, Any], kind: str, text: str, octets: str) -> None:
     message = Mixed(f3=numpy.zeros(3), f=numpy.zeros(0))
     for name, value in fields.items():
         setattr(message, name, value)
@@ -122,7 +120,7 @@ def test_arrays_of_numpy_are_written_as_they_are(fields: dict[str, Any], kind: s
         ("std_msgs/Header", b"", genpy.DeserializationError, "unpack requires a buffer of 12 bytes"),
     ],
 )
-def test_data_that_cannot_be_read(name: str, data: Any, kind: type[Exception], text: str) -> None:
+def test_invalid_data_is_an_error_of_genpy(name: str, data: Any, kind: type[Exception], text: str) -> None:
     with pytest.raises(kind) as raised:
         message_class(name)().deserialize(data)
     assert str(raised.value) == text
@@ -132,19 +130,19 @@ def test_no_data_make_an_empty_message() -> None:
     message_class("std_msgs/Empty")().deserialize(None)
 
 
-def test_what_stands_before_the_end_is_read() -> None:
+def test_fields_before_the_end_of_the_data_are_read() -> None:
     message = Mixed()
     with pytest.raises(genpy.DeserializationError, match=r"^unpack requires a buffer of 24 bytes$"):
         message.deserialize(b"\1\2\0\3\0\0\0abc")
     assert (message.a, message.b, message.s) == (1, 2, "abc")
 
 
-def test_octets_are_what_they_were_read_from() -> None:
+def test_octets_keep_the_type_of_their_source() -> None:
     message = message_class("std_msgs/UInt8MultiArray")().deserialize(bytearray(bytes(8) + b"\2\0\0\0ab"))
     assert type(message.data) is bytearray
 
 
-def test_only_the_times_of_the_message_itself_are_normalised() -> None:
+def test_times_of_the_message_itself_are_normalised() -> None:
     pair = "01000000ffffffff"
     data = bytes.fromhex("00" * 43 + pair + "00" * 4 + "01000000" + pair + "01000000" + "00" * 4 + pair + "00" * 4)
     for message in (Mixed.__unpack__(data + bytes.fromhex(pair)), Mixed().deserialize(data + bytes.fromhex(pair))):
@@ -163,7 +161,7 @@ def test_a_tuple_of_strings_cannot_be_printed() -> None:
         str(JointState(name=("a",)))
 
 
-def test_kinds_are_looked_at_by_name() -> None:
+def test_kinds_are_compared_by_name() -> None:
     numbers = type("Numbers", (list,), {})
     assert JointState(name=numbers(["a"])) != JointState(name=("a",))
     assert written(JointState(position=numbers(["x"])))[1] == "field position must be a list or tuple type"

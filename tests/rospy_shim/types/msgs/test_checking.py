@@ -30,11 +30,11 @@ GOOD = {
 }
 
 
-def test_good_definitions(tmp_path: Path) -> None:
+def test_valid_definitions_have_no_faults(tmp_path: Path) -> None:
     assert faults(tmp_path, **GOOD) == []
 
 
-def test_all_faults_of_all_files(tmp_path: Path) -> None:
+def test_all_faults_of_all_files_are_reported(tmp_path: Path) -> None:
     found = faults(
         tmp_path,
         **GOOD,
@@ -77,7 +77,7 @@ def test_all_faults_of_all_files(tmp_path: Path) -> None:
         ("A_srv", "int32 x\n", 0, "missing line --- between request and response"),
     ],
 )
-def test_what_cfepy_takes_and_ros_may_not_is_a_warning(
+def test_definition_that_ros_may_refuse_is_a_warning(
     tmp_path: Path, name: str, text: str, line: int, said: str
 ) -> None:
     ((_, found_line, found_text, is_warning),) = faults(tmp_path, **{name: text})
@@ -85,7 +85,7 @@ def test_what_cfepy_takes_and_ros_may_not_is_a_warning(
     assert said in found_text
 
 
-def test_a_file_whose_name_is_no_type(tmp_path: Path) -> None:
+def test_file_name_that_is_not_a_type_is_reported(tmp_path: Path) -> None:
     ((file, _, text, _),) = faults(tmp_path, **{"my-type_msg": "int32 x\n"})
     assert file == "my-type.msg"
     assert "invalid type name 'my-type'" in text

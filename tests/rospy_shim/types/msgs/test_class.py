@@ -202,12 +202,12 @@ def test_serialization_errors(fields: dict[str, Any], text: str) -> None:
         ({"f": 1e40}, OverflowError),
     ],
 )
-def test_errors_that_genpy_lets_through(fields: dict[str, Any], error: type[Exception]) -> None:
+def test_errors_ignored_by_genpy_are_ignored(fields: dict[str, Any], error: type[Exception]) -> None:
     with pytest.raises(error):
         _serialize(**fields)
 
 
-def test_lengths_of_two_fixed_arrays_cannot_make_up_for_each_other() -> None:
+def test_lengths_of_two_fixed_arrays_are_checked_separately() -> None:
     two = from_full_text("pkg/Two", "float64[2] a\nfloat64[2] b\n").message_class("pkg/Two")
     with pytest.raises(genpy.SerializationError):
         two(a=[1.0], b=[1.0, 2.0, 3.0]).__pack__()
@@ -224,11 +224,11 @@ def test_short_bytes() -> None:
     assert String().deserialize(b"\x05\0\0\0ab").data == "ab"
 
 
-def test_bad_utf8_is_replaced() -> None:
+def test_invalid_utf8_is_replaced() -> None:
     assert String.__unpack__(b"\x01\0\0\0\xff").data == "\ufffd"
 
 
-def test_remembered_string_lists_are_not_shared() -> None:
+def test_cached_string_lists_are_not_shared() -> None:
     names = ["a", "b"]
     message = JointState(name=names)
     encoded = message.__pack__()
@@ -253,11 +253,11 @@ def test_lists_and_tuples_are_equal() -> None:
     assert JointState(position=[1.0]) != JointState(position=(2.0,))
 
 
-def test_times_are_not_equal_to_other_things() -> None:
+def test_times_do_not_equal_other_objects() -> None:
     assert genpy.TVal(1).__eq__(object()) is False
 
 
-def test_numpy_scalars_are_floats_when_a_failure_is_explained() -> None:
+def test_numpy_scalars_count_as_floats_in_error_texts() -> None:
     import numpy
 
     for value in (numpy.float32(1), numpy.float64(1), numpy.int32(1), numpy.uint8(1)):
@@ -267,7 +267,7 @@ def test_numpy_scalars_are_floats_when_a_failure_is_explained() -> None:
             check_type("x", "float64", value)
 
 
-def test_numpy_msg_makes_one_class_of_a_class(tmp_path: Path) -> None:
+def test_numpy_msg_returns_one_class_for_a_class(tmp_path: Path) -> None:
     source = """
     from rospy.numpy_msg import numpy_msg
     from rospy_tutorials.msg import Floats

@@ -108,12 +108,12 @@ def compare(names: Sequence[str], services: Sequence[str], count: int) -> None:
     assert {name: service_class(name)._md5sum for name in services} == theirs["services"]
 
 
-def test_a_sixtieth_of_all_types() -> None:
+def test_sixtieth_of_all_types_equals_genpy() -> None:
     compare(TYPES[::60], SERVICES[::60], count=3)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("part", range(SHARES))
-def test_all_types_with_several_values(part: int) -> None:
+def test_all_types_equal_genpy_with_several_values(part: int) -> None:
     assert len(TYPES) > 700
     compare(TYPES[part::SHARES], SERVICES[part::SHARES], count=4)

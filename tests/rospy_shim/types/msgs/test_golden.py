@@ -52,7 +52,7 @@ def test_identity(message: dict[str, Any]) -> None:
     assert _squeezed(cls._full_text) == _squeezed(message["full_text"])
 
 
-def test_the_text_of_a_type_without_comments_ends_as_its_file_does() -> None:
+def test_text_of_a_type_without_comments_ends_like_its_file() -> None:
     """As in Debian's packages std_msgs 0.5.13 and tf2_msgs 0.7.6."""
     without = ("Bool", "Char", "Empty", "Float32", "Float64", "Int32", "Int64", "UInt32", "UInt64")
     assert [name for name in STANDARD if not message_class(f"std_msgs/{name}")._full_text.endswith("\n")] == [*without]
@@ -115,7 +115,7 @@ def test_md5sums_of_all_services() -> None:
 
 
 @pytest.mark.slow
-def test_every_shipped_type_makes_a_class() -> None:
+def test_every_shipped_type_has_a_class() -> None:
     library = shipped()
     for package in library.packages():
         for name in library.names(package) or ():

@@ -46,7 +46,7 @@ def decode(cls: MessageClass, data: Any, way: int) -> Any:
 
 
 @pytest.mark.parametrize("way", range(4))
-def test_items_of_octets_are_no_more_than_the_bytes_that_are_left(way: int) -> None:
+def test_items_of_octets_are_limited_by_the_remaining_bytes(way: int) -> None:
     whole = count(3) + bytes(range(33))
     assert len(decode(PAIRS, whole, way).items) == 3
     assert decode(PAIRS, whole, way).__pack__() == whole
@@ -56,7 +56,7 @@ def test_items_of_octets_are_no_more_than_the_bytes_that_are_left(way: int) -> N
 
 
 @pytest.mark.parametrize("way", range(4))
-def test_items_without_bytes_are_bounded_in_a_message(way: int) -> None:
+def test_items_without_bytes_are_limited_in_a_message(way: int) -> None:
     most = count(2) + count(MOST // 2) * 2
     assert [len(row.items) for row in decode(NOTHINGS, most, way).rows] == [MOST // 2] * 2
     for data in (count(2) + count(MOST) + count(1), count(1) + count(0xFFFFFFFF)):
@@ -64,14 +64,14 @@ def test_items_without_bytes_are_bounded_in_a_message(way: int) -> None:
             decode(NOTHINGS, data, way)
 
 
-def test_the_largest_counts_in_a_map() -> None:
+def test_largest_count_in_a_map_feature_is_refused() -> None:
     """geographic_msgs/MapFeature has an array of octets[16]."""
     feature = message_class("geographic_msgs/MapFeature")
     with pytest.raises(genpy.DeserializationError, match="68719476720 bytes"):
         feature.__unpack__(bytes(16) + count(0xFFFFFFFF) + bytes(40))
 
 
-def test_a_message_that_is_cut_off_is_not_read_from_its_middle() -> None:
+def test_truncated_message_is_not_read_from_its_middle() -> None:
     """The rest of this path from its second pose on would be a valid, empty path."""
     path = message_class("nav_msgs/Path")
     pose = message_class("geometry_msgs/PoseStamped")
@@ -82,7 +82,7 @@ def test_a_message_that_is_cut_off_is_not_read_from_its_middle() -> None:
 
 
 @pytest.mark.slow
-def test_damaged_packets_take_memory_for_their_bytes_only() -> None:
+def test_damaged_packets_allocate_only_for_their_bytes() -> None:
     chance = random.Random(20261123)
     tracemalloc.start()
     try:

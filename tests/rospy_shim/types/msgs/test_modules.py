@@ -35,14 +35,14 @@ def test_message_module() -> None:
         _ = msg.Nope
 
 
-def test_classes_are_made_when_asked_for() -> None:
+def test_classes_are_created_on_first_use() -> None:
     msg = _module("geometry_msgs.msg")
     assert "Pose" not in vars(msg)
     assert msg.Pose().orientation.w == 0.0
     assert "Pose" in vars(msg)
 
 
-def test_star_import_takes_all_messages() -> None:
+def test_star_import_has_all_messages() -> None:
     msg = _module("rosgraph_msgs.msg")
     assert msg.__all__ == ["Clock", "Log", "TopicStatistics"]
     assert msg.Log.ERROR == 8
@@ -61,7 +61,7 @@ def test_private_modules_and_packages() -> None:
 @pytest.mark.parametrize(
     "name", ["numpy", "nope.msg", "std_msgs.srv", "std_msgs.msg._Nope", "std_msgs.x", "genpy.nope", "roslib"]
 )
-def test_other_names_are_not_ours(name: str) -> None:
+def test_other_names_are_not_provided(name: str) -> None:
     assert make_module(name) is None
 
 
@@ -109,7 +109,7 @@ def test_generate_dynamic() -> None:
     assert made["geometry_msgs/PoseStamped"]._full_text == text
 
 
-def test_nothing_enters_the_hosts_modules() -> None:
+def test_modules_of_the_host_are_not_changed() -> None:
     _module("std_msgs.msg")
     assert not {"std_msgs", "std_msgs.msg", "genpy", "genpy.message"} & set(sys.modules)
 

@@ -46,7 +46,7 @@ def test_the_manifest_names_the_package(tmp_path: Path) -> None:
     assert packages.path("rover") == folder
 
 
-def test_the_first_place_counts(tmp_path: Path) -> None:
+def test_first_place_has_precedence(tmp_path: Path) -> None:
     first = make_package(tmp_path / "overlay" / "rover", "rover")
     second = make_package(tmp_path / "underlay" / "rover", "rover")
     share = make_package(tmp_path / "install" / "share" / "rover", "rover")
@@ -77,7 +77,7 @@ def test_near_a_program(tmp_path: Path, script: str) -> None:
     assert packages.path("drive") == drive
 
 
-def test_beside_a_program_without_manifests(tmp_path: Path) -> None:
+def test_package_next_to_a_program_is_found_without_manifests(tmp_path: Path) -> None:
     mission = make_package(tmp_path / "rendezvous", "", "msg/State.msg", "node.py")
     arm = make_package(mission / "arm_msgs", "", "action/Grasp.action")
     packages = Packages(mission / "node.py", {})
@@ -102,7 +102,7 @@ def test_python_code_of_packages(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["../x", "/x", "a b", "", "a\0b", "-a", "_a", "é", "a" * 256, "a.b", "a\nb"])
-def test_a_name_that_no_package_has_is_not_taken(name: str, tmp_path: Path) -> None:
+def test_invalid_package_name_is_refused(name: str, tmp_path: Path) -> None:
     folder = tmp_path / "here"
     folder.mkdir()
     (folder / "package.xml").write_text(f"<package><name>{name}</name></package>", encoding="utf-8")
@@ -112,13 +112,13 @@ def test_a_name_that_no_package_has_is_not_taken(name: str, tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("name", ["arm", "Arm_2", "a-b", "2d_nav", " arm ", "\n arm\n"])
-def test_a_name_that_a_package_may_have_is_taken(name: str, tmp_path: Path) -> None:
+def test_valid_package_name_is_accepted(name: str, tmp_path: Path) -> None:
     (tmp_path / "package.xml").write_text(f"<package><name>{name}</name></package>", encoding="utf-8")
     check_package_name(tmp_path)
     assert name_of(tmp_path) == name.strip()
 
 
-def test_a_manifest_that_is_too_large_names_nothing(tmp_path: Path) -> None:
+def test_too_large_manifest_is_ignored(tmp_path: Path) -> None:
     folder = tmp_path / "here"
     folder.mkdir()
     with (folder / "package.xml").open("wb") as file:

@@ -108,7 +108,7 @@ def test_full_text_round_trip() -> None:
     assert again.md5sum("nav_msgs/Odometry") == "cd5e73d190d741a2f92e81eda573aca7"
 
 
-def test_a_mistake_in_a_full_text_has_its_line() -> None:
+def test_mistake_in_a_full_text_has_its_line() -> None:
     text = "pkg/B b\n" + "=" * 80 + "\nMSG: pkg/B\nint8 x\nint8 x\n"
     with pytest.raises(UsageError) as caught:
         from_full_text("pkg/A", text).message_class("pkg/A")

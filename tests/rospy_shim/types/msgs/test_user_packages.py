@@ -42,7 +42,7 @@ def test_messages_and_services(tmp_path: Path) -> None:
     assert wheel.__module__ == "rover.msg._Wheel"
 
 
-def test_an_action_makes_the_messages_of_actionlib(tmp_path: Path) -> None:
+def test_action_has_the_messages_of_actionlib(tmp_path: Path) -> None:
     action = "# how far\nint32 goal # in m\n---\nint32 result\n---\nint32 feedback\n"
     write(tmp_path / "actionlib", action__Test=action)
     library = library_of(tmp_path)
@@ -52,7 +52,7 @@ def test_an_action_makes_the_messages_of_actionlib(tmp_path: Path) -> None:
     assert len(names) == 7
 
 
-def test_the_classes_of_a_node_are_its_own(tmp_path: Path) -> None:
+def test_classes_of_a_node_belong_to_the_node(tmp_path: Path) -> None:
     write(tmp_path / "rover", msg__Drive="geometry_msgs/Point goal\n")
     library = library_of(tmp_path)
     own, shared = library.message_class("nav_msgs/Odometry"), message_class("nav_msgs/Odometry")
@@ -63,7 +63,7 @@ def test_the_classes_of_a_node_are_its_own(tmp_path: Path) -> None:
     assert type(own.__unpack__(shared().__pack__()).pose.pose.position) is library.message_class("geometry_msgs/Point")
 
 
-def test_a_package_of_the_same_name_wins_everywhere(tmp_path: Path) -> None:
+def test_package_of_the_same_name_has_precedence_everywhere(tmp_path: Path) -> None:
     write(tmp_path / "uuid_msgs", msg__UniqueID="string text\n")
     library = library_of(tmp_path)
     way_point = library.message_class("geographic_msgs/WayPoint")
@@ -94,14 +94,14 @@ def test_mistakes_name_file_and_line(tmp_path: Path, files: dict[str, str], want
         library_of(tmp_path).message_class(f"rover/{wanted}")
 
 
-def test_more_dashes_in_a_service_are_as_if_empty(tmp_path: Path) -> None:
+def test_third_part_of_a_service_is_ignored(tmp_path: Path) -> None:
     write(tmp_path / "rover", srv__S="int8 x\n--- # answer\nint8 y\n---\nint8 z\n", srv__T="int8 only\n")
     library = library_of(tmp_path)
     assert library.service_class("rover/S")._response_class.__slots__ == ["y", "z"]
     assert library.service_class("rover/T")._response_class.__slots__ == []
 
 
-def test_old_encodings_in_comments(tmp_path: Path) -> None:
+def test_old_encodings_are_accepted_in_comments(tmp_path: Path) -> None:
     write(tmp_path / "rover", msg__A="")
     (tmp_path / "rover" / "msg" / "A.msg").write_bytes(b"float32 heat # \xb0C\r\n")
     assert library_of(tmp_path).message_class("rover/A").__slots__ == ["heat"]
@@ -154,14 +154,14 @@ def test_inside_a_node(tmp_path: Path) -> None:
     ]
 
 
-def test_a_package_beside_the_node_has_code_and_messages(tmp_path: Path) -> None:
+def test_package_next_to_the_node_has_code_and_messages(tmp_path: Path) -> None:
     write(tmp_path / "arm", msg__Joint="float64 angle\n")
     (tmp_path / "arm" / "__init__.py").write_text("from arm.msg import Joint\n\nhome = Joint(0.5)\n", encoding="utf-8")
     run = run_nodes(tmp_path, {"ARM": "from arm import home\nprint(home)\n"})
     assert run.printed["ARM"] == ["angle: 0.5"]
 
 
-def test_a_mistake_ends_the_node_with_its_place(tmp_path: Path) -> None:
+def test_mistake_ends_the_node_with_its_line(tmp_path: Path) -> None:
     write(tmp_path / "arm", msg__Joint="float64 angle\nfloat64\n")
     printed = run_nodes(tmp_path, {"ARM": "from arm.msg import Joint\n"}).printed["ARM"]
     assert "arm/msg/Joint.msg:2: 'float64' is not a field" in printed[-1]
