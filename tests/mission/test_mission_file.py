@@ -66,7 +66,7 @@ def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> 
     assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions"}
 
 
-def test_a_run_raises_all_mistakes_of_the_file_by_line(tmp_path: Path) -> None:
+def test_run_raises_all_mistakes_of_the_file_by_line(tmp_path: Path) -> None:
     kept = Mistakes()
     read(tmp_path, WRONG, kept)
     (tmp_path / "startup.scr").write_text("!", encoding="utf-8")
@@ -112,7 +112,7 @@ results: {/a: {compare: lst, ignore: [a b, c d]}}
         ("ordered_sets:", "must be true or false, not nothing"),
     ],
 )
-def test_a_wrong_value_is_shown_as_in_yaml(tmp_path: Path, text: str, said: str) -> None:
+def test_wrong_value_is_shown_as_in_yaml(tmp_path: Path, text: str, said: str) -> None:
     mistakes = Mistakes()
     read(tmp_path, text, mistakes)
     assert [error.text for error in mistakes.errors] == [said]
