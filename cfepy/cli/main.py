@@ -259,7 +259,7 @@ class _Version(argparse.Action):
         parser.exit()
 
 
-def parser_for(words: Sequence[str]) -> argparse.ArgumentParser:
+def parser_for(words: Sequence[str]) -> CommandParser:
     """Make a parser for a command line.
 
     Args:

@@ -60,13 +60,13 @@ def main() -> None:
     """Record."""
     parser = argparse.ArgumentParser(prog="python -m dev.record.class_names", description=__doc__.partition("\n")[0])
     parser.add_argument("file", metavar="FILE", type=Path, help="the file to write, tests/data/ros_class_names.json")
+    file: Path = parser.parse_args().file
     found = {
         f"{module}.{name}": sorted(_names_of(getattr(importlib.import_module(module), name)))
         for module, names in CLASSES.items()
         for name in names
     }
-    text = json.dumps(found, indent=1)
-    parser.parse_args().file.write_text(f"{text}\n", encoding="utf-8")
+    file.write_text(f"{json.dumps(found, indent=1)}\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

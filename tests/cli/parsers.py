@@ -7,20 +7,21 @@ import functools
 from collections.abc import Iterator
 
 from cfepy.cli.main import parser_for
+from cfepy.cli.parser import CommandParser
 
 
-def parsers() -> dict[str, argparse.ArgumentParser]:
-    """Return the parsers that have no subcommands, such as `run` and `topic echo`."""
+def parsers() -> dict[str, CommandParser]:
+    """Return the parsers that have no subcommands, such as `run` and `rostopic echo`."""
     return dict(_leaves("", whole()))
 
 
 @functools.cache
-def whole() -> argparse.ArgumentParser:
+def whole() -> CommandParser:
     """Return the parser of all commands, which takes a tenth of a second to make."""
     return parser_for([])
 
 
-def _leaves(words: str, parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.ArgumentParser]]:
+def _leaves(words: str, parser: CommandParser) -> Iterator[tuple[str, CommandParser]]:
     below = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     if not below:
         yield words, parser

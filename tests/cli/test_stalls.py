@@ -74,7 +74,7 @@ def test_a_run_and_its_replay_end_as_failed(tmp_path: Path, capsys: pytest.Captu
     assert "the same run as" in said.err
 
 
-@pytest.mark.parametrize("command", ["graph", "--mids", "trace", "tlm"])
+@pytest.mark.parametrize("command", ["graph", "trace", "tlm"])
 def test_commands_that_look_at_a_run_end_as_failed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
 ) -> None:

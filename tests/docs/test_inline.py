@@ -34,6 +34,8 @@ def spans(page: Path, start: str) -> Iterator[str]:
 def wrong(command: str) -> str:
     """Return the error in a command of cfepy in a sentence, which may be a part of one, or ""."""
     words = shlex.split(command.partition(" < ")[0].partition(" | ")[0])[1:]
+    if words[0] == cli.HELP:
+        words = words[1:] if words[1:] != [cli.FLYING] else ["--help"]
     whole_parser, given = parser_of(words[0]), list(words)
     parser = whole_parser
     while given and (below := subcommands(parser)):

@@ -181,7 +181,7 @@ PACKAGE_TRICKS = (
         "words of more than",
         f"add_definitions({'-Da ' * 999})\n" + "add_library(a)\n" * 999,
     ),
-    with_(cmake("a pattern", "look at more than", f"file(GLOB x {'*/' * 30}*.cpp)"), "goes round", _circles),
+    with_(cmake("a pattern", "match more than", f"file(GLOB x {'*/' * 30}*.cpp)"), "goes round", _circles),
     with_(
         cmake("its file", "more than the limit of 1,048,576 bytes", ""), "of a terabyte", holes("evil/CMakeLists.txt")
     ),
