@@ -52,7 +52,7 @@ def _add_seconds(parser: Options) -> None:
 
 def _add_seed(parser: Options) -> None:
     text = f"seed of all random values in the mission (default: {DEFAULT_SEED})"
-    parser.add_argument("--seed", type=int, default=DEFAULT_SEED, metavar="N", help=text)
+    parser.add_argument("--seed", type=whole_number_of, default=DEFAULT_SEED, metavar="N", help=text)
 
 
 def _add_board(parser: Options) -> None:
@@ -163,7 +163,7 @@ def _add_settings(parser: Options) -> None:
 def _add_spacecraft_id(parser: Options) -> None:
     parser.add_argument(
         "--spacecraft-id",
-        type=id_of,
+        type=whole_number_of,
         metavar="N",
         help="number of the spacecraft, as --scid of NASA's executable (default: the mission's, or 66)",
     )
@@ -172,7 +172,7 @@ def _add_spacecraft_id(parser: Options) -> None:
 def _add_processor_id(parser: Options) -> None:
     parser.add_argument(
         "--processor-id",
-        type=id_of,
+        type=whole_number_of,
         metavar="N",
         help="number of the processor, as --cpuid of NASA's executable; CI_LAB listens at UDP port 1233 + N (default: "
         "the mission's, or 1)",
@@ -477,8 +477,8 @@ def setting_of(text: str) -> tuple[str, str]:
     return name, value
 
 
-def id_of(text: str) -> int:
-    """Parse the number of a spacecraft or processor, for argparse."""
+def whole_number_of(text: str) -> int:
+    """Parse a whole number, for argparse."""
     try:
         return int(text, 0)
     except ValueError:

@@ -9,7 +9,7 @@ import argparse
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.writing.escapes import raw
@@ -34,6 +34,9 @@ OTHER_NAMES = {
 }
 """Names of commands in ROS, and in earlier versions, with today's. Names that are alike need no row."""
 _ALMOST = 0.8  # likeness of two options, one of which is likely to be a mistake
+_SIMILAR = 0.7  # likeness of an option and a misspelt one
+_REQUIRED = "the following arguments are required: "
+_WITHOUT_VALUE = re.compile(r"argument (\S+): expected one argument")
 _FEW = 2  # options that are shown in a usage; a command with more shows a placeholder
 
 
@@ -183,13 +186,26 @@ class CommandParser(argparse.ArgumentParser):
 
     def _refuse(self, words: Sequence[str]) -> None:
         """Report unexpected words, with a hint for an unknown option."""
-        hints = (
-            did_you_mean(word.partition("=")[0], self._option_string_actions, before="; ")
-            for word in words
-            if word.startswith("-")
-        )
-        hint = next(filter(None, hints), self.get_default("hint") or "")
+        known = self._option_string_actions
+        names = [word.partition("=")[0] for word in words if word.startswith("-")]
+        hints = [did_you_mean(name, known, before="; ", likeness=_SIMILAR) for name in names]
+        hint = "".join(dict.fromkeys(hints)) or self.get_default("hint") or ""
         self.error(f"unrecognized arguments: {' '.join(words)}{hint}")
+
+    def error(self, message: str) -> NoReturn:
+        """Report a mistake and exit. It names only words that are missing, and the kind of a missing value."""
+        missing = message.partition(_REQUIRED)[2]
+        if missing:
+            optional = [
+                each.metavar for each in self._actions if each.nargs in (argparse.OPTIONAL, argparse.ZERO_OR_MORE)
+            ]
+            message = _REQUIRED + ", ".join(name for name in missing.split(", ") if name not in optional)
+        found = _WITHOUT_VALUE.fullmatch(message)
+        if found is not None:
+            option = self._option_string_actions.get(found[1].rpartition("/")[2])
+            if option is not None and isinstance(option.metavar, str):
+                message = f"argument {found[1]}: missing value; expected {option.option_strings[-1]} {option.metavar}"
+        super().error(message)
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         """Check a choice as argparse does, and add a hint; argparse intends this method for that."""

@@ -32,7 +32,9 @@ def writing(file: str | Path, option: str) -> Iterator[None]:
         raise
     except OSError as error:
         discard_half_written(file, error)
-        raise UsageError(f"cannot be written: {error.strerror}", file=file, field=option) from None
+        folder = Path(file).parent
+        hint = f"; create the folder {folder} first" if error.errno == errno.ENOENT and not folder.exists() else ""
+        raise UsageError(f"cannot be written: {error.strerror}{hint}", file=file, field=option) from None
 
 
 def check_writable(file: str | Path, option: str) -> None:

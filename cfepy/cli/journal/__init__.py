@@ -9,7 +9,7 @@ import argparse
 from collections.abc import Callable
 
 from cfepy.cli.flight_options import add_outputs
-from cfepy.cli.options import TASK_KINDS, add_from_disk, add_until
+from cfepy.cli.options import TASK_KINDS, add_from_disk, add_until, whole_number_of
 from cfepy.plugins import Hook
 
 STOPS: Hook[Callable[[argparse.ArgumentParser], None]] = Hook("replay_options")
@@ -62,6 +62,10 @@ def _add_diff(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     diff.add_argument("one", metavar="A", help="a journal, or a file that `cfepy run --trace FILE` wrote")
     diff.add_argument("other", metavar="B", help="another one of its kind")
     diff.add_argument(
-        "--lines", type=int, default=6, metavar="N", help="records that are shown before the one that differs"
+        "--lines",
+        type=whole_number_of,
+        default=6,
+        metavar="N",
+        help="records that are shown before the one that differs",
     )
     diff.set_defaults(module="cfepy.cli.journal.diff")

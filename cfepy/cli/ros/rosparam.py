@@ -88,7 +88,9 @@ def _full(name: str | None) -> str:
 
 
 def _missing(name: str, parameters: Parameters) -> int:
-    tell([f"unknown parameter {_full(name)}{did_you_mean(_full(name), parameters.names(), before='; ')}"])
+    names = parameters.names()
+    others = f"there are {len(names)} others, which `cfepy rosparam list` shows" if names else "there is none"
+    tell([f"unknown parameter {_full(name)}{did_you_mean(_full(name), names, others, before='; ')}"])
     return FOUND_PROBLEMS
 
 

@@ -96,8 +96,11 @@ def _call(arguments: argparse.Namespace) -> int:
     spec = with_ground_node(plan.spec(), "ground_call", [name, arguments.values, arguments.at])
     ground = GroundConsole()
     with FlightSource(plan, spec, Console(sink=ground.line)) as source:
-        source.fly(lambda: bool(ground.said))
-    answer = ground.said[0] if ground.said else {"error": f"no answer from {name} until the run was over; see --for"}
+        ros = source.fly(lambda: bool(ground.said)).ros
+        known = [] if ros is None or ground.said else [each for each in ros.graph.services if each != name]
+    hint = did_you_mean(name, known, before="; ")
+    silence = {"error": f"no answer from {name} until the run was over; see --for{hint}"}
+    answer = ground.said[0] if ground.said else silence
     write_json(arguments, {"service": name, **{key: answer[key] for key in answer if key != "text"}}, indent=None)
     if "error" not in answer:
         print(answer["text"])

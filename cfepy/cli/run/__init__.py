@@ -15,6 +15,7 @@ from cfepy.cli.options import (
     add_mission,
     add_mission_or_node,
     add_run_options,
+    whole_number_of,
 )
 
 INTENSITIES = ("low", "medium", "high")
@@ -105,7 +106,10 @@ def _add_new_faults(kinds: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add_mission(faults)
     RUN_OPTIONS["launch_args"](faults)
     faults.add_argument(
-        "--seed", type=int, metavar="N", help="print the plan of this seed; `--faults seed:N` has the same faults"
+        "--seed",
+        type=whole_number_of,
+        metavar="N",
+        help="print the plan of this seed; `--faults seed:N` has the same faults",
     )
     faults.add_argument(
         "--intensity", choices=INTENSITIES, default="medium", help="how many faults the plan has (default: medium)"
