@@ -291,7 +291,7 @@ def check_installed(home: Path, file: Path, version: str, digest: str) -> None:
     told = output([python, "-c", "import cfepy; print(cfepy.__version__)"], home, alone).strip()
     if told != version:
         raise UsageError(f"{file.name} installs cfepy {told}")
-    if "rx64m" not in output([command, "boards"], home, alone):
+    if "rx64m" not in output([command, "board", "list"], home, alone):
         raise UsageError(f"{file.name} brings no boards")
     found = demo_of([command], home, alone)
     if found != digest:

@@ -57,7 +57,7 @@ def test_add_on_of_another_package_adds_its_command_and_its_table(site: Path, gi
     helped = give("--help")
     assert (helped.returncode, helped.stderr) == (0, "")
     shown = helped.stdout
-    assert "Traffic:\n  busiest     fly a mission, and rank its traffic\n" in shown
+    assert "Traffic:\n  busiest             fly a mission, and rank its traffic\n" in shown
     assert shown.split()[-5:] == ["Add-ons", "of", "other", "packages:", "busiest."]
     ranked = give("busiest", "lab", "--top", "2")
     assert (ranked.returncode, ranked.stderr) == (0, "")

@@ -38,7 +38,10 @@ def test_what_a_mission_starts_with(mission: str, capsys: pytest.CaptureFixture[
     assert said(capsys, "list", mission, "robot").split() == ["/robot/axes", "/robot/rate"]
     assert said(capsys, "get", mission, "/robot/rate") == "10\n"
     assert said(capsys, "dump", mission, "/robot") == "rate: 10\naxes:\n- x\n- y\n"
-    assert said(capsys, "get", mission, "/none", status=1) == "cfepy: unknown parameter /none\n"
+    assert (
+        said(capsys, "get", mission, "/none", status=1)
+        == "cfepy: unknown parameter /none; there are 6 others, which `cfepy rosparam list` shows\n"
+    )
 
 
 def test_what_there_is_after_some_time(mission: str, capsys: pytest.CaptureFixture[str]) -> None:

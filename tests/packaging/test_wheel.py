@@ -87,7 +87,7 @@ def test_capture_mission_has_the_trace_of_the_checkout(home: Path) -> None:
 
 
 def test_boards_are_found(home: Path) -> None:
-    output = cfepy(home, "boards")
+    output = cfepy(home, "board", "list")
     assert "linux" in output
     assert "rx64m" in output
 

@@ -27,7 +27,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_launch_file_is_flown(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
+    assert main(["launch", "ping", "ping.launch", "--for", "1.55"]) == 0
     shown = capfd.readouterr().out
     assert "heard 1 plain-beat-odd!" in shown
     assert "/pulse" in shown
@@ -73,7 +73,7 @@ def test_cpp_clocks_show_mission_time(package: Path, capfd: pytest.CaptureFixtur
 
 
 def test_nodes_in_python_and_cpp_exchange_messages(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
-    assert main(["launch", str(package / "launch/both.launch"), "--for", "1"]) == 0
+    assert main(["launch", str(package / "launch/both.launch"), "--for", "1.55"]) == 0
     shown = capfd.readouterr().out
     assert "python heard plain-beat-even!" in shown
     assert 8 <= shown.count("[/arm/ear]") <= 11  # ten a second
