@@ -60,7 +60,7 @@ def message_image(messages: Mapping[int, bytes | bytearray]) -> TableImage:
         UsageError: index 0, which is never sent, or a message that does not fit.
     """
     if 0 in messages:
-        raise UsageError("message 0 stands for none; begin with 1", field="messages[0]")
+        raise UsageError("invalid number 0, which means no message; begin with 1", field="messages[0]")
     rows: dict[int, Any] = {
         index: {"MessageBuffer": bytes(messages.get(index, _NO_MESSAGE))} for index in range(pk.MAX_MESSAGES)
     }

@@ -119,9 +119,9 @@ def asker(kernel: Kernel, name: str) -> Callable[[], bool]:
 
 
 class OpenCalls:
-    """Calls of applications as occasions of faults, if the kernel explores.
+    """Lets faults happen at the calls of applications in an exploration.
 
-    An occasion comes before each call, and before each charge of CPU time: wherever other tasks could run.
+    Such a fault can happen before each call, and before each charge of CPU time: wherever other tasks could run.
     """
 
     def __init__(self) -> None:

@@ -65,7 +65,7 @@ class Bug:
             text = (fixed / file).read_text(encoding="utf-8")
             for each in replacements:
                 if text.count(each["old"]) != 1:
-                    raise ValueError(f"{self.name}/fix.yaml: {file} has not exactly one {each['old']!r}")
+                    raise ValueError(f"{self.name}/fix.yaml: {file} must contain {each['old']!r} exactly once")
                 text = text.replace(each["old"], each["new"])
             (fixed / file).write_text(text, encoding="utf-8")
         return fixed

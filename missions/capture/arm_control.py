@@ -76,7 +76,7 @@ class ArmModel:
         self.current = command
 
     def encoder_readings(self) -> list[float]:
-        """Joint angles as the encoders see them: the last whole count, in rad."""
+        """Return the joint angles that the encoders measure: the last whole count, in rad."""
         step = self._encoder_step
         return [q // step * step for q in self.position]
 
@@ -105,7 +105,7 @@ class ArmControl:
         self._command_age = 0
 
     def _live_command(self) -> Sequence[float]:
-        """The latest command, or no current at all when the controller has fallen silent."""
+        """Return the latest command, or no current if the controller has stopped sending."""
         self._command_age += 1
         if self._command_age > self._command_lifetime and self._command is not self._idle:
             rospy.logwarn("motor_command has stopped: motors off")

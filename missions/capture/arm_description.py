@@ -1,4 +1,4 @@
-"""The arm that both control nodes talk about: joints, drives and geometry.
+"""The arm of both control nodes: joints, drives and geometry.
 
 A plain Python module beside the node scripts, imported by `arm_control.py` and `main_control.py`, so that the plant
 and the controller start from one set of figures. Every figure is a default: `joint_values` lets a private ROS

@@ -48,7 +48,7 @@ class WindingTemperatures:
 
 
 class ArmHealth:
-    """The node: gathers samples as they come, reports once per period."""
+    """The node: collects samples, and reports once per period."""
 
     def __init__(self) -> None:
         self._warning = float(rospy.get_param("~warning_temperature", 110.0))

@@ -51,7 +51,7 @@ _PAYLOADS = tuple((field, struct.Struct("<" + field.code)) for field in FIELDS)
 
 
 class HkMonitor:
-    """Keeps the latest packet and counts those that came and those that a gap in the sequence shows as missing."""
+    """Keeps the latest packet, and counts received packets and gaps in their sequence."""
 
     def __init__(self) -> None:
         self.packet = b""

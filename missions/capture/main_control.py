@@ -74,7 +74,7 @@ class ComputedTorque:
         self._feed = [drag + friction for drag, (_, friction) in zip(self._drag, gains)]
 
     def currents(self, leg: Leg, now: float, position: Sequence[float], velocity: Sequence[float]) -> list[float]:
-        """Motor currents (A) that take the joints along the leg at mission time `now` (s)."""
+        """Return the motor currents (A) that move the joints along the leg at mission time `now` (s)."""
         duration = leg.duration
         x = (now - leg.begin) / duration
         if x >= 1.0:
@@ -146,7 +146,7 @@ class MainControl:
         verdict("capture complete: largest joint error %.6f rad (tolerance %g)", error, self._tolerance)
 
     def _first_state(self) -> JointState | None:
-        """Wait for the arm's first report; None when the node is shut down before."""
+        """Wait for the arm's first report. Returns None if the node is shut down before."""
         while self._state is None and not rospy.is_shutdown():
             self._rate.sleep()
         return self._state
@@ -175,7 +175,7 @@ class MainControl:
             self._rate.sleep()
 
     def _after(self, leg: Leg, following: Iterator[Leg], position: Sequence[float]) -> Leg:
-        """The leg to fly when this one is over: the next, or this one's goal held for good."""
+        """Return the next leg, or a leg that holds the last goal."""
         successor = next(following, None)
         if successor is None:
             self._judge(leg.goal, position)

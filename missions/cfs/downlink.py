@@ -1,4 +1,4 @@
-"""Files come down by CFDP, class 1 and class 2, in virtual time; one goes up: `python downlink.py MY_COPY FOLDER`.
+"""Download files by CFDP, class 1 and class 2, in virtual time, and upload one: `python downlink.py MY_COPY FOLDER`.
 
 With --udp it talks to a mission that runs beside it: `cfepy run MY_COPY --realtime`.
 """
@@ -27,7 +27,7 @@ LIMIT_S = 60.0
 
 
 class UdpLink:
-    """The way to a mission that runs in real time on this computer."""
+    """Connects to a mission that runs in real time on this computer."""
 
     def __init__(self) -> None:
         self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -35,11 +35,11 @@ class UdpLink:
         self._socket.settimeout(TURN_S)
 
     def send(self, packet: bytes) -> None:
-        """Send a packet up."""
+        """Send a packet to the spacecraft."""
         self._socket.sendto(packet, ("127.0.0.1", CI_PORT))
 
     def turn(self) -> list[bytes]:
-        """What comes down in a moment."""
+        """Return the packets that arrive within a short time."""
         found = []
         end = time.monotonic() + TURN_S
         while time.monotonic() < end:
@@ -51,30 +51,30 @@ class UdpLink:
 
 
 class VirtualLink:
-    """The way to a mission in this process."""
+    """Connects to a mission in this process."""
 
     def __init__(self, mission: Mission) -> None:
         self._mission, self._link = mission, GroundLink(mission)
 
     def send(self, packet: bytes) -> None:
-        """Send a packet up."""
+        """Send a packet to the spacecraft."""
         self._link.send(packet)
 
     def turn(self) -> list[bytes]:
-        """Let the mission fly on a little; what comes down."""
+        """Run the mission for a short time. Returns its packets."""
         self._mission.run_for(TURN_S)
         return [data for _, data in self._link.received()]
 
 
 def transmit(source: str, target: str, cfdp_class: int) -> bytes:
-    """CF's command to send a file down."""
+    """Return CF's command to download a file."""
     names = source.encode().ljust(64, b"\0") + target.encode().ljust(64, b"\0")
     head = struct.pack("<BBBBI", cfdp_class, KEEP, CHANNEL, PRIORITY, GROUND)
     return bytes(command(CF_CMD, TX_FILE, head + names))
 
 
 def settle(link: UdpLink | VirtualLink, ground: GroundEntity, clock: Callable[[], float]) -> Transfer:
-    """Hand PDUs to and fro until a transfer has come to its end."""
+    """Exchange PDUs until a transfer ends. Returns the transfer."""
     before, end = len(ground.transfers), clock() + LIMIT_S
     while len(ground.transfers) == before:
         if clock() > end:
@@ -86,7 +86,7 @@ def settle(link: UdpLink | VirtualLink, ground: GroundEntity, clock: Callable[[]
 
 
 def fly(link: UdpLink | VirtualLink, folder: Path, clock: Callable[[], float]) -> list[Transfer]:
-    """A file down by both classes, and what came down up again under another name."""
+    """Download a file by both classes, and upload it again under another name."""
     ground = GroundEntity(folder, clock)
     link.send(to_lab.OUTPUT_ENABLE.packet(dest_IP="127.0.0.1"))
     begin = clock()
@@ -102,7 +102,7 @@ def fly(link: UdpLink | VirtualLink, folder: Path, clock: Callable[[], float]) -
 
 
 def main() -> int:
-    """Fly, and tell what became of the files."""
+    """Fly, and print the result of each transfer."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("mission", help="folder of the mission; with --udp it runs already")
     parser.add_argument("folder", type=Path, help="where files come to")

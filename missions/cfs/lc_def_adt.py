@@ -1,4 +1,4 @@
-"""LC's actionpoints: which watchpoints together are a failure, and which sequence of SC it starts.
+"""LC's actionpoints: the watchpoints that together are a failure, and the sequence of SC that each starts.
 
 After a change, `python lc_def_adt.py` writes lc_def_adt.tbl anew.
 """

@@ -1,4 +1,4 @@
-"""LC's watchpoints: what is read from which packet, and what it is compared with.
+"""LC's watchpoints: a value in a packet, and the value that it is compared with.
 
 After a change, `python lc_def_wdt.py` writes lc_def_wdt.tbl anew.
 """

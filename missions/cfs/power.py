@@ -30,13 +30,13 @@ class Power:
         cfe.sb.subscribe(CMD_MID, self._pipe)
 
     def set_heater(self, packet: bytes) -> None:
-        """Do what the command says."""
+        """Execute a command."""
         self._accepted += 1
         self._heater = int(bool(SET_HEATER.read(packet)["On"]))
         self._cfe.evs.send_info(HEATER_EID, f"POWER: heater {'on' if self._heater else 'off'}, charge {self._charge}")
 
     def run(self) -> None:
-        """Tell the charge each second."""
+        """Send the charge once a second."""
         while self._cfe.es.run_loop():
             self._cfe.os.task_delay(PERIOD_MS)
             while (packet := self._cfe.sb.receive_buffer(self._pipe, 0)) is not None:
@@ -48,6 +48,6 @@ class Power:
 
 
 def POWER_Main(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the application; the startup script names this function."""
     Power(cfe).run()
     cfe.es.exit_app()

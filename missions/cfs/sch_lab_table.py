@@ -1,4 +1,4 @@
-"""The schedule: who is woken up, and who is asked for housekeeping, in tenths of a second.
+"""The schedule: wake-ups and requests of housekeeping, in tenths of a second.
 
 After a change, `python sch_lab_table.py` writes sch_lab_table.tbl anew.
 """

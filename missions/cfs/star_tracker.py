@@ -14,7 +14,7 @@ COMMANDS = (HANG,)
 
 
 def STAR_TRACKER_Main(cfe: Cfe) -> None:
-    """The entry point that the startup script names."""
+    """Run the application; the startup script names this function."""
     cfe.evs.register()
     pipe = cfe.sb.create_pipe(10, "TRACKER_PIPE")
     cfe.sb.subscribe(CMD_MID, pipe)

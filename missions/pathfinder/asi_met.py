@@ -14,7 +14,7 @@ TELEMETRY = [ASI_MET_HK]
 
 
 def ASI_MET_Main(cfe: Cfe) -> None:
-    """Take one sample after the other."""
+    """Measure in a loop."""
     select = cfe.os.symbol_lookup("VX_Select")
     pipe = cfe.sb.create_pipe(4, "ASI_MET_PIPE")
     cfe.sb.subscribe(ASI_MET_DATA_MID, pipe)

@@ -39,7 +39,7 @@ def BC_SCHED_Main(cfe: Cfe) -> None:
 
 
 def BC_DIST_Main(cfe: Cfe) -> None:
-    """Hand out what came over the bus: to most by shared memory, to ASI_MET through a pipe."""
+    """Distribute the data of the bus: to ASI_MET through a pipe, to all others by shared memory."""
     pipe_write = cfe.os.symbol_lookup("VX_PipeWrite")
     traffic_over = _alarm(cfe, "TRAFFIC", TRAFFIC_OVER_US)
     cycle = 0
@@ -52,7 +52,7 @@ def BC_DIST_Main(cfe: Cfe) -> None:
 
 
 def _alarm(cfe: Cfe, name: str, first_us: int) -> int:
-    """A semaphore that the hardware of the bus gives at the same instant of each cycle."""
+    """Return a semaphore that the hardware of the bus gives at the same instant of each cycle."""
     semaphore = cfe.os.bin_sem_create(name, 0)
     timer = cfe.os.timer_create(name, lambda _: cfe.os.bin_sem_give(semaphore))
     cfe.os.timer_set(timer, first_us, CYCLE_US)

@@ -16,19 +16,19 @@ ENTERING_US = 1000  # to go through the list of waiting tasks, and to put one in
 
 
 def VX_PipeLibInit(cfe: Cfe) -> int:
-    """As it flew: the semaphore does not inherit."""
+    """Create the semaphore as it flew, without priority inheritance."""
     cfe.os.bin_sem_create(SEMAPHORE, 1)
     return 0
 
 
 def VX_PipeLibInitSafe(cfe: Cfe) -> int:
-    """As it was mended (SEM_INVERSION_SAFE): who holds it is as urgent as who waits for it."""
+    """Create the semaphore as it was mended (SEM_INVERSION_SAFE): its holder inherits the priority of its waiters."""
     cfe.os.mut_sem_create(SEMAPHORE)
     return 0
 
 
 def VX_PipeWrite(cfe: Cfe, packet: bytes) -> None:
-    """Send a packet through a pipe: to whoever waits for it in select().
+    """Send a packet through a pipe, to the task that waits for it in select().
 
     Args:
         cfe: the handle of the calling application.
@@ -40,7 +40,7 @@ def VX_PipeWrite(cfe: Cfe, packet: bytes) -> None:
 
 
 def VX_Select(cfe: Cfe, pipe: int) -> bytes:
-    """Wait until there is something in a pipe, and take it.
+    """Wait for a packet in a pipe, and receive it.
 
     Args:
         cfe: the handle of the calling application.

@@ -37,7 +37,7 @@ class SequenceCheck:
 
 
 class Peer:
-    """Says its count at a rate, and reports what it heard of the other's."""
+    """Publishes its count at a rate, and reports the counts that it received from the other node."""
 
     def __init__(self) -> None:
         self._heard = SequenceCheck()
