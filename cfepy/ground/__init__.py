@@ -24,7 +24,14 @@ if TYPE_CHECKING:
     from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
     from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
     from cfepy.ground.mcap_recorder import recorder_of
-    from cfepy.ground.node import GroundConsole, empty_mission, ground_node_ended, with_ground_node, with_player
+    from cfepy.ground.node import (
+        GroundConsole,
+        check_message_type,
+        empty_mission,
+        ground_node_ended,
+        with_ground_node,
+        with_player,
+    )
     from cfepy.ground.recording import RecordingSummary, rewrite, summary_of
     from cfepy.ground.series import Samples, Series, SeriesRecorder, SeriesSet, bag_series, candidates, packet_series
     from cfepy.ground.shown_packets import (
@@ -78,6 +85,7 @@ __all__ = [
     "Topic",
     "bag_series",
     "candidates",
+    "check_message_type",
     "definitions_of",
     "dictionary_of",
     "empty_mission",
@@ -168,6 +176,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".mcap_recorder": ("recorder_of",),
             ".node": (
                 "GroundConsole",
+                "check_message_type",
                 "empty_mission",
                 "ground_node_ended",
                 "with_ground_node",

@@ -17,8 +17,11 @@ from typing import Any
 from cfepy.ground.bag import BagReader
 from cfepy.mission import Mission, MissionSpec, lines_for, mission_environment, spec_of
 from cfepy.nodes import ROSCORE_PARAMS, NodeConfig
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from rospy_shim.library_parts import FOLDER
+from rospy_shim.roslaunch.launch_plan import with_workspace
+from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 from rospy_shim.types.msgs.packages import near
 
 SCRIPTS = "ground_nodes"
@@ -49,6 +52,24 @@ def with_ground_node(spec: MissionSpec, script: str, arguments: Sequence[Any]) -
     return _with_node(spec, node)
 
 
+def check_message_type(spec: MissionSpec, name: str) -> None:
+    """Check that a node of the ground can load a message type.
+
+    Args:
+        spec: the mission, whose packages count.
+        name: full name of the type, such as "std_msgs/String".
+
+    Raises:
+        UsageError: there is no such type, or its definition is wrong.
+    """
+    library = Library([OnDisk(Packages(spec.script, _package_paths(spec)))], base=shipped())
+    try:
+        library.spec(name)
+    except UsageError as error:
+        known = (f"{package}/{each}" for package in library.packages() for each in library.names(package, "msg") or ())
+        raise UsageError(f"{error.text}{did_you_mean(name, known, before='; ')}", field="TYPE") from None
+
+
 def empty_mission() -> MissionSpec:
     """Return a mission without nodes, in the current folder, for a tool that needs none; packages are found there."""
     return spec_of(Path.cwd() / "tool", {}, ROSCORE_PARAMS)
@@ -62,7 +83,8 @@ def _package_paths(spec: MissionSpec) -> dict[str, str]:
     """
     nodes = spec.ros.nodes.values()
     if not nodes:
-        return mission_environment()
+        environ = mission_environment()
+        return {**environ, "ROS_PACKAGE_PATH": with_workspace(environ.get("ROS_PACKAGE_PATH", ""), spec.script)}
     folders = [str(folder) for node in nodes if node.script is not None for folder in near(node.script)]
     found: dict[str, str] = {}
     for name, first in (("ROS_PACKAGE_PATH", folders), ("CMAKE_PREFIX_PATH", [])):

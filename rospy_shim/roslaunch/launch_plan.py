@@ -354,11 +354,13 @@ def packages_near(near: Path, environ: Mapping[str, str], package: str | None = 
     packages = Packages(near, environ)
     if package is not None and packages.folders(package):
         return packages
+    return Packages(near, {**environ, "ROS_PACKAGE_PATH": with_workspace(environ.get("ROS_PACKAGE_PATH", ""), near)})
+
+
+def with_workspace(package_path: str, near: Path) -> str:
+    """Return a ROS_PACKAGE_PATH with the sources of the catkin workspace that a file is in, or that is beside it."""
     sources = [near.parent / "src", *(folder for folder in near.parents if folder.name == "src")]
-    roots = [str(source) for source in sources[:2] if os.path.isdir(source)]
-    return Packages(
-        near, {**environ, "ROS_PACKAGE_PATH": os.pathsep.join([environ.get("ROS_PACKAGE_PATH", ""), *roots])}
-    )
+    return os.pathsep.join([package_path, *(str(source) for source in sources[:2] if os.path.isdir(source))])
 
 
 def node_environment(environ: Mapping[str, str], namespace: str = SEP) -> dict[str, str]:
@@ -465,6 +467,7 @@ class Planner:
             respawn=node.respawn,
             respawn_delay_ns=round(node.respawn_delay * NS_PER_S),
             required=node.required,
+            near=node.file if script.is_relative_to(_TOOLS) else None,  # a tool needs the types of the file's packages
         )
 
     def _nodelet(self, node: LaunchNode, remarks: list[LaunchRemark]) -> tuple[CppNode | None] | None:

@@ -99,6 +99,15 @@ def test_other_commands_read_mcap_files_as_they_do_bags(here: Path, capsys: Capt
     assert said[0] == said[1]
 
 
+def test_rosbag_info_shows_mcap_files_too(here: Path, capsys: Capture) -> None:
+    assert main(["rosbag", "convert", "drive.bag", "-o", "drive.mcap"]) == 0
+    capsys.readouterr()
+    assert main(["rosbag", "info", "drive.mcap"]) == 0
+    shown = capsys.readouterr().out
+    assert main(["rosbag", "verify", "drive.mcap"]) == 0
+    assert shown == capsys.readouterr().out
+
+
 @pytest.mark.parametrize(
     ("words", "why"),
     [

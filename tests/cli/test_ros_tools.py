@@ -137,6 +137,33 @@ def test_packages_in_the_folder_are_known(tmp_path: Path, monkeypatch: pytest.Mo
     assert capsys.readouterr().out == "# what\nint32 a\n---\nbool b\n\n"
 
 
+@pytest.mark.parametrize("folder", ["", "src", "src/stack"])
+def test_packages_of_a_workspace_are_known_at_any_depth(
+    folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: Capture
+) -> None:
+    package = tmp_path / "src/stack/deeper/my_msgs"
+    (package / "msg").mkdir(parents=True)
+    (package / "package.xml").write_text("<package><name>my_msgs</name></package>", encoding="utf-8")
+    (package / "msg/Level.msg").write_text("float64 level\n", encoding="utf-8")
+    monkeypatch.chdir(tmp_path / folder)
+    assert main(["rosmsg", "show", "my_msgs/Level"]) == 0
+    assert capsys.readouterr().out == "float64 level\n\n"
+
+
+def test_a_tool_in_a_launch_file_knows_the_types_of_its_workspace(tmp_path: Path, capsys: Capture) -> None:
+    for name in ("my_msgs", "my_robot"):
+        (tmp_path / "src" / name / "msg").mkdir(parents=True)
+        text = f"<package><name>{name}</name></package>"
+        (tmp_path / "src" / name / "package.xml").write_text(text, encoding="utf-8")
+    (tmp_path / "src/my_msgs/msg/Level.msg").write_text("float64 level\n", encoding="utf-8")
+    file = tmp_path / "src/my_robot/robot.launch"
+    tools = (("pub", "pub /level my_msgs/Level &quot;level: 3&quot;"), ("echo", "echo -n 1 /level"))
+    nodes = (f'<node pkg="rostopic" type="rostopic" name="{name}" args="{args}"/>' for name, args in tools)
+    file.write_text(f"<launch>{''.join(nodes)}</launch>", encoding="utf-8")
+    assert main(["launch", str(file), "--for", "3"]) == 0
+    assert "[echo] level: 3.0" in capsys.readouterr().out
+
+
 def test_a_message_as_a_bag_has_it(capsys: Capture) -> None:
     odd = str(DATA / "ros_cli" / "odd.bag")
     assert main(["rosmsg", "show", "-b", odd, "std_msgs/Bool"]) == 0

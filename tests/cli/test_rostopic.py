@@ -137,8 +137,10 @@ def test_publishing(tmp_path: Path, capsys: Capture) -> None:
     )
     found = json.loads(said(capsys, *words, "go", "-r", "2", "--at", "1", "--for", "2.9", "--json", "-"))
     assert found == {"topic": "/orders", "published": 4, "printed": ["[robot] got go"] * 4, "problems": []}
-    assert main(["rostopic", "pub", mission, "/orders", "std_msgs/None", "x"]) == 1
-    assert "unknown message type std_msgs/None" in capsys.readouterr().err
+    assert main(["rostopic", "pub", mission, "/orders", "std_msgs/Strng", "x"]) == 2
+    assert "TYPE: unknown message type 'std_msgs/Strng'" in (shown := capsys.readouterr()).err
+    assert "did you mean std_msgs/String?" in shown.err
+    assert shown.out == "", "the mission does not run for it"
     assert main(["rostopic", *words, "{no: 1}"]) == 1
     assert "/orders: " in capsys.readouterr().err
 

@@ -15,7 +15,7 @@ from cfepy.cli.ros.source import FlightSource, SeenTopic, source_of
 from cfepy.cli.text_table import print_lines
 from cfepy.cli.user_notes import tell
 from cfepy.cli.viewed_runs import flight_plan
-from cfepy.ground import GroundConsole, candidates, with_ground_node
+from cfepy.ground import GroundConsole, candidates, check_message_type, with_ground_node
 from cfepy.mission import described
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
@@ -218,7 +218,9 @@ def _publish(arguments: argparse.Namespace) -> int:
     topic = _rooted(arguments.topic)
     told = [topic, arguments.type, arguments.values, arguments.rate, arguments.at]
     plan = flight_plan(arguments)
-    spec = with_ground_node(plan.spec(), "ground_publish", told)
+    base = plan.spec()
+    check_message_type(base, arguments.type)
+    spec = with_ground_node(base, "ground_publish", told)
     ground = GroundConsole()
     with FlightSource(plan, spec, Console(sink=ground.line)) as source:
         callers = [message.header.get("callerid", "") for message in source.messages([topic])]

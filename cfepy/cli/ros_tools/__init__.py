@@ -23,6 +23,7 @@ from cfepy.cli.options import (
     seconds_of,
 )
 
+_RECORDINGS = "cfepy.cli.ros_tools.recordings"
 _RECORDING_STATUS = (
     "exit status: 0 well, 1 the file is damaged or was not finished, 2 bad usage, or no message is readable"
 )
@@ -37,6 +38,15 @@ class _Handed(argparse.Action):
     def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
         words = [self.option_strings[0], *([] if self.nargs == 0 else [values])]
         setattr(namespace, self.dest, [*getattr(namespace, self.dest), *words])
+
+
+class _Recordings(argparse.Action):
+    """Names of recordings. MCAP files go to cfepy's own command, since ROS's tool does not know them."""
+
+    def __call__(self, parser: Any, namespace: Any, values: Any, option_string: str | None = None) -> None:
+        setattr(namespace, self.dest, values)
+        if all(each.endswith(".mcap") for each in values):
+            namespace.module = _RECORDINGS
 
 
 def add(commands: _Actions[argparse.ArgumentParser]) -> None:
@@ -100,7 +110,8 @@ def _add_rosbag(commands: _Actions[argparse.ArgumentParser]) -> None:
         help="show, filter, repair and convert bags and MCAP files",
         epilog=_RECORDING_STATUS,
     )
-    info = _bags(_action(actions, "info", "show what bags contain", "rosbag info run.bag", _FILE_STATUS))
+    info = _action(actions, "info", "show the contents of bags or MCAP files", "rosbag info run.bag", _FILE_STATUS)
+    info.add_argument("words", metavar="BAG", nargs="+", action=_Recordings)
     _hand(info, "-y", "--yaml", text="as YAML")
     _hand(info, "-k", "--key", text="only one value of the YAML, such as messages", value="KEY")
     _hand(info, "--freq", text="with the frequencies of topics")
@@ -142,7 +153,7 @@ def _add_rosbag(commands: _Actions[argparse.ArgumentParser]) -> None:
 
 def _add_recordings(action: argparse.ArgumentParser, writes: bool) -> None:
     """Add the options of an action on bags and MCAP files alike."""
-    action.set_defaults(module="cfepy.cli.ros_tools.recordings")
+    action.set_defaults(module=_RECORDINGS)
     action.add_argument("file", metavar="FILE", help="a bag or an MCAP file")
     add_json(action, "the contents and the damage")
     if writes:

@@ -1,4 +1,4 @@
-"""`cfepy rosbag verify`, `recover` and `convert`: bags and MCAP files, damaged ones too."""
+"""`cfepy rosbag verify`, `recover` and `convert`: bags and MCAP files, damaged ones too; and `info` of MCAP files."""
 
 from __future__ import annotations
 
@@ -28,6 +28,8 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such recording, or a file cannot be written or exists already.
     """
+    if arguments.action == "info":
+        return max(map(_show_one, arguments.words))
     check_json(arguments)
     if arguments.action == "verify":
         found = summary_of(arguments.file)
@@ -45,6 +47,13 @@ def run(arguments: argparse.Namespace) -> int:
     if left_out:
         names = ", ".join(each.topic for each in found.topics if each.left_out)
         tell([f"left out {left_out:,} messages of {names}: a bag can hold only messages of ROS 1"])
+    return _tell_damage(found)
+
+
+def _show_one(file: str) -> int:
+    """Show the contents and the damage of a recording. Returns the exit status."""
+    found = summary_of(file)
+    _show(found)
     return _tell_damage(found)
 
 
