@@ -37,22 +37,21 @@ if TYPE_CHECKING:
         mission_environment,
         node_script,
         read_launch,
+        sections_beside,
         spec_of,
         spec_of_node,
         spec_of_script,
     )
-    from cfepy.mission.launch_names import LAUNCH_FILES
+    from cfepy.mission.launch_names import LAUNCH_FILES, STARTUP_SCRIPT, is_alone, mission_file_of
     from cfepy.mission.loader import NODE_SYMBOL
     from cfepy.mission.mission import Mission
     from cfepy.mission.mission_file import MissionSections, read_mission_file
     from cfepy.mission.mission_lookup import (
         LOCK_FILE,
-        STARTUP_SCRIPT,
         cpp_nodes_of,
         cpp_nodes_source,
         find_script,
         is_node,
-        mission_file_of,
         read_lock,
         read_mission,
         read_sections,
@@ -131,6 +130,7 @@ __all__ = [
     "find_node",
     "find_script",
     "hearing",
+    "is_alone",
     "is_node",
     "launch_file",
     "lines_for",
@@ -145,6 +145,7 @@ __all__ = [
     "read_sections",
     "reason",
     "receivers",
+    "sections_beside",
     "shipped_missions",
     "spec_of",
     "spec_of_node",
@@ -189,12 +190,10 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ),
             ".mission_lookup": (
                 "LOCK_FILE",
-                "STARTUP_SCRIPT",
                 "cpp_nodes_of",
                 "cpp_nodes_source",
                 "find_script",
                 "is_node",
-                "mission_file_of",
                 "read_lock",
                 "read_mission",
                 "read_sections",
@@ -211,11 +210,12 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "mission_environment",
                 "node_script",
                 "read_launch",
+                "sections_beside",
                 "spec_of",
                 "spec_of_node",
                 "spec_of_script",
             ),
-            ".launch_names": ("LAUNCH_FILES",),
+            ".launch_names": ("LAUNCH_FILES", "STARTUP_SCRIPT", "is_alone", "mission_file_of"),
             ".loader": ("NODE_SYMBOL",),
             ".mission": ("Mission",),
             ".mission_file": (

@@ -9,19 +9,28 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.mission.cpp_nodes import CppNodesConfig, CppNodesError
-from cfepy.mission.launch_names import LAUNCH_FILES, files_near, launch_file_of_package
+from cfepy.mission.launch_names import (
+    LAUNCH_FILES,
+    MISSION_FILE,
+    files_near,
+    launch_file_of_package,
+    mission_file_of,
+)
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.parameter_files import merged
 from cfepy.mission.spec import BuiltProgram, MissionSpec
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, NodeConfig, RosConfig
+from cfepy.reading.mistakes import Mistakes, collected
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
+    from cfepy.mission.mission_file import MissionSections
     from rospy_shim.roslaunch.launch_plan import LaunchPlan
 
 PRIORITY, STACK_BYTES, RESTART_NOTHING = 100, 16384, 0
@@ -103,13 +112,62 @@ def read_launch(file: Path, args: Mapping[str, str] | None = None, build: NodeBu
     """
     from rospy_shim.roslaunch.launch_plan import plan_of
 
+    path, said = mission_file_of(file), None
+    if path is not None:
+        said = collected(partial(sections_beside, path))
     plan = plan_of(file, args or {}, dict(os.environ), cwd=Path.cwd(), with_compiled=build is not None)
-    built, left_out = built_programs(plan, build)
+    built, left_out = built_programs(plan, build, None if said is None else said.cpp_nodes)
     notes = (*plan.notes, *left_out)
     if not plan.nodes and not built:
         why = "; ".join(notes) or "it has no <node>"
         raise UsageError(f"has no node that cfepy can run: {why}", file=file)
-    return spec_of(file, plan.nodes, plan.params, notes, built)
+    spec = spec_of(file, plan.nodes, plan.params, notes, built)
+    return spec if path is None or said is None else _with_sections(spec, path, said)
+
+
+def _with_sections(spec: MissionSpec, path: Path, said: MissionSections) -> MissionSpec:
+    """Return the mission of a launch file with the sections of the mission file beside it."""
+    config = said.ros
+    ros = replace(
+        spec.ros,
+        topics=config.topics,
+        params=merged(spec.ros.params, config.params),
+        ordered_sets=config.ordered_sets,
+        connection_delay_ns=config.connection_delay_ns,
+        bridge=config.bridge,
+    )
+    limits = said.limits if said.limits.nodes else replace(said.limits, nodes=spec.limits.nodes, yields=True)
+    return replace(
+        spec,
+        name=spec.name if said.name is None else said.name,
+        mission_file=path,
+        board=said.board_in(spec.folder),
+        ros=ros,
+        limits=limits,
+        cfe_version=said.cfe_version,
+        compiled=said.compiled,
+        cpp_nodes=said.cpp_nodes,
+        demands=said.demands,
+        sweep=said.sweep,
+    )
+
+
+def sections_beside(path: Path, mistakes: Mistakes) -> MissionSections:
+    """Read a mission file beside a launch file that is run itself.
+
+    Args:
+        path: the mission file.
+        mistakes: gets its mistakes, also sections that the launch file sets itself.
+    """
+    from cfepy.mission.mission_file import read_mission_file
+
+    said = read_mission_file(path, mistakes)
+    for name in ("nodes", "launch"):
+        if name in said.places:
+            text = "is not available beside a launch file that is run itself; name the launch file in `launch:` of a "
+            text += f"{MISSION_FILE} in another folder, and run that"
+            mistakes.add(UsageError(text, file=path, line=said.places[name].line, field=name))
+    return said
 
 
 def built_programs(

@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+STARTUP_SCRIPT = "startup.scr"
+MISSION_FILE = "mission.yaml"
 LAUNCH_FILES = (".launch", ".test", ".xml")
 
 
@@ -34,3 +36,19 @@ def files_near(path: Path, suffixes: tuple[str, ...]) -> list[str]:
         return [str(each) for each in sorted(path.parent.iterdir()) if each.suffix in suffixes]
     except OSError:
         return []
+
+
+def is_alone(path: Path) -> bool:
+    """Return whether a path is a mission file without a startup script beside it: its launch files are the mission."""
+    return path.name == MISSION_FILE and os.path.isfile(path) and not os.path.isfile(path.parent / STARTUP_SCRIPT)
+
+
+def mission_file_of(script: Path) -> Path | None:
+    """Return the mission file that belongs to a startup script or a launch file; None if there is none.
+
+    A launch file has the `mission.yaml` beside it, unless a startup script there has it.
+    """
+    if script.suffix in LAUNCH_FILES:
+        return script.parent / MISSION_FILE if is_alone(script.parent / MISSION_FILE) else None
+    candidates = (script.with_suffix(".yaml"), script.parent / MISSION_FILE)
+    return next((path for path in candidates if os.path.isfile(path)), None)

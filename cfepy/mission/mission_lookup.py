@@ -14,7 +14,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cfepy.mission.cpp_nodes import PROFILES, CppNodesConfig
-from cfepy.mission.launch_names import LAUNCH_FILES, files_near, launch_file_of_package
+from cfepy.mission.launch_names import (
+    LAUNCH_FILES,
+    MISSION_FILE,
+    STARTUP_SCRIPT,
+    files_near,
+    is_alone,
+    launch_file_of_package,
+    mission_file_of,
+)
 from cfepy.mission.spec import MissionSpec
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import ROSCORE_PARAMS, RosConfig
@@ -30,8 +38,6 @@ if TYPE_CHECKING:
     from cfepy.mission.launch import NodeBuilder
     from cfepy.mission.mission_file import MissionSections
 
-STARTUP_SCRIPT = "startup.scr"
-MISSION_FILE = "mission.yaml"
 LOCK_FILE = "topics.lock"
 STARTUP_SUFFIX = ".scr"
 _MISSION_FILES = (STARTUP_SUFFIX, *LAUNCH_FILES)
@@ -49,17 +55,20 @@ def find_script(mission: str) -> Path:
     Args:
         mission: a path of a script or launch file, a folder with a startup.scr, the name of a shipped mission, or one
             with another startup script in its folder (`pathfinder/mended.scr`), or a package and the name of a launch
-            file in it, with a blank between them.
+            file in it, with a blank between them; or a mission file without a startup script, or its folder.
 
     Raises:
         UsageError: if it is none of these.
     """
     path = Path(mission)
     if os.path.isfile(path):
-        _check_kind(path)
+        if not is_alone(path):
+            _check_kind(path)
         return path.resolve()
     if os.path.isfile(path / STARTUP_SCRIPT):
         return (path / STARTUP_SCRIPT).resolve()
+    if is_alone(path / MISSION_FILE):
+        return (path / MISSION_FILE).resolve()
     if mission in shipped_missions():
         return shipped("missions") / mission / STARTUP_SCRIPT
     if path.suffix == STARTUP_SUFFIX and str(path.parent) in shipped_missions():
@@ -109,12 +118,6 @@ def _check_kind(path: Path) -> None:
         raise UsageError(f"is not a startup script or a launch file{hint}", file=path)
 
 
-def mission_file_of(script: Path) -> Path | None:
-    """Return the mission file that belongs to a startup script; None if there is none."""
-    candidates = (script.with_suffix(".yaml"), script.parent / MISSION_FILE)
-    return next((path for path in candidates if os.path.isfile(path)), None)
-
-
 def read_mission(mission: str, args: Mapping[str, str] | None = None, build: NodeBuilder | None = None) -> MissionSpec:
     """Find a mission, and read its mission file or launch file.
 
@@ -133,8 +136,9 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
         return read_launch(script, args, build)
     if args:
         raise UsageError("is not a launch file, so it takes no arguments", file=mission, field="--arg")
-    name = script.parent.name if script.name == STARTUP_SCRIPT else script.stem
-    spec = MissionSpec(name=name, folder=script.parent, script=script)
+    alone = is_alone(script)
+    name = script.parent.name if alone or script.name == STARTUP_SCRIPT else script.stem
+    spec = MissionSpec(name=name, folder=script.parent, script=script, startup=b"!\n" if alone else None)
     path = mission_file_of(script)
     if path is not None:
         spec = _with_mission_file(spec, path, build)
@@ -163,6 +167,9 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
         sweep=said.sweep,
     )
     if not said.launch:
+        if spec.startup is not None:
+            text = f"missing `launch:`, because there is no {STARTUP_SCRIPT} beside it; name your launch files there"
+            raise UsageError(text, file=path)
         return spec
     from cfepy.mission.launch import with_launch_files
 

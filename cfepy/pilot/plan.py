@@ -67,8 +67,8 @@ class RunPlan:
             words after these commands of `cfepy`.
         command: one of these three.
         launch_args: arguments of a launch file given as a mission, NAME and VALUE.
-        seconds: virtual time to run, from the boot, or from the start of the nodes of a launch file and of a single
-            node; None means the length of the script, or the default of each command.
+        seconds: virtual time to run, from the boot; None means the length of the script, or the default of each
+            command.
         seed: seed of everything random in the mission.
         board: name or file of the board; None takes the mission's own.
         tasks: "thread", "greenlet", or "auto": greenlets if they are installed, otherwise threads.

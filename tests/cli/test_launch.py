@@ -154,7 +154,7 @@ def test_time_of_a_run_counts_from_the_boot(
     [
         ("node.py", "import rospy\n", "is a program, not a mission; use `cfepy node`"),
         ("node", "#!/usr/bin/env python\n", "is a program, not a mission"),
-        ("mission.yaml", "board: linux\n", "is not a startup script or a launch file"),
+        ("mission.yaml", "board: linux\n", "missing `launch:`, because there is no startup.scr"),
         ("run.bag", "#ROSBAG V2.0\n!\0\0", "is not a startup script or a launch file"),
     ],
 )

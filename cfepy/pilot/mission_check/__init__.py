@@ -20,10 +20,12 @@ from cfepy.mission import (
     cpp_nodes_of,
     find_node,
     find_script,
+    is_alone,
     is_node,
     mission_environment,
     mission_file_of,
     read_mission_file,
+    sections_beside,
 )
 from cfepy.monitors import read_demands
 from cfepy.pilot.mission_check.cfe_names import wrong_names
@@ -88,7 +90,13 @@ def _sorted(found: Iterable[MissionProblem]) -> list[MissionProblem]:
 
 def _check_launch_file(file: Path, args: Mapping[str, str], config: CppNodesConfig | None) -> list[MissionProblem]:
     """Check a launch file without a startup script, in the user's environment."""
+    path, mistakes = mission_file_of(file), Mistakes()
+    if path is not None:
+        said = sections_beside(path, mistakes)
+        read_demands(said.demands, mistakes)
+        config = config or said.cpp_nodes
     found, scripts = check_launch(file, args, dict(os.environ), alone=True, config=config)
+    found += [problem_of(error, file) for error in mistakes.errors]
     return [*found, *check_nodes(scripts), *check_imports_of_nodes(scripts), *check_definitions_of(scripts, file)]
 
 
@@ -100,7 +108,7 @@ def _check_node(file: Path) -> list[MissionProblem]:
 
 def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None) -> list[MissionProblem]:
     """Check a startup script with all its files."""
-    data = read_limited(script, STARTUP_BYTES)
+    data = b"!\n" if is_alone(script) else read_limited(script, STARTUP_BYTES)
     mistakes = Mistakes()
     path = mission_file_of(script)
     said = MissionSections() if path is None else read_mission_file(path, mistakes)
