@@ -42,7 +42,7 @@ if TYPE_CHECKING:
         spec_of_node,
         spec_of_script,
     )
-    from cfepy.mission.launch_names import LAUNCH_FILES, STARTUP_SCRIPT, is_alone, mission_file_of
+    from cfepy.mission.launch_names import LAUNCH_FILES, STARTUP_SCRIPT, WITHOUT_LAUNCH, is_alone, mission_file_of
     from cfepy.mission.loader import NODE_SYMBOL
     from cfepy.mission.mission import Mission
     from cfepy.mission.mission_file import MissionSections, read_mission_file
@@ -92,6 +92,7 @@ __all__ = [
     "TEST_RESULTS",
     "TEXT",
     "UNIX_AT_CFE_EPOCH",
+    "WITHOUT_LAUNCH",
     "Arrival",
     "BuiltProgram",
     "CppNodesConfig",
@@ -215,7 +216,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "spec_of_node",
                 "spec_of_script",
             ),
-            ".launch_names": ("LAUNCH_FILES", "STARTUP_SCRIPT", "is_alone", "mission_file_of"),
+            ".launch_names": ("LAUNCH_FILES", "STARTUP_SCRIPT", "WITHOUT_LAUNCH", "is_alone", "mission_file_of"),
             ".loader": ("NODE_SYMBOL",),
             ".mission": ("Mission",),
             ".mission_file": (

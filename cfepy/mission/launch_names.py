@@ -7,6 +7,7 @@ from pathlib import Path
 
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
+WITHOUT_LAUNCH = f"missing `launch:`, because there is no {STARTUP_SCRIPT} beside it; name your launch files there"
 LAUNCH_FILES = (".launch", ".test", ".xml")
 
 

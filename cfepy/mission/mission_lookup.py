@@ -18,6 +18,7 @@ from cfepy.mission.launch_names import (
     LAUNCH_FILES,
     MISSION_FILE,
     STARTUP_SCRIPT,
+    WITHOUT_LAUNCH,
     files_near,
     is_alone,
     launch_file_of_package,
@@ -168,8 +169,7 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
     )
     if not said.launch:
         if spec.startup is not None:
-            text = f"missing `launch:`, because there is no {STARTUP_SCRIPT} beside it; name your launch files there"
-            raise UsageError(text, file=path)
+            raise UsageError(WITHOUT_LAUNCH, file=path)
         return spec
     from cfepy.mission.launch import with_launch_files
 

@@ -15,6 +15,7 @@ from cfepy.es import CFE_APP, StartupEntry, entries
 from cfepy.mission import (
     LAUNCH_FILES,
     NODE_SYMBOL,
+    WITHOUT_LAUNCH,
     CppNodesConfig,
     MissionSections,
     cpp_nodes_of,
@@ -112,6 +113,8 @@ def _check_folder(script: Path, board: str | None, config: CppNodesConfig | None
     mistakes = Mistakes()
     path = mission_file_of(script)
     said = MissionSections() if path is None else read_mission_file(path, mistakes)
+    if is_alone(script) and not said.launch and not mistakes.errors:
+        raise UsageError(WITHOUT_LAUNCH, file=script)
     longest = RELEASES[said.cfe_version].longest_entry
     started = entries(data, longest)
     demands = read_demands(said.demands, mistakes)
