@@ -87,6 +87,8 @@ class FlightLog(Attachment):
         self._spec = spec
         self._decoder = MessageDecoder()
         self._heard: dict[str, list[Heard]] = {}
+        self._declared = SeriesSet()  # of packets
+        self._in_series: dict[int, int] = {}  # how many packets of a MsgId are in it
         self._packet_watch = PacketWatch(self._take_packet)
         self._topic_watch = TopicWatch(self.topics.take_message)
         self._mission: Mission | None = None
@@ -137,19 +139,26 @@ class FlightLog(Attachment):
 
     def series(self) -> SeriesSet:
         """Return everything sent so far with a known layout: topics, telemetry and commands by name."""
-        found, dictionary = SeriesSet(), self.dictionary
+        found = SeriesSet()
         for name in self.topics.names:
             found.add(self.topics.series(name))
-        for seen in (seen for packets in self.packets.values() for seen in packets):
-            entry = dictionary.declared_as(seen.packet)
-            if entry is None:
-                continue
-            series = found.get(entry.name)
-            if series is None:
-                series = packet_series(entry.name, isinstance(entry, Command), dictionary)
-                found.add(series)
-            series.add(seen)
+        for msg_id, packets in self.packets.items():
+            for seen in packets[self._in_series.get(msg_id, 0) :]:
+                self._take_into_series(seen)
+            self._in_series[msg_id] = len(packets)
+        for name in self._declared.names:
+            found.add(self._declared.series(name))
         return found
+
+    def _take_into_series(self, seen: Seen) -> None:
+        entry = self.dictionary.declared_as(seen.packet)
+        if entry is None:
+            return
+        series = self._declared.get(entry.name)
+        if series is None:
+            series = packet_series(entry.name, isinstance(entry, Command), self.dictionary)
+            self._declared.add(series)
+        series.add(seen)
 
     def telemetry_names(self) -> list[str]:
         """Return the names of the telemetry packets sent so far, in the order of their first packets."""

@@ -176,12 +176,12 @@ class Run:
             UsageError: if the packet is not in the dictionary.
             ExpectationError: if none was sent.
         """
-        found = self.packets(name)
+        found = self.log.packets.get(self.dictionary.telemetry_of(name).msg_id)
         if not found:
             names = self.log.telemetry_names()
             instead = f"only {listed(names, 'and')}" if names else "no telemetry"
             raise self._failure(f"telemetry {self.dictionary.telemetry_of(name).name} until now", instead)
-        return found[-1]
+        return self.log.packet(found[-1])
 
     def packets(self, name: str) -> list[Packet]:
         """Return all packets of a kind, by the name of the telemetry or its MsgId, including those without a

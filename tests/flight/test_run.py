@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 import cfepy
 from cfepy.flight.plans import plan_of
+from cfepy.ground import Dictionary
 from cfepy.pilot import NODE, RunPlan, fly
 
 KNOWN = cfepy.RunOptions.__annotations__
@@ -112,3 +114,30 @@ def test_failed_file_of_a_node_is_reported(tmp_path: Path) -> None:
     run = cfepy.run(tmp_path / "broken.py", seconds=1, tasks="greenlet")
     assert run.problems == ["BROKEN ended with exit status 3 (node /BROKEN)"]
     assert [line for line in run.console if "BROKEN ended with exit status 3" in line]
+
+
+def test_last_telemetry_and_series_decode_only_new_packets(
+    flight: cfepy.Flight, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    name, count = "CFE_ES_HK_TLM", 0
+    flight.run_for(12)
+    before = len(flight.topic(name))
+    decode, declared = Dictionary.decode, Dictionary.declared_as
+
+    def counted(usual: Callable[[Dictionary, bytes], Any]) -> Callable[[Dictionary, bytes], Any]:
+        def call(dictionary: Dictionary, packet: bytes) -> Any:
+            nonlocal count
+            count += 1
+            return usual(dictionary, packet)
+
+        return call
+
+    monkeypatch.setattr(Dictionary, "decode", counted(decode))
+    monkeypatch.setattr(Dictionary, "declared_as", counted(declared))
+    last = flight.telemetry(name)
+    assert (count, last.at) == (1, flight.packets(name)[-1].at)
+    count = 0
+    assert len(flight.topic(name)) == before
+    assert count == 0
+    flight.run_for(12)
+    assert len(flight.topic(name)) == len(flight.packets(name)) > before
