@@ -11,12 +11,14 @@ messages, parameters and service calls. `cfepy.mission.host_actions` then carrie
 
 from __future__ import annotations
 
+import atexit
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
+from weakref import WeakSet
 
 from cfepy.attachment import Attachment
 from cfepy.flight import expectations
@@ -177,6 +179,7 @@ class Flight(Run):
         self._wall_ns = 0
         self._here = START
         self._ros = RosSide(self.mission)
+        _OPEN.add(self)
 
     # -- time ----------------------------------------------------------------------------------------------------------
 
@@ -501,6 +504,7 @@ class Flight(Run):
         if not self.closed:
             self.mission.kernel.check_caller()
             self.closed = True
+            _OPEN.discard(self)
             self._flight.__exit__(None, None, None)
 
     def command(self) -> str:
@@ -514,3 +518,13 @@ class Flight(Run):
         self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
     ) -> None:
         self.close()
+
+
+_OPEN: WeakSet[Flight] = WeakSet()
+
+
+@atexit.register
+def _close_all() -> None:
+    """Close flights that the program left open, as long as Python can still switch between tasks."""
+    for flight in list(_OPEN):
+        flight.close()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -141,3 +143,10 @@ def test_last_telemetry_and_series_decode_only_new_packets(
     assert count == 0
     flight.run_for(12)
     assert len(flight.topic(name)) == len(flight.packets(name)) > before
+
+
+@pytest.mark.parametrize("tasks", ["thread", "greenlet"])
+def test_program_that_leaves_a_flight_open_ends_quietly(tasks: str) -> None:
+    program = f"import cfepy; flight = cfepy.boot('lab', tasks={tasks!r}); flight.run_for(1); print(flight.now)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("1.0\n", "")
