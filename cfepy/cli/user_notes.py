@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
@@ -11,6 +12,7 @@ from pathlib import Path
 
 from cfepy.status import UsageError
 
+_LEFT_OUT = re.compile(r"node (/\S+) is left out: ")
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
 """Errors of a full or broken disk."""
 
@@ -62,6 +64,19 @@ def tell(texts: Iterable[object]) -> None:
     sys.stdout.flush()
     for text in texts:
         print(f"cfepy: {text}", file=sys.stderr, flush=True)
+
+
+def tell_briefly(notes: Iterable[str]) -> None:
+    """Write the notes of a mission that a command looks at: one line for all nodes that are left out.
+
+    `cfepy check`, `run` and `launch` give the reasons.
+    """
+    lines = list(notes)
+    left_out = {each: found[1] for each in lines if (found := _LEFT_OUT.search(each)) is not None}
+    tell(each for each in lines if each not in left_out)
+    if left_out:
+        names = ", ".join(dict.fromkeys(left_out.values()))
+        tell([f"left out: {names}; `cfepy check` gives the reasons"])
 
 
 def note(text: str) -> None:

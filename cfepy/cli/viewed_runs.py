@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from cfepy.attachment import Attachment
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
-from cfepy.cli.user_notes import tell
+from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.ground import SeriesRecorder, SeriesSet, bag_series, is_bag
 from cfepy.interpreter.host_system import command_line
 from cfepy.pilot import DEFAULT_S, Flown, RunPlan, fly
@@ -55,7 +55,8 @@ class LookedAt:
     def status(self) -> int:
         """Print notes and warnings to standard error. Returns the exit status of the command."""
         stall = self.flown.stall
-        tell((*self.flown.notes, *self.notes, *self.warnings, *([] if stall is None else [stall])))
+        tell_briefly(self.flown.notes)
+        tell((*self.notes, *self.warnings, *([] if stall is None else [stall])))
         return FOUND_PROBLEMS if self.warnings or stall is not None else ENDED_WELL
 
 

@@ -316,3 +316,17 @@ def test_a_robots_state_becomes_transforms(
     )
     assert main(["launch", file]) == 0
     assert printed(capsys.readouterr().out, "move") == ["1.0 1.0 0.5 1.0"]
+
+
+def test_commands_that_look_at_a_mission_name_left_out_nodes_in_one_line(
+    write_launch: Launch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    body = TALKER.format("", COUNT.format(2))
+    for name in ("rviz", "viewer"):
+        body += f'<node pkg="absent" type="{name}" name="{name}"/>'
+    file = write_launch(body)
+    for words in (["rostopic", "list"], ["graph"], ["tlm"], ["rosparam", "list", "--for", "1"]):
+        main([*words, file, *([] if "--for" in words else ["--for", "1"])])
+        assert capsys.readouterr().err.splitlines()[:1] == [
+            "cfepy: left out: /rviz, /viewer; `cfepy check` gives the reasons"
+        ], words

@@ -11,7 +11,7 @@ from cfepy.cli.ground.command_target import RemoteHost, check_is_mission, dictio
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
 from cfepy.cli.text_table import Table, show_paragraph, show_tables
-from cfepy.cli.user_notes import tell
+from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.ground import CI_PORT, CommandTrial, Dictionary, dictionary_of, packet_of
 from cfepy.io import udp
 from cfepy.msg import Command
@@ -100,7 +100,7 @@ def _fly(plan: RunPlan, dictionary: Dictionary, declared: Command, packet: bytes
     trial = CommandTrial(dictionary, packet)
     seconds = ANSWER_S if plan.seconds is None else plan.seconds
     with takeoff(replace(plan, seconds=LONGEST_S), attachments=[trial]) as run:
-        tell(run.notes)
+        tell_briefly(run.notes)
         trial.run(run.run_until, seconds, _patience(plan))
         problems = run.problems()
         unstruck = never_happened(run.mission)

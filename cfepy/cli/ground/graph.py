@@ -14,7 +14,7 @@ from cfepy.cli.json_output import check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.options import plan_of
 from cfepy.cli.text_table import Table, show_tables
-from cfepy.cli.user_notes import tell, writing
+from cfepy.cli.user_notes import tell, tell_briefly, writing
 from cfepy.ground import (
     LOOK_S,
     MidRow,
@@ -111,7 +111,7 @@ def _survey_plan(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
 def _surveyed(plan: RunPlan, spec: MissionSpec, attachments: Sequence[Attachment] = ()) -> Iterator[Mission]:
     """Yield a mission that has flown for the time of the plan, and has not been shut down."""
     with takeoff(plan, spec=spec, attachments=attachments) as run:
-        tell(run.notes)
+        tell_briefly(run.notes)
         run.run_until(run.course.until_ns)
         problems = [*run.problems(), *never_happened(run.mission)]
         yield run.mission

@@ -16,7 +16,7 @@ from cfepy.cli.json_output import json_lines, json_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.text_table import show_paragraph
-from cfepy.cli.user_notes import tell
+from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.ground import CI_PORT, TO_PORT, Decoded, Dictionary, dictionary_of, packet_of, topic_id, topics_of
 from cfepy.io import udp
 from cfepy.mission import MissionSpec, PacketWatch, Seen, find_script, is_node
@@ -266,7 +266,7 @@ def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
         output_for(dictionary, arguments, is_live=False) as output,
         takeoff(plan, spec=spec, attachments=[watch]) as run,
     ):
-        tell(run.notes)
+        tell_briefly(run.notes)
         shown = _show_flight(run, seen, output, dictionary, arguments.count)
         problems, end_s = (
             [*run.problems(), *never_happened(run.mission)],

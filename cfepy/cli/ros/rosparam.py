@@ -12,7 +12,7 @@ from cfepy.cli.json_output import write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.text_table import print_lines
-from cfepy.cli.user_notes import tell, writing
+from cfepy.cli.user_notes import tell, tell_briefly, writing
 from cfepy.ground.parameters import Parameters, at_start, changed, is_source_of_files, of_files, present, table_files
 from cfepy.pilot import never_happened, takeoff
 from cfepy.reading.plain_yaml import YamlError, plain_yaml
@@ -47,7 +47,7 @@ def _parameters(arguments: argparse.Namespace) -> Parameters:
     plan = plan_of(arguments, [source])
     if plan.seconds is not None or plan.script is not None:
         with takeoff(plan) as run:
-            tell(run.notes)
+            tell_briefly(run.notes)
             run.run_until(run.course.until_ns)
             tell([*run.problems(), *never_happened(run.mission)])
             return present(run.mission)

@@ -9,7 +9,7 @@ from types import TracebackType
 from typing import NamedTuple
 
 from cfepy.cli.options import refuse_run_options
-from cfepy.cli.user_notes import tell
+from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.cli.viewed_runs import flight_plan
 from cfepy.ground import BagReader, header_of, is_bag
 from cfepy.mission import Mission, MissionSpec, TopicMessage, TopicWatch
@@ -105,7 +105,7 @@ class FlightSource:
         """Fly the mission in short steps."""
         flight = takeoff(self._plan, spec=self._spec, attachments=watches, console=self._console)
         self._run = run = self._flight.enter_context(flight)
-        tell(run.notes)
+        tell_briefly(run.notes)
         while run.course.goes_on:
             run.run_until(run.mission.kernel.now + PIECE_NS)
             yield
