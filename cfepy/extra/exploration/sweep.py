@@ -102,6 +102,11 @@ class PointNumbers:
     trace: str = ""
     trouble: str = ""
 
+    @property
+    def sent(self) -> tuple[TopicNumbers, ...]:
+        """The topics with messages: one without any has no rate, and is not the slowest."""
+        return tuple(each for each in self.topics if each.sent)
+
     def why_not_clean(self, rate_hz: float | None) -> str:
         """Return why a rate is not clean; empty if it is.
 
@@ -160,7 +165,11 @@ class Sweep(Lot[Point, PointNumbers]):
         if self.topics:
             names = list(self.topics)
         else:
-            names = [each.name for each in results.topics if "/" in each.type and watch.arrivals.get(each.msg_id)]
+            names = [
+                each.name
+                for each in results.topics
+                if "/" in each.type and watch.arrivals.get(each.msg_id) and watch.sent[each.msg_id]
+            ]
         for name in names:
             topic = by_name.get(name)
             if topic is None:

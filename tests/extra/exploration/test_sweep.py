@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 
+from cfepy.cli.text_table import show_tables
 from cfepy.extra.exploration.batch import answers
+from cfepy.extra.exploration.commands.sweep import table_of
 from cfepy.extra.exploration.sweep import Point, PointNumbers, Sweep, SweepRow, TopicNumbers, knees, sweep_table
 from cfepy.extra.exploration.sweep_points import points_of
 from cfepy.extra.exploration.worker_pools import make_crew
@@ -46,6 +49,15 @@ def test_failed_run_is_not_clean() -> None:
     assert numbers(10, problem="ARM died").why_not_clean(10) == "ARM died"
     assert PointNumbers().why_not_clean(None) == "no message came"
     assert numbers(5).why_not_clean(None) == ""
+
+
+def test_topic_without_messages_is_not_the_slowest(capsys: pytest.CaptureFixture[str]) -> None:
+    spoken = TopicNumbers("/a", 10, 10, 0, 0, 50.0, 1.0, 2.0)
+    silent = TopicNumbers("/b", 0, 0, 0, 0, 0.0, 0.0, 0.0)
+    found = SweepRow(Point(rate_hz=50), PointNumbers("small", topics=(silent, spoken)), ())
+    show_tables([table_of(([found]))], sys.stdout)
+    assert "50.0" in capsys.readouterr().out
+    assert found.why_not_clean == "no message of /b was measured"
 
 
 def test_a_point_of_the_board_mission() -> None:

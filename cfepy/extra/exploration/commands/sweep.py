@@ -61,7 +61,7 @@ def run(arguments: argparse.Namespace) -> int:
     found = knees(rows)
     said = [dict(zip(heads, each, strict=True)) for each in cells]
     write_json(arguments, {"rows": said, "knees": [{**each._asdict(), "varied": dict(each.varied)} for each in found]})
-    show_tables([_table(rows)], sys.stdout)
+    show_tables([table_of(rows)], sys.stdout)
     print()
     for knee in found:
         print(knee.text)
@@ -119,14 +119,14 @@ def _csv_text(rows: Sequence[Sequence[object]], quotes: bool) -> str:
     return text.getvalue()
 
 
-def _table(rows: Sequence[SweepRow]) -> Table:
+def table_of(rows: Sequence[SweepRow]) -> Table:
     """Return a table with a row for each point, with the numbers of its worst topic."""
     names = list(dict.fromkeys(name for row in rows for name, _ in row.varied))
     columns = ("board", "rate, Hz", *names, "seed", "came, Hz", "lost", "held back", "latency", "longest", "CPU")
     numbers = tuple(at for at in range(1, len(columns)))
     table = Table("Sweep", (*columns, HINT_COLUMN), right=numbers, least=(len(names) + 2, len(names) + 5))
     for row in rows:
-        topics, varied = row.numbers.topics, dict(row.varied)
+        topics, varied = row.numbers.sent, dict(row.varied)
         rate = "" if row.point.rate_hz is None else f"{row.point.rate_hz:g}"
         came = f"{min(each.delivered_hz for each in topics):.1f}" if topics else ""
         mean, longest = (
@@ -146,7 +146,7 @@ def _table(rows: Sequence[SweepRow]) -> Table:
             f"{row.numbers.cpu:.2%}",
             row.why_not_clean,
         )
-    table.note = "came, latency: of the topic that is worst off; CPU: of all applications"
+    table.note = "came, latency: of the worst topic with messages; CPU: of all applications"
     return table
 
 
@@ -172,15 +172,15 @@ def _draw(arguments: argparse.Namespace, rows: Sequence[SweepRow], found: Sequen
 
     lines: dict[tuple[str, ...], SweepLine] = {}
     for row in rows:
-        if row.point.rate_hz is None or not row.numbers.topics:
+        if row.point.rate_hz is None or not row.numbers.sent:
             continue
         name = ", ".join([row.numbers.board, *(f"{name}={value}" for name, value in row.varied)])
         knee = next(each for each in found if (each.board, each.varied) == (row.numbers.board, row.varied))
         line = lines.setdefault((name,), SweepLine(name, None if knee.broken_hz is None else knee.clean_hz))
         line.add(
             row.point.rate_hz,
-            min(each.delivered_hz for each in row.numbers.topics),
-            max(each.latency_max_us for each in row.numbers.topics) / 1000,
+            min(each.delivered_hz for each in row.numbers.sent),
+            max(each.latency_max_us for each in row.numbers.sent) / 1000,
             row.numbers.cpu * 100,
         )
     if not lines:
