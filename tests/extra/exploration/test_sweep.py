@@ -55,7 +55,7 @@ def test_topic_without_messages_is_not_the_slowest(capsys: pytest.CaptureFixture
     spoken = TopicNumbers("/a", 10, 10, 0, 0, 50.0, 1.0, 2.0)
     silent = TopicNumbers("/b", 0, 0, 0, 0, 0.0, 0.0, 0.0)
     found = SweepRow(Point(rate_hz=50), PointNumbers("small", topics=(silent, spoken)), ())
-    show_tables([table_of(([found]))], sys.stdout)
+    show_tables([table_of([found])], sys.stdout)
     assert "50.0" in capsys.readouterr().out
     assert found.why_not_clean == "no message of /b was measured"
 
