@@ -5,6 +5,8 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+from cfepy.reading.input_files import beginning_of
+
 STARTUP_SCRIPT = "startup.scr"
 MISSION_FILE = "mission.yaml"
 WITHOUT_LAUNCH = f"missing `launch:`, because there is no {STARTUP_SCRIPT} beside it; name your launch files there"
@@ -41,7 +43,13 @@ def files_near(path: Path, suffixes: tuple[str, ...]) -> list[str]:
 
 def is_alone(path: Path) -> bool:
     """Return whether a path is a mission file without a startup script beside it: its launch files are the mission."""
-    return path.name == MISSION_FILE and os.path.isfile(path) and not os.path.isfile(path.parent / STARTUP_SCRIPT)
+    if path.name != MISSION_FILE or not os.path.isfile(path):
+        return False
+    script = path.parent / STARTUP_SCRIPT
+    if not os.path.isfile(script):
+        return True
+    beginning_of(script, 1)  # a journal has the opened files: a replay needs the script beside the mission file, too
+    return False
 
 
 def mission_file_of(script: Path) -> Path | None:
