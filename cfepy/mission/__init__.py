@@ -64,8 +64,7 @@ if TYPE_CHECKING:
     from cfepy.mission.record import DataRace, Overwrite, Reset, StackUse, Traffic
     from cfepy.mission.run_pieces import FIRST_PIECE_NS, PieceLength
     from cfepy.mission.settings import with_settings
-    from cfepy.mission.spec import BuiltProgram, MissionSpec
-    from cfepy.mission.sweep_section import SweepConfig
+    from cfepy.mission.spec import BuiltProgram, MissionSpec, SweepConfig
     from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
     from cfepy.mission.tracebacks import app_traceback, described, reason
 
@@ -258,8 +257,8 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".spec": (
                 "BuiltProgram",
                 "MissionSpec",
+                "SweepConfig",
             ),
-            ".sweep_section": ("SweepConfig",),
             ".topic_watch": (
                 "TopicMessage",
                 "TopicWatch",

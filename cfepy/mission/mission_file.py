@@ -18,8 +18,7 @@ from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
-from cfepy.mission.spec import CompiledConfig
-from cfepy.mission.sweep_section import SweepConfig, read_sweep
+from cfepy.mission.spec import CompiledConfig, SweepConfig
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
 from cfepy.reading.marked_yaml import Marked, load
@@ -225,6 +224,24 @@ def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
             heard = [mistakes.attempt(partial(_global_topic, item)) for item in mistakes.items(part)]
             subscribe = [each for each in heard if each is not None]
     return RosBridge(publish, tuple(subscribe), clock_hz)
+
+
+def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
+    """Return the section `sweep:`: the rates of the mission and their topics, for `cfepy sweep --rate`.
+
+    Args:
+        section: its value.
+        mistakes: collects unknown keys and values that are not lists of names.
+    """
+    said: dict[str, tuple[str, ...]] = {}
+    for name, entry in mistakes.fields(section, ("rate", "topics")):
+        items = mistakes.items(entry)
+        texts = [mistakes.attempt(item.text) for item in items]
+        said[name] = tuple(text for text in texts if text)
+        for item, text in zip(items, texts, strict=True):
+            if name == "topics" and text and not text.startswith("/"):
+                mistakes.add(item.fail(f'invalid topic name {text!r}; it must begin with "/"'))
+    return SweepConfig(**said)
 
 
 def _clock_hz(entry: Marked) -> int:

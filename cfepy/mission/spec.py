@@ -14,7 +14,6 @@ from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.loader import NODE_SYMBOL
-from cfepy.mission.sweep_section import SweepConfig
 from cfepy.nodes import CppNode, NodeConfig, RosConfig
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import STARTUP_BYTES
@@ -33,6 +32,19 @@ class CompiledConfig:
 
     omit_deprecated: bool = False
     guard: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SweepConfig:
+    """The section `sweep:`: the parameters that a sweep varies, and the topics that it measures.
+
+    Attributes:
+        rate: full names of parameters (with a slash) and names of launch arguments that a rate in Hz sets.
+        topics: topics that then have this rate; empty for all topics of the mission.
+    """
+
+    rate: tuple[str, ...] = ()
+    topics: tuple[str, ...] = ()
 
 
 class BuiltProgram(NamedTuple):
