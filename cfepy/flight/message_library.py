@@ -9,8 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cfepy.ground import unknown_field
-from cfepy.reading.joined_errors import together
-from cfepy.status import UsageError
+from cfepy.status import UsageError, together
 
 if TYPE_CHECKING:
     from rospy_shim.types.msgs import Library, MessageClass

@@ -11,9 +11,8 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked, load
-from cfepy.status import UsageError
+from cfepy.status import UsageError, together
 
 _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
 

@@ -12,9 +12,8 @@ from cfepy.attachment import Attachment
 from cfepy.ground import Dictionary, MessageDecoder, dictionary_of
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen, TopicMessage, TopicWatch
 from cfepy.msg import Command, get_fcn_code
-from cfepy.reading.joined_errors import together
 from cfepy.sb import SoftwareBus
-from cfepy.status import UsageError
+from cfepy.status import UsageError, together
 from cfepy.units import NS_PER_S
 
 

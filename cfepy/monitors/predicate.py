@@ -16,9 +16,9 @@ from typing import Any
 
 from cfepy.interpreter.syntax_trees import parsed_input
 from cfepy.reading.input_limits import EXPRESSION_CHARACTERS, EXPRESSION_DEPTH
-from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked
 from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import together
 
 LATEST = "latest"
 MOST_SHOWN = 120  # maximum number of characters of a value in a text

@@ -14,10 +14,9 @@ from typing import Any
 
 from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import YAML_BYTES
-from cfepy.reading.joined_errors import together
 from cfepy.reading.plain_yaml import YamlError, constructed, opened
 from cfepy.reading.suggestions import expected
-from cfepy.status import UsageError
+from cfepy.status import UsageError, together
 from cfepy.units import TIME_UNITS
 
 MOST = (1 << 62) - 1  # the largest time in ns

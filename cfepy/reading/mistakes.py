@@ -10,9 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from typing import TypeVar
 
-from cfepy.reading.joined_errors import alone, together
 from cfepy.reading.marked_yaml import Marked
-from cfepy.status import UsageError
+from cfepy.status import UsageError, alone, together
 
 T = TypeVar("T")
 

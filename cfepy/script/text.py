@@ -19,7 +19,6 @@ from cfepy.mission import MissionSpec
 from cfepy.msg import Telemetry
 from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import LINE_FILE_BYTES
-from cfepy.reading.joined_errors import placed
 from cfepy.reading.mistakes import Mistakes, collected
 from cfepy.reading.suggestions import expected, listed
 from cfepy.script.conditions import (
@@ -33,7 +32,7 @@ from cfepy.script.conditions import (
     FileCondition,
     TelemetryCondition,
 )
-from cfepy.status import UsageError
+from cfepy.status import UsageError, placed
 from cfepy.units import NS_PER_S
 
 LONGEST_S = 1e9

@@ -7,9 +7,8 @@ from functools import wraps
 from inspect import signature
 from typing import ParamSpec, TypeVar
 
-from cfepy.reading.joined_errors import together
 from cfepy.reading.suggestions import expected
-from cfepy.status import UsageError
+from cfepy.status import UsageError, together
 
 P = ParamSpec("P")
 T = TypeVar("T")

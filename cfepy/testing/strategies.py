@@ -21,10 +21,9 @@ from cfepy.flight import SECONDS, array_of, build, library_near, library_of_clas
 from cfepy.ground import Dictionary, Topic, dictionary_of, table_type
 from cfepy.mission import read_mission
 from cfepy.msg import CMD_HEADER_SIZE, HIGHEST_VALID_MSG_ID, Cell, Command, Layout, Telemetry, command, telemetry
-from cfepy.reading.joined_errors import together
 from cfepy.reading.suggestions import expected
 from cfepy.schedules import Schedule
-from cfepy.status import UsageError
+from cfepy.status import UsageError, together
 
 if TYPE_CHECKING:
     from rospy_shim.types.msgs import Library

@@ -9,10 +9,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.mission import CppNodesError
-from cfepy.reading.joined_errors import alone, placed, together
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.reading.mistakes import FirstMistake, Mistakes, collected, each_of
-from cfepy.status import MOST_TOLD, UsageError
+from cfepy.status import MOST_TOLD, UsageError, alone, placed, together
 
 
 def marked(folder: Path, text: str) -> Marked:

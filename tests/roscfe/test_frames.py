@@ -74,7 +74,7 @@ def common(buffer: Any, target: str, source: str) -> str:
 
 
 def parent(buffer: Any, name: str, time: str) -> str:
-    cache = buffer._tree.caches.get(name)
+    cache = buffer._BufferCore__tree.caches.get(name)
     sample = None if cache is None else cache.sample(int(time))
     return f"{int(buffer._frameExists(name))} 0 " if sample is None else f"1 1 {sample[0]}"
 

@@ -7,10 +7,9 @@ from dataclasses import dataclass, field
 
 from cfepy.mission import ARRAY, MOST_ITEMS, TEXT, CppNodesConfig, CppNodesError, MissionSections, mission_environment
 from cfepy.pilot import MissionProblem, problem_of
-from cfepy.reading.joined_errors import together
 from cfepy.reading.marked_yaml import Marked
 from cfepy.reading.suggestions import did_you_mean, listed
-from cfepy.status import UsageError
+from cfepy.status import UsageError, together
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 from rospy_shim.types.msgs.spec import BUILTINS, Field, Spec
 

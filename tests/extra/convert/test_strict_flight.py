@@ -147,7 +147,7 @@ def test_launch_file_is_built_with_the_options_of_the_command_line(
     assert main(["launch", launch, *said, "--for", "3", "--console", "--record", journal]) == 1
     assert "12 at most, 16 wanted" in capfd.readouterr().out
     assert main(["check", launch, "--cpp-nodes", "tight"]) == 2
-    assert "unknown mission" in capfd.readouterr().err
+    assert "unknown profile 'tight'; expected host, pool, strict" in capfd.readouterr().err
     (mission / "mission.yaml").unlink()
     monkeypatch.chdir(mission)
     assert main(["replay", journal]) == 1  # the same run, which has a problem

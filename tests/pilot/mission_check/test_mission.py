@@ -82,7 +82,7 @@ def test_invalid_line_is_reported(tmp_path: Path, line: str, said: str) -> None:
         ("results:\n  HK: count", "results.HK: unknown telemetry packet HK"),
         (
             "invariants:\n  a: {topic: /a, file: checks.py, function: Count}",
-            "checks.py has seen, Counts",
+            "checks.py has seen or Counts",
         ),
     ],
 )

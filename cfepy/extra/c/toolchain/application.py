@@ -230,8 +230,8 @@ class TableObject(NamedTuple):
 def _has(path: Path, data: bytes) -> bool:
     """Return whether a file exists and has these contents."""
     try:
-        return os.path.getsize(path) == len(data) and path.read_bytes() == data
-    except OSError:
+        return os.path.getsize(path) == len(data) and read_limited(path, max(len(data), 1)) == data
+    except (OSError, UsageError):
         return False
 
 
