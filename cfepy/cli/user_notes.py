@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from cfepy.status import UsageError
+from cfepy.reading.input_files import unwritable
 
 _LEFT_OUT = re.compile(r"node (/\S+) is left out: ")
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EIO)
@@ -34,9 +34,7 @@ def writing(file: str | Path, option: str) -> Iterator[None]:
         raise
     except OSError as error:
         discard_half_written(file, error)
-        folder = Path(file).parent
-        hint = f"; create the folder {folder} first" if error.errno == errno.ENOENT and not folder.exists() else ""
-        raise UsageError(f"cannot be written: {error.strerror}{hint}", file=file, field=option) from None
+        raise unwritable(file, error, option) from None
 
 
 def check_writable(file: str | Path, option: str) -> None:

@@ -36,6 +36,7 @@ from cfepy.journal.mission_files import CARRIED, MOST_FILES, Carrier, ReadFiles,
 from cfepy.journal.snapshots import MOST_LOOKS, look_at
 from cfepy.mission import Mission, outside
 from cfepy.pilot import Flown, RunPlan, fly
+from cfepy.reading.input_files import unwritable
 from cfepy.rtos import Policy
 from cfepy.status import UsageError
 
@@ -91,7 +92,7 @@ class JournalRecorder(Attachment):
         try:
             self._writer = FrameWriter(path)
         except OSError as error:
-            raise UsageError(f"cannot be written: {error.strerror}", file=path, field="--record") from None
+            raise unwritable(path, error, "--record") from None
 
     def __enter__(self) -> JournalRecorder:
         self._reading.__enter__()

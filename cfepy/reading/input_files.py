@@ -75,6 +75,20 @@ def unreadable(path: str | Path, error: OSError) -> UsageError:
     return UsageError(f"cannot be read: {error.strerror}{hint}", file=path)
 
 
+def unwritable(path: str | Path, error: OSError, option: str | None = None) -> UsageError:
+    """Return the error to raise about a file that cannot be written, with the folder to create if it is missing.
+
+    Args:
+        path: the file.
+        error: the error of the operating system.
+        option: the option that names the file; None if no option does.
+    """
+    folder = Path(path).parent
+    is_missing = error.errno == ENOENT and not folder.exists()
+    hint = f"; create the folder {folder} first" if is_missing else ""
+    return UsageError(f"cannot be written: {error.strerror or error}{hint}", file=path, field=option)
+
+
 def _names_near(path: Path) -> list[str]:
     try:
         return sorted(os.listdir(path.parent))

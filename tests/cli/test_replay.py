@@ -158,6 +158,12 @@ def test_what_is_no_journal(command: list[str], tmp_path: Path, capsys: pytest.C
     assert capsys.readouterr().err.startswith(f"cfepy: {command[1]}: ")
 
 
+def test_folder_of_a_new_journal_that_is_missing_is_named(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "missing"
+    assert main(["run", race(tmp_path), "--for", "1", "--record", str(folder / "run.journal")]) == 2
+    assert capsys.readouterr().err.endswith(f"; create the folder {folder} first\n")
+
+
 def test_a_full_disk_is_told_at_the_end(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", race(tmp_path), "--for", "1", "--quiet", "--record", "/dev/full"]) == 2
     assert "/dev/full: --record: cannot be written" in capsys.readouterr().err

@@ -17,7 +17,7 @@ from typing import Any, BinaryIO
 
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.interpreter.host_system import lock_file
-from cfepy.reading.input_files import open_input, unreadable
+from cfepy.reading.input_files import open_input, unreadable, unwritable
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 
@@ -89,7 +89,7 @@ class ResultsFile:
             )
             return os.fdopen(descriptor, "r+b")
         except OSError as error:
-            raise UsageError(f"cannot be written: {error.strerror}", file=self.path, field=OPTION) from None
+            raise unwritable(self.path, error, OPTION) from None
 
     def _lock(self) -> None:
         try:

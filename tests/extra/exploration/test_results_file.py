@@ -123,7 +123,9 @@ def test_results_are_readable_during_the_campaign(path: Path) -> None:
 def test_unusable_path_is_reported(tmp_path: Path) -> None:
     with pytest.raises(UsageError, match="cannot be written: Is a directory"):
         ResultsFile(tmp_path, IDENTITY)
-    with pytest.raises(UsageError, match="cannot be written: No such file or directory"):
+    with pytest.raises(
+        UsageError, match=r"cannot be written: No such file or directory; create the folder .*missing first"
+    ):
         ResultsFile(tmp_path / "missing" / "results", IDENTITY)
     with pytest.raises(UsageError, match="cannot be read: No such file or directory"):
         read_results(tmp_path / "results")

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from cfepy.ground import Dictionary, line_of, packet_of
 from cfepy.msg import CMD_HEADER_SIZE, get_header_size
+from cfepy.reading.input_files import unwritable
 from cfepy.script import LOOK_NS, OVER, Step, StepVerdict
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -78,7 +79,7 @@ class SavedScript:
         try:
             Path(file).write_text(self.text(end_ns), encoding="utf-8")
         except OSError as error:
-            raise UsageError(f"cannot be written: {error.strerror}", file=file) from None
+            raise unwritable(file, error) from None
 
     def text(self, end_ns: int) -> str:
         """Return the whole script, for a run that ends at a virtual time in ns."""
