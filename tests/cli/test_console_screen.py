@@ -33,7 +33,7 @@ def test_a_session_on_a_screen_of_120_columns() -> None:
         await type_keys(pilot, "run 1")
         await pilot.press("enter")
         await idle(screen, pilot)
-        assert text_of(screen, "status").startswith("lab  1.000 s  stands  sent 0")
+        assert text_of(screen, "status").startswith("lab  1.000 s  paused  sent 0")
         assert "CFE_ES_Main entering OPERATIONAL state" in text_of(screen, "log")
         assert "1.000 CFE_TIME 21 INFORMATION: Stop FLYWHEEL" in text_of(screen, "events")
 
@@ -77,7 +77,7 @@ def test_a_run_that_goes_on_is_paused_by_ctrl_c_and_the_screen_is_usable_at_60_c
             await pilot.pause(0.01)
         await pilot.press("ctrl+c")
         await idle(screen, pilot)
-        assert "stands" in text_of(screen, "status")
+        assert "paused" in text_of(screen, "status")
         assert {screen.query_one(f"#{name}").size.width for name in ("telemetry", "events", "log")} == {60}
         assert screen.query_one("#log").size.height >= 5
 

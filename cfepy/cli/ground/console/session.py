@@ -186,7 +186,7 @@ class ConsoleSession:
 
     def status(self) -> str:
         """Return one line: the time, the speed, and the numbers of packets sent and accepted."""
-        state = f"{self.speed:.1f} x real time" if self.moves else "over" if self.is_landed else "stands"
+        state = f"{self.speed:.1f} x real time" if self.moves else "over" if self.is_landed else "paused"
         accepted, refused = self.board.counters()
         time = f"{self.craft.script.scene.now_ns / NS_PER_S:.3f} s"
         name = visible_line(self.craft.name)
