@@ -5,145 +5,40 @@
     flight.expect_event("SAMPLE_APP", 2, within=1.0)
 
 Times are virtual, in seconds. Expectations check every 10 ms of virtual time, and look at everything since the test's
-last action. So several expectations after one command can be in any order. `RosSide` finds mistakes of the test in
-messages, parameters and service calls. `cfepy.mission.host_actions` then carries them out.
+last action. So several expectations after one command can be in any order.
 """
 
 from __future__ import annotations
 
 import atexit
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import WeakSet
 
 from cfepy.attachment import Attachment
 from cfepy.flight import expectations
 from cfepy.flight.expectations import Check, Text, Wanted
 from cfepy.flight.log import START, FlightLog, Packet
-from cfepy.flight.message_library import filled, serialized
 from cfepy.flight.run import ExpectationError, Run
-from cfepy.ground import DecodedEvent, Topic, library_of, table_type, topics_of
-from cfepy.mission import CALL, FILE, PACKET, PARAM, PUBLISH, HostCall, Mission, receivers
+from cfepy.ground import AbsentError, DecodedEvent, RosSide, table_type
+from cfepy.mission import FILE, PACKET, receivers
 from cfepy.msg import get_msg_id
 from cfepy.pilot import Flown, RunPlan, takeoff
-from cfepy.reading.suggestions import did_you_mean, listed
 from cfepy.rtos import Policy, Stopwatch
-from cfepy.script.conditions import seconds
-from cfepy.status import UsageError
 from cfepy.tbl import TableImage, build
 from cfepy.units import NS_PER_MS, NS_PER_S
 
-if TYPE_CHECKING:
-    from rospy_shim.runtime import RosRuntime
-
 __tracebackhide__ = True  # pytest then shows the line of the test
-MISSING = object()
-LIKE_IT = 3  # number of similar names to suggest
 LOOK_NS = 10 * NS_PER_MS
 WITHIN_S = 5.0
 LONGEST_BOOT_S = 60.0
 TABLE_FILE = "/ram/cfepy_test.tbl"
 VALID = re.compile("validation succ|assumed valid")
 """The event texts of CFE_TBL for an image that its owner accepted, or whose owner does not validate."""
-
-
-class RosSide:
-    """The ROS side of a mission, for its test.
-
-    Args:
-        mission: the mission; it may be reset.
-    """
-
-    def __init__(self, mission: Mission) -> None:
-        self._mission = mission
-
-    def _started(self) -> RosRuntime:
-        """Return the ROS side of the mission.
-
-        Raises:
-            ExpectationError: if there is none before the first node.
-        """
-        ros: RosRuntime | None = self._mission.ros
-        if ros is None:
-            raise ExpectationError(
-                "no ROS node has started yet; run the mission first, for instance with run_until_operational()"
-            )
-        return ros
-
-    # -- topics --------------------------------------------------------------------------------------------------------
-
-    def publish(self, name: str, message: Any, fields: Mapping[str, Any]) -> None:
-        """Publish a message on a topic; see `Flight.publish`."""
-        topic = self._topic(name)
-        route = self._mission.cfe.sb.routes.get(topic.msg_id)
-        if route is None or not route.active:
-            raise ExpectationError(f"{topic.name} has no subscriber at {seconds(self._mission.kernel.now)} s")
-        self._mission.outside.act(PUBLISH, topic.name, self._payload(topic, message, fields))
-
-    def _topic(self, name: str) -> Topic:
-        self._started()
-        known = {topic.name: topic for topic in topics_of(self._mission)}
-        full = name if name.startswith("/") else f"/{name}"
-        if full not in known:
-            raise ExpectationError(f"unknown topic {full} (so far); {near(full, known)}")
-        return known[full]
-
-    def _payload(self, topic: Topic, message: Any, fields: Mapping[str, Any]) -> bytes:
-        """Return the message in ROS serialization.
-
-        Raises:
-            UsageError: if it has another type, or no such field or value.
-        """
-        if message is None:
-            if not topic.type:
-                raise UsageError(f"the type of {topic.name} is unknown; give a message object")
-            message = filled(library_of(topic), topic.type, fields)
-        elif topic.type and getattr(message, "_type", None) != topic.type:
-            kind = getattr(message, "_type", type(message).__name__)
-            raise UsageError(f"{topic.name} has type {topic.type}, not {kind}")
-        return serialized(message)
-
-    # -- parameters ----------------------------------------------------------------------------------------------------
-
-    def param(self, name: str, default: Any) -> Any:
-        """Return the present value of a parameter; see `Flight.param`."""
-        tree = self._started().graph.params
-        found = tree.find(name)
-        if found is not tree.MISSING:
-            return found
-        if default is not MISSING:
-            return default
-        raise ExpectationError(f"unknown parameter {name}; {near(name, tree.names())}")
-
-    def set_param(self, name: str, value: Any) -> None:
-        """Set a parameter; see `Flight.set_param`."""
-        self._started()
-        self._mission.outside.act(PARAM, name, value)
-
-    # -- services ------------------------------------------------------------------------------------------------------
-
-    def call(self, name: str, request: Any, fields: Mapping[str, Any]) -> HostCall:
-        """Start a service call; the mission must run for the response to arrive."""
-        graph = self._started().graph
-        services = graph.services
-        full = name if name.startswith("/") else f"/{name}"
-        if full not in services:
-            raise ExpectationError(f"unknown service {full}; {near(full, sorted(services))}")
-        if request is None:
-            node, service_class = graph.caller(full)
-            request = filled(node.library, service_class._request_class._type, fields)
-        call: HostCall = self._mission.outside.act(CALL, full, serialized(request))
-        return call
-
-
-def near(name: str, known: Iterable[str]) -> str:
-    """Return a hint for an unknown name: similar names, or all."""
-    names = list(known)
-    return did_you_mean(name, names, f"there are {listed(names, 'and')}", most=LIKE_IT)
 
 
 class Flight(Run):
@@ -178,7 +73,7 @@ class Flight(Run):
         self._again = again
         self._wall_ns = 0
         self._here = START
-        self._ros = RosSide(self.mission)
+        self._ros = RosSide(self.mission, self.mission.outside.act)
         _OPEN.add(self)
 
     # -- time ----------------------------------------------------------------------------------------------------------
@@ -282,7 +177,7 @@ class Flight(Run):
             raise self._failure(f"{name} to answer", str(call.error))
         return call.response
 
-    def param(self, name: str, default: Any = MISSING) -> Any:
+    def param(self, name: str, default: Any = RosSide.MISSING) -> Any:
         """Return the present value of a ROS parameter.
 
         Args:
@@ -348,7 +243,7 @@ class Flight(Run):
         """Perform an action; give an error the text of a failure."""
         try:
             return act()
-        except ExpectationError as error:
+        except (AbsentError, ExpectationError) as error:
             raise self._failure(None, str(error)) from None
 
     # -- expecting -----------------------------------------------------------------------------------------------------

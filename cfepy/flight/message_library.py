@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import io
 import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cfepy.ground import unknown_field
-from cfepy.status import UsageError, together
+from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from rospy_shim.types.msgs import Library, MessageClass
@@ -71,40 +69,3 @@ def library_of_class(kind: MessageClass) -> Library:
     if full_text is None:
         raise UsageError(f"not a ROS message class: {kind!r}; give a class, or a type such as 'std_msgs/String'")
     return library_of(kind._type, full_text)
-
-
-def filled(library: Library, kind: str, fields: Mapping[str, Any]) -> Any:
-    """Return a message with fields from plain values; dictionaries are nested messages.
-
-    Args:
-        library: has the type.
-        kind: the type.
-        fields: values by name.
-
-    Raises:
-        UsageError: if there is no such field, or a value does not fit.
-    """
-    from rospy_shim.types.genpy.arguments import ArgumentFiller
-
-    message = library.message_class(kind)()
-    unknown = [unknown_field(kind, message.__slots__, name) for name in fields if name not in message.__slots__]
-    if unknown:
-        raise together(unknown)
-    try:
-        ArgumentFiller(library.message_class).fill_message_args(message, [dict(fields)])
-    except Exception as error:  # any error of genpy for values that do not fit
-        raise UsageError(f"invalid {kind}: {error}") from None
-    return message
-
-
-def serialized(message: Any) -> bytes:
-    """Return the bytes of a message of any implementation.
-
-    Raises:
-        UsageError: if it is not a message.
-    """
-    if not hasattr(message, "serialize"):
-        raise UsageError(f"not a ROS message: {message!r}; give a message, or its fields by name")
-    buffer = io.BytesIO()
-    message.serialize(buffer)
-    return buffer.getvalue()

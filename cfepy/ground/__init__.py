@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         with_player,
     )
     from cfepy.ground.recording import RecordingSummary, rewrite, summary_of
+    from cfepy.ground.ros_side import AbsentError, RosSide, near
     from cfepy.ground.series import Samples, Series, SeriesRecorder, SeriesSet, bag_series, candidates, packet_series
     from cfepy.ground.shown_packets import (
         APPLICATIONS,
@@ -63,6 +64,7 @@ __all__ = [
     "ROS",
     "TOO_SHORT",
     "TO_PORT",
+    "AbsentError",
     "BagReader",
     "CommandTrial",
     "Decoded",
@@ -75,6 +77,7 @@ __all__ = [
     "MidRow",
     "MissionGraph",
     "RecordingSummary",
+    "RosSide",
     "Samples",
     "Series",
     "SeriesRecorder",
@@ -109,6 +112,7 @@ __all__ = [
     "message_from_json",
     "names_in",
     "names_of",
+    "near",
     "number_of",
     "packet_json",
     "packet_of",
@@ -196,6 +200,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "rewrite",
                 "summary_of",
             ),
+            ".ros_side": ("AbsentError", "RosSide", "near"),
             ".series": (
                 "Samples",
                 "Series",

@@ -56,14 +56,29 @@ class PacketWatch(Attachment):
     Args:
         take: called with each packet before its subscribers get it; it runs inside the simulation, so it must not wait.
         wanted: returns whether it gets a MsgId.
+        unsent: whether it gets messages of nodes, too, that are not sent because their topic has no subscriber.
     """
 
-    def __init__(self, take: Callable[[Seen], object], wanted: Callable[[int], bool] = lambda msg_id: True) -> None:
+    def __init__(
+        self,
+        take: Callable[[Seen], object],
+        wanted: Callable[[int], bool] = lambda msg_id: True,
+        unsent: bool = False,
+    ) -> None:
         self._take = take
         self._wanted = wanted
+        self._unsent = unsent
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        return _watched(base, self._take, self._wanted)
+        watched = _watched(base, self._take, self._wanted)
+        return hearing(watched, self._take_unsent) if self._unsent else watched
+
+    def _take_unsent(self, link: Link, message: bytes) -> None:
+        from rospy_shim.types.transport import whole_header
+
+        if self._wanted(link.msg_id):
+            packet = message if link.topic is not None and link.topic.raw else whole_header(link.msg_id) + message
+            self._take(Seen(link.node.kernel.now, packet, link.node.config.app))
 
 
 def _watched(

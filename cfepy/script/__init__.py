@@ -7,10 +7,10 @@ the whole run are in `cfepy.monitors`. See docs/how_to/ground_tools.md for the l
 
 from __future__ import annotations
 
-from cfepy.script.conditions import APP_STATES, OPERATORS, Collected, Scene, Since
+from cfepy.script.conditions import APP_STATES, OPERATORS, Collected, RosAction, Scene, Since
 from cfepy.script.script_run import LOOK_NS, OVER, Outcome, ScriptRun, StepVerdict
 from cfepy.script.standing import TYPED, StandingScript
-from cfepy.script.text import RESET_TYPES, Step
+from cfepy.script.text import RESET_TYPES, ROS_STEPS, Step, without_when
 
 __all__ = [
     "APP_STATES",
@@ -18,13 +18,16 @@ __all__ = [
     "OPERATORS",
     "OVER",
     "RESET_TYPES",
+    "ROS_STEPS",
     "TYPED",
     "Collected",
     "Outcome",
+    "RosAction",
     "Scene",
     "ScriptRun",
     "Since",
     "StandingScript",
     "Step",
     "StepVerdict",
+    "without_when",
 ]

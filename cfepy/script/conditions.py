@@ -14,16 +14,19 @@ from typing import Any, NamedTuple, Protocol
 from cfepy.es import STATE_NAMES
 from cfepy.ground import (
     EVENT_IDS,
+    AbsentError,
     DecodedEvent,
     Dictionary,
+    RosSide,
     Topic,
     flat,
     number_of,
+    plain,
     text_of,
     topics_of,
     unknown_field,
 )
-from cfepy.mission import Mission, Seen, receivers
+from cfepy.mission import CALL, PUBLISH, HostCall, Mission, Seen, receivers
 from cfepy.msg import get_msg_id
 from cfepy.osal import FileNode
 from cfepy.status import CfeError, OsalError, UsageError
@@ -40,6 +43,23 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">=": operator.ge,
 }
 NEAR = 3  # maximum number of other findings in a description
+
+
+@dataclass(frozen=True, slots=True)
+class RosAction:
+    """An action of a step on the ROS side.
+
+    Attributes:
+        kind: PUBLISH, CALL or PARAM.
+        name: name of the topic, service or parameter.
+        value: the parameter's value, or the fields of the message by name.
+        text: the step without its time.
+    """
+
+    kind: str
+    name: str
+    value: Any
+    text: str
 
 
 class Since(NamedTuple):
@@ -86,6 +106,7 @@ class Scene:
 
     Attributes:
         mark_ns, since: time of a script's last action, and the position from which packets count after it.
+        call: the last service call; None before the first.
     """
 
     def __init__(self, mission: Mission | None, dictionary: Dictionary, packets: Collected) -> None:
@@ -93,6 +114,7 @@ class Scene:
         self.packets = packets
         self.mark_ns = 0
         self.since = Since(0, 0)
+        self.call: HostCall | None = None
         self._mission = mission
 
     @property
@@ -151,6 +173,40 @@ class Scene:
         """
         self.mission.cfe.sb.transmit_msg(packet, is_origination=False)
 
+    def perform(self, action: RosAction) -> str:
+        """Carry out an action on the ROS side; a service call goes on while the mission runs.
+
+        Returns:
+            The error; "" if there was none.
+        """
+        ros = self._ros
+        try:
+            if action.kind == PUBLISH:
+                ros.publish(action.name, None, action.value)
+            elif action.kind == CALL:
+                self.call = ros.call(action.name, None, action.value)
+            else:
+                ros.set_param(action.name, action.value)
+        except (AbsentError, CfeError, UsageError) as error:
+            return str(error)
+        return ""
+
+    def parameter(self, name: str) -> Any:
+        """Return the value of a ROS parameter.
+
+        Raises:
+            AbsentError: if it does not exist.
+        """
+        return self._ros.param(name)
+
+    @property
+    def _ros(self) -> RosSide:
+        return RosSide(self.mission, self.act)
+
+    def act(self, name: str, *values: Any) -> Any:
+        """Carry out a host action; see `cfepy.mission.host_actions`."""
+        return self.mission.outside.do(name, *values)
+
     def learn_topics(self) -> None:
         """Update the dictionary with the topics that the mission has now."""
         self.dictionary.learn(topics_of(self.mission))
@@ -171,6 +227,9 @@ class Condition(Protocol):
     def holds(self, scene: Scene, since: Since) -> bool:
         """Return whether the current mission meets it."""
 
+    def is_hopeless(self, scene: Scene) -> bool:
+        """Return whether it can no longer be met."""
+
     def instead(self, scene: Scene, since: Since) -> str:
         """Return a description of the actual state; for an unwanted condition, of the finding that met it."""
 
@@ -182,6 +241,9 @@ class StateCondition:
     msg_ids: frozenset[int] = frozenset()
 
     def met_by(self, scene: Scene, packet: Seen) -> bool:
+        return False
+
+    def is_hopeless(self, scene: Scene) -> bool:
         return False
 
 
@@ -274,10 +336,100 @@ class ConsoleCondition(StateCondition):
         return f'the last line was "{lines[-1]}"' if lines else "the console is empty"
 
 
+class Comparison(NamedTuple):
+    """`path sign value` of a field; texts are compared as text, numbers as numbers."""
+
+    path: str
+    sign: str
+    value: str
+
+    def holds(self, actual: Any) -> bool:
+        """Return whether a field's value is as wanted."""
+        if isinstance(actual, str | bytes):
+            return OPERATORS[self.sign](actual if isinstance(actual, str) else actual.hex(), self.value)
+        try:
+            return OPERATORS[self.sign](actual, number_of(self.value))
+        except ValueError:
+            return False
+
+    def __str__(self) -> str:
+        return f"{self.path} {self.sign} {self.value}"
+
+
+@dataclass(frozen=True)
+class CallCondition(StateCondition):
+    """The last service call has a response."""
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        return scene.call is not None and scene.call.response is not None
+
+    def is_hopeless(self, scene: Scene) -> bool:
+        return scene.call is not None and scene.call.error is not None
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        return str(scene.call.error) if scene.call is not None and scene.call.error is not None else "no response came"
+
+
+@dataclass(frozen=True)
+class ResponseCondition(StateCondition):
+    """The last response of a service has given values."""
+
+    comparisons: tuple[Comparison, ...]
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        values = self._values(scene)
+        return values is not None and all(
+            each.path in values and each.holds(values[each.path]) for each in self.comparisons
+        )
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        values = self._values(scene)
+        if values is None:
+            return "no service has responded"
+        missing = [each.path for each in self.comparisons if each.path not in values]
+        if missing:
+            return str(unknown_field("the response", values, missing[0]))
+        return ", ".join(f"{each.path} was {text_of(values[each.path])}" for each in self.comparisons)
+
+    def _values(self, scene: Scene) -> Mapping[str, Any] | None:
+        if scene.call is None or scene.call.response is None:
+            return None
+        return flat(plain(scene.call.response))
+
+
+@dataclass(frozen=True)
+class ParameterCondition(StateCondition):
+    """A ROS parameter exists, and has a given value.
+
+    Args:
+        name: its full name.
+        comparison: None for any value.
+    """
+
+    name: str
+    comparison: Comparison | None = None
+
+    def holds(self, scene: Scene, since: Since) -> bool:
+        try:
+            value = scene.parameter(self.name)
+        except AbsentError:
+            return False
+        return self.comparison is None or self.comparison.holds(value)
+
+    def instead(self, scene: Scene, since: Since) -> str:
+        try:
+            return f"it is {text_of(scene.parameter(self.name))}"
+        except AbsentError as error:
+            return str(error)
+
+
 class PacketCondition:
     """A condition that packets can meet."""
 
     lasts = False
+
+    def is_hopeless(self, scene: Scene) -> bool:
+        return False
 
     def holds(self, scene: Scene, since: Since) -> bool:
         return False
@@ -314,26 +466,6 @@ class EventCondition(PacketCondition):
         return f"no event of {self.app} was sent, only of {others}" if others else "no event was sent"
 
 
-class Comparison(NamedTuple):
-    """`path sign value` of a field; texts are compared as text, numbers as numbers."""
-
-    path: str
-    sign: str
-    value: str
-
-    def holds(self, actual: Any) -> bool:
-        """Return whether a field's value is as wanted."""
-        if isinstance(actual, str | bytes):
-            return OPERATORS[self.sign](actual if isinstance(actual, str) else actual.hex(), self.value)
-        try:
-            return OPERATORS[self.sign](actual, number_of(self.value))
-        except ValueError:
-            return False
-
-    def __str__(self) -> str:
-        return f"{self.path} {self.sign} {self.value}"
-
-
 @dataclass(frozen=True)
 class TelemetryCondition(PacketCondition):
     """A telemetry packet with given values.
@@ -347,6 +479,11 @@ class TelemetryCondition(PacketCondition):
     name: str
     msg_id: int
     comparisons: tuple[Comparison, ...] = ()
+
+    @property
+    def is_topic(self) -> bool:
+        """Whether the packet is a message of a topic."""
+        return self.name.startswith("/")
 
     @property
     def msg_ids(self) -> frozenset[int]:

@@ -18,7 +18,16 @@ from typing import Any
 from cfepy.ground import EVENT_IDS, DecodedEvent, dictionary_of
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen
 from cfepy.rtos import ENDLESS
-from cfepy.script.conditions import Collected, Condition, ResetCondition, Scene, Since, seen_text
+from cfepy.script.conditions import (
+    CallCondition,
+    Collected,
+    Condition,
+    ResetCondition,
+    Scene,
+    Since,
+    TelemetryCondition,
+    seen_text,
+)
 from cfepy.script.text import Script, Step, read_script
 from cfepy.units import NS_PER_MS, NS_PER_S
 
@@ -131,7 +140,7 @@ class Expectation:
                 event = DecodedEvent.of(packet)
                 self.event = (event.app, event.event_id)
             return StepVerdict.of(self._step, True, at_ns)
-        if is_due or is_over:
+        if is_due or is_over or self._condition.is_hopeless(scene):
             return StepVerdict.of(self._step, False, now_ns, self._condition.instead(scene, self._since))
         return None
 
@@ -193,8 +202,10 @@ class ScriptRun(PacketWatch):
         self._waiting: Expectation | None = None
         self._next = 0
         self._start_ns: int | None = None
-        wanted = {each for step in script.steps if step.condition is not None for each in step.condition.msg_ids}
-        super().__init__(self._packets.append, wanted.__contains__)
+        conditions = [step.condition for step in script.steps if step.condition is not None]
+        wanted = {each for condition in conditions for each in condition.msg_ids}
+        topics = any(isinstance(each, TelemetryCondition) and each.is_topic for each in conditions)
+        super().__init__(self._packets.append, wanted.__contains__, unsent=topics)
 
     @classmethod
     def read(cls, path: str | Path, spec: MissionSpec, stop_on_failure: bool = False) -> ScriptRun:
@@ -292,6 +303,9 @@ class ScriptRun(PacketWatch):
             if step.is_reset and verdict.ok:
                 self._wait_for(step, ResetCondition(len(self._scene.mission.record.resets)), self._scene.since)
                 return None
+            if step.is_call and verdict.ok:
+                self._wait_for(step, CallCondition(), self._scene.since)
+                return None
             self._settle(self._next, verdict)
         elif not step.must_not:
             self._wait_for(step, step.condition, self._scene.since)
@@ -309,8 +323,10 @@ class ScriptRun(PacketWatch):
         return Expectation(step, condition, since, step.deadline_ns(self._scene.mark_ns, self._now))
 
     def _act(self, step: Step) -> StepVerdict:
-        """Send the step's packet, if it has one."""
+        """Send the step's packet or carry out its action, if it has one."""
         detail = "" if step.packet is None else self._scene.send(step.packet, step.must_arrive)
+        if step.action is not None:
+            detail = self._scene.perform(step.action)
         return StepVerdict.of(step, not detail, self._now, detail)
 
     def _ask_guards(self) -> None:

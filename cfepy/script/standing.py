@@ -86,7 +86,7 @@ class StandingScript:
 
 def _check_for_a_computer_elsewhere(steps: tuple[Step, ...], file: str | Path) -> None:
     for step in steps:
-        if step.is_reset or (step.condition is not None and not step.condition.msg_ids):
+        if step.is_reset or step.action is not None or (step.condition is not None and not step.condition.msg_ids):
             text = (
                 f"{step.text!r}: a remote target can only be checked by its packets; "
                 "use send, expect event or expect tlm"

@@ -12,14 +12,15 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cfepy.ground import EVENT_TYPES, Dictionary, Topic, int_of, number_of, packet_of, topic_id, unknown_field
-from cfepy.mission import MissionSpec
+from cfepy.mission import CALL, PARAM, PUBLISH, MissionSpec
 from cfepy.msg import Telemetry
 from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.reading.mistakes import Mistakes, collected
+from cfepy.reading.plain_yaml import YamlError, plain_yaml
 from cfepy.reading.suggestions import expected, listed
 from cfepy.script.conditions import (
     APP_STATES,
@@ -30,6 +31,9 @@ from cfepy.script.conditions import (
     ConsoleCondition,
     EventCondition,
     FileCondition,
+    ParameterCondition,
+    ResponseCondition,
+    RosAction,
     TelemetryCondition,
 )
 from cfepy.status import UsageError, placed
@@ -99,6 +103,11 @@ class Words:
         word = self.peek()
         return self._words.pop(0).text if word.text in texts and not word.is_text else ""
 
+    @property
+    def is_at_limit(self) -> bool:
+        """Whether the line ends here, or its time limit begins."""
+        return self.peek().text in ("", "within", "until") and not self.peek().is_text
+
     def rest(self) -> list[str]:
         """Return the rest of the line."""
         words, self._words = self._words, []
@@ -118,6 +127,12 @@ def seconds_ns(text: str) -> int:
     if not 0 <= number <= LONGEST_S:
         raise UsageError(f"invalid number of seconds {text!r}; expected 0 to {LONGEST_S:g}")
     return round(number * NS_PER_S)
+
+
+def without_when(text: str) -> str:
+    """Return a step's text without its leading time."""
+    first, _, rest = text.partition(" ")
+    return rest.strip().partition(" ")[2].strip() if first in ("at", "after") else text
 
 
 def choice(text: str, choices: Iterable[str], what: str) -> str:
@@ -143,10 +158,11 @@ class Step:
     """One line of a script. Times in ns.
 
     `at_ns` is when it is to happen, `after_ns` how long after the step before; without both it happens at once. A step
-    sends a packet, or expects something (`condition`), or neither: "end". A packet with `must_arrive` fails when no
-    pipe subscribes to it; after one with `is_reset` the script waits for the reset. `within_ns` counts from the last
-    packet sent or time waited for, `until_ns` from the start of the run; without both, an expectation of a state is
-    checked at once, and an unwanted condition must not be met until the script ends.
+    sends a packet, or acts on the ROS side (`action`), or expects something (`condition`), or none of these: "end". A
+    packet with `must_arrive` fails when no pipe subscribes to it; after one with `is_reset` the script waits for the
+    reset, and after a service call for the response. `within_ns` counts from the last packet sent or time waited for,
+    `until_ns` from the start of the run; without both, an expectation of a state is checked at once, and an unwanted
+    condition must not be met until the script ends.
     """
 
     line: int
@@ -156,10 +172,16 @@ class Step:
     packet: bytes | None = None
     must_arrive: bool = False
     is_reset: bool = False
+    action: RosAction | None = None
     condition: Condition | None = None
     must_not: bool = False
     within_ns: int | None = None
     until_ns: int | None = None
+
+    @property
+    def is_call(self) -> bool:
+        """Whether it calls a service, and waits for the response."""
+        return self.action is not None and self.action.kind == CALL
 
     def deadline_ns(self, mark_ns: int, now_ns: int) -> int | None:
         """Return the latest time at which an expectation is decided, in virtual ns; None for the end of the script.
@@ -169,6 +191,8 @@ class Step:
             now_ns: when the expectation starts.
         """
         if self.is_reset:
+            return now_ns + DEFAULT_WITHIN_NS
+        if self.is_call and self.within_ns is self.until_ns is None:
             return now_ns + DEFAULT_WITHIN_NS
         if self.until_ns is not None:
             return self.until_ns
@@ -241,6 +265,9 @@ class _Reader:
         self._conditions: dict[str, Callable[[Words], Condition]] = {
             "event": _event,
             "tlm": self._telemetry,
+            "topic": self._topic,
+            "response": lambda words: ResponseCondition(_comparisons(words)),
+            "param": _parameter,
             "app": _app,
             "file": _file,
             "console": lambda words: ConsoleCondition(words.take("the text")),
@@ -251,8 +278,9 @@ class _Reader:
         at_ns, after_ns = self._when(words)
         packet: bytes | None = None
         condition: Condition | None = None
+        action: RosAction | None = None
         must_arrive = is_reset = must_not = False
-        verb = choice(words.take("a step such as send or expect"), ["send", "expect", "reset", "end"], "step")
+        verb = choice(words.take("a step such as send or expect"), STEPS, "step")
         if verb == "send":
             must_arrive = words.peek().text != "raw"
             packet = self._packet(words)
@@ -260,16 +288,18 @@ class _Reader:
             must_arrive = is_reset = True
             kind = choice(words.take("the kind of reset"), RESET_TYPES, "kind of reset")
             packet = self._command("CFE_ES_RESTART", [f"RestartType={RESET_TYPES[kind]}"])
+        elif verb in ROS_STEPS:
+            action = RosAction(*ROS_STEPS[verb](words), without_when(words.source))
         elif verb == "expect":
             must_not = bool(words.take_if("no"))
             what = choice(words.take("a condition such as event or tlm"), self._conditions, "condition")
             condition = self._conditions[what](words)
         within_ns = until_ns = None
-        if condition is not None:
+        if condition is not None or verb == "call":
             within_ns, until_ns = _limits(words)
         if words:
             raise UsageError(f"unexpected {words.peek().text!r} after the end of the step")
-        doing = (packet, must_arrive, is_reset)
+        doing = (packet, must_arrive, is_reset, action)
         step = Step(line, words.source, at_ns, after_ns, *doing, condition, must_not, within_ns, until_ns)
         self._pass_time(step)
         return step
@@ -319,11 +349,11 @@ class _Reader:
             self._dictionary.add([declared])
         else:
             declared = self._dictionary.telemetry_of(name)
-        comparisons = []
-        while words.peek().text not in ("", "within", "until"):
-            comparisons.append(_comparison(words, declared))
-            words.take_if("and")
-        return TelemetryCondition(declared.name, declared.msg_id, tuple(comparisons))
+        return TelemetryCondition(declared.name, declared.msg_id, _comparisons(words, declared))
+
+    def _topic(self, words: Words) -> Condition:
+        _check_ros_name(words.peek().text, "topic")
+        return self._telemetry(words)
 
 
 def _limits(words: Words) -> tuple[int | None, int | None]:
@@ -346,14 +376,14 @@ def _event(words: Words) -> Condition:
         event_type = EVENT_TYPES[kind]
     if words.peek().is_text:
         text = words.take("the text")
-    elif words.peek().text not in ("", "within", "until"):
+    elif not words.is_at_limit:
         choice(words.peek().text, EVENT_TYPES, "type of event")
     return EventCondition(None if app == ANY else app, event_id, event_type, text)
 
 
 def _app(words: Words) -> Condition:
     name = words.take("the application's name")
-    if words.peek().text in ("", "within", "until"):
+    if words.is_at_limit:
         return AppCondition(name)
     return AppCondition(name, choice(words.take("the state"), APP_STATES, "application state"))
 
@@ -373,7 +403,87 @@ def _file(words: Words) -> Condition:
     return FileCondition(path, sign, int(size))
 
 
-def _comparison(words: Words, declared: Telemetry | Topic) -> Comparison:
+def _parameter(words: Words) -> Condition:
+    name = words.take("the parameter's name")
+    _check_ros_name(name, "parameter")
+    sign = words.take_if(*OPERATORS)
+    return ParameterCondition(name, Comparison(name, sign, words.take("the value")) if sign else None)
+
+
+def _check_ros_name(name: str, kind: str) -> None:
+    if not name.startswith("/"):
+        raise UsageError(f'invalid {kind} name {name!r}; it must begin with "/"')
+
+
+def _publish(words: Words) -> tuple[str, str, Any]:
+    name = words.take("the topic's name")
+    _check_ros_name(name, "topic")
+    return PUBLISH, name, _ros_fields(words.rest())
+
+
+def _call(words: Words) -> tuple[str, str, Any]:
+    name = words.take("the service's name")
+    _check_ros_name(name, "service")
+    given = []
+    while not words.is_at_limit:
+        given.append(words.take("a field"))
+    return CALL, name, _ros_fields(given)
+
+
+def _set(words: Words) -> tuple[str, str, Any]:
+    name = words.take("the parameter's name")
+    _check_ros_name(name, "parameter")
+    return PARAM, name, _yaml(words.take("the value"), name)
+
+
+ROS_STEPS: dict[str, Callable[[Words], tuple[str, str, Any]]] = {"publish": _publish, "call": _call, "set": _set}
+STEPS = ("send", "expect", "reset", *ROS_STEPS, "end")
+
+
+def _ros_fields(given: list[str]) -> dict[str, Any]:
+    """Return the fields of a message by name.
+
+    Args:
+        given: assignments such as `linear.x=0.5`, whose values are YAML, or one YAML mapping.
+    """
+    if len(given) == 1 and given[0].lstrip().startswith("{"):
+        found = _yaml(given[0], None)
+        assert isinstance(found, dict)  # YAML that begins with a brace is a mapping
+        return {str(name): value for name, value in found.items()}
+    fields: dict[str, Any] = {}
+    for each in given:
+        path, equals, value = each.partition("=")
+        if not equals or not path:
+            raise UsageError(f'invalid field {each!r}; write FIELD=VALUE, or one YAML mapping such as "{{x: 1}}"')
+        *outer, last = path.split(".")
+        inner = fields
+        for name in outer:
+            inner = inner.setdefault(name, {})
+            if not isinstance(inner, dict):
+                raise UsageError(f"{name} has a value already; give its fields or its value", field=path)
+        if last in inner:
+            raise UsageError("given twice", field=path)
+        inner[last] = _yaml(value, path)
+    return fields
+
+
+def _yaml(text: str, field: str | None) -> Any:
+    try:
+        return plain_yaml(text)
+    except YamlError as error:
+        raise UsageError(f"invalid value {text!r}: {error.text}", field=field) from None
+
+
+def _comparisons(words: Words, declared: Telemetry | Topic | None = None) -> tuple[Comparison, ...]:
+    """Return comparisons up to the end of the line or its time limit; without a declaration, any field is allowed."""
+    found = []
+    while not words.is_at_limit:
+        found.append(_comparison(words, declared))
+        words.take_if("and")
+    return tuple(found)
+
+
+def _comparison(words: Words, declared: Telemetry | Topic | None) -> Comparison:
     path = words.take("the field")
     cells = {cell.path: cell for cell in declared.payload.cells()} if isinstance(declared, Telemetry) else {}
     if isinstance(declared, Telemetry) and path not in cells:

@@ -14,6 +14,7 @@ from cfepy.cli.main import main
 from cfepy.evs.packets import LONG_EVENT
 from cfepy.msg import get_fcn_code, get_msg_id, telemetry
 from tests.cli.conftest import Write
+from tests.script.rover import write_rover
 
 EVENT = bytes(
     telemetry(0x0808, LONG_EVENT.pack(PacketID={"AppName": "APP", "EventID": 3, "EventType": 2}, Message="all is well"))
@@ -87,7 +88,7 @@ def test_what_is_wrong_is_told_and_the_session_goes_on(console: Console) -> None
         "unknown telemetry packet NO_SUCH",
         "cannot be read: No such file or directory",
         "invalid factor 'x'",
-        "invalid condition 'bus'; expected event, tlm, app, file or console",
+        "invalid condition 'bus'; expected event, tlm, topic, response, param, app, file or console",
         "ValU: unknown field of SAMPLE_APP_DISPLAY_PARAM; did you mean ValU32? (expected ValU32, ValI16 or ValStr); "
         "ValI16: must be an integer, not 'x'",
     ):
@@ -131,6 +132,20 @@ def test_a_journal_has_what_was_typed(
     assert trace_of(capsys.readouterr().out) == trace_of(output)
     assert main(["replay", str(journal), "--info"]) == 0
     assert "-" not in capsys.readouterr().out.partition("goes to:")[2].splitlines()[0]
+
+
+def test_ros_steps_are_in_the_journal_and_in_the_saved_script(
+    console: Console, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mission, journal, script = write_rover(tmp_path), str(tmp_path / "run.journal"), str(tmp_path / "session.txt")
+    lines = "run 1\npublish /cmd_vel linear.x=0.5\nexpect topic /moved linear.x == 0.5\nset /speed 7\nrun 1\n"
+    lines += 'call /enable data=true\nrun 1\nexpect response message == "enabled at 7"\n'
+    status, output = console(mission, "--record", journal, "--save-script", script, lines=lines)
+    assert status == 0, output
+    assert main(["replay", journal, "--quiet"]) == 0
+    assert trace_of(capsys.readouterr().out) == trace_of(output)
+    assert main(["run", mission, "--script", script, "--quiet"]) == 0
+    assert trace_of(capsys.readouterr().out) == trace_of(output)
 
 
 def test_a_paced_session_is_repeated_by_its_script(

@@ -44,7 +44,7 @@ def completer() -> Completer:
         ("SAMPLE_APP_DISPLAY_PARAM ValU32=1 V", ["ValI16=", "ValStr="]),
         ("CFE_EVS_SET_EVENT_FORMAT_MODE MsgFormat=", ["MsgFormat=SHORT", "MsgFormat=LONG"]),
         ("expect tlm CFE_ES_HK_TLM ResetType == PO", ["POWERON"]),
-        ("expect ", ["event", "tlm", "app", "console", "file", "no"]),
+        ("expect ", ["event", "tlm", "topic", "response", "param", "app", "console", "file", "no"]),
         ("expect no ev", ["event"]),
         ("until event * ER", ["ERROR"]),
         ("expect tlm CFE_ES_HK", ["CFE_ES_HK_TLM"]),

@@ -11,12 +11,13 @@ from cfepy.cli.ground.console.pages import ALL, HK
 from cfepy.cli.ground.console.session import MAXIMUM, TIMES, VERBS, ConsoleSession
 from cfepy.ground import EVENT_TYPES, Dictionary
 from cfepy.msg import Command, Layout, Telemetry
-from cfepy.script import APP_STATES, OPERATORS, RESET_TYPES
+from cfepy.script import APP_STATES, OPERATORS, RESET_TYPES, ROS_STEPS
 from cfepy.status import UsageError
 from cfepy.writing.escapes import visible_line
 
 _INDEX = re.compile(r"\[\d+\]$")
-THINGS = ("event", "tlm", "app", "console", "file", "no")
+THINGS = ("event", "tlm", "topic", "response", "param", "app", "console", "file", "no")
+ROS_THINGS = {"topic": "publish", "param": "set"}
 TRUTH = ("true", "false")
 
 
@@ -77,6 +78,8 @@ class Completer:
             return self._things(rest)
         if verb == "send":
             return self._fields(rest, last) if rest else self._commands()
+        if verb in ROS_STEPS:
+            return [] if rest else [Candidate(name) for name in self._ros_names(verb)]
         if verb in self._session.words or verb in VERBS:
             return self._arguments(verb, last)
         return self._fields(before, last)
@@ -109,6 +112,16 @@ class Completer:
         scene = self._session.craft.script.scene
         return [app.name for app in scene.mission.cfe.es.apps] if scene.has_mission else []
 
+    def _ros_names(self, step: str) -> list[str]:
+        """Return the topics, services or parameters that a step of this kind can name now."""
+        scene = self._session.craft.script.scene
+        ros = scene.mission.ros if scene.has_mission else None
+        if ros is None:
+            return []
+        if step == "set":
+            return sorted(ros.graph.params.names())
+        return sorted(ros.graph.topics if step == "publish" else ros.graph.services)
+
     def _fields(self, words: list[str], last: str) -> Iterable[Candidate]:
         try:
             command = self._dictionary.command(words[0])
@@ -128,6 +141,8 @@ class Completer:
         thing, words = rest[0], rest[1:]
         if thing == "tlm":
             return self._comparison(words)
+        if thing in ROS_THINGS and not words:
+            return [Candidate(name) for name in self._ros_names(ROS_THINGS[thing])]
         if len(words) == 0:
             return [Candidate(name) for name in ("*", *self._apps())] if thing in ("event", "app") else []
         following = {"event": EVENT_TYPES, "app": APP_STATES}.get(thing, ())

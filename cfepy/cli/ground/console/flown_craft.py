@@ -16,14 +16,14 @@ from cfepy.ground import Dictionary
 from cfepy.journal import JournalRecorder
 from cfepy.mission import PACKET, Mission, MissionSpec, PacketWatch, Seen
 from cfepy.pilot import Course, Flown, LiveRun, RunPlan, takeoff
-from cfepy.script import Collected, Scene, StandingScript
+from cfepy.script import Collected, RosAction, Scene, StandingScript
 
 MOST_PACKETS = 50_000
 """How many recent packets an expectation can look at."""
 
 
 class CraftScene(Scene):
-    """A scene of a mission in this process. Packets are sent as outside events, so that a journal records them."""
+    """A scene of a mission in this process. Packets and actions are outside events, so that a journal records them."""
 
     def __init__(self, mission: Mission, dictionary: Dictionary, packets: Collected, saved: SavedScript) -> None:
         super().__init__(mission, dictionary, packets)
@@ -33,6 +33,13 @@ class CraftScene(Scene):
         outside = self.mission.outside
         self._saved.sent(packet, max(0, outside.until_ns))
         outside.act(PACKET, packet)
+
+    def perform(self, action: RosAction) -> str:
+        self._saved.acted(action, max(0, self.mission.outside.until_ns))
+        return super().perform(action)
+
+    def act(self, name: str, *values: Any) -> Any:
+        return self.mission.outside.act(name, *values)
 
 
 class StandingCourse(Course):
@@ -128,10 +135,11 @@ class FlownCraft:
         journal = self._journal
         with self._open as opening:
             opening.enter_context(self._host)
+            observers = [PacketWatch(self._sent, unsent=True), *self._attachments]
             flight = takeoff(
                 self._plan,
                 spec=self._spec,
-                attachments=[PacketWatch(self._sent), *self._attachments, *([] if journal is None else [journal])],
+                attachments=observers if journal is None else [*observers, journal],
                 console=self._host.console,
                 policy=None if journal is None else journal.policy,
                 make_course=StandingCourse,

@@ -14,7 +14,7 @@ from pathlib import Path
 from cfepy.ground import Dictionary, line_of, packet_of
 from cfepy.msg import CMD_HEADER_SIZE, get_header_size
 from cfepy.reading.input_files import unwritable
-from cfepy.script import LOOK_NS, OVER, Step, StepVerdict
+from cfepy.script import LOOK_NS, OVER, RosAction, Step, StepVerdict, without_when
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 
@@ -61,6 +61,10 @@ class SavedScript:
     def sent(self, packet: bytes, at_ns: int) -> None:
         """Note a packet that was sent at a virtual time in ns."""
         self._noted.append(Noted(at_ns, at_ns, f"send {self._words(packet)}"))
+
+    def acted(self, action: RosAction, at_ns: int) -> None:
+        """Note an action on the ROS side at a virtual time in ns."""
+        self._noted.append(Noted(at_ns, at_ns, action.text))
 
     def expected(self, step: Step, verdict: StepVerdict, began_ns: int, done_ns: int) -> None:
         """Note an expectation and its verdict, with the virtual times in ns at which it began and was decided."""
@@ -151,9 +155,3 @@ def when_of(step: Step, before_ns: int) -> int:
     if step.at_ns is not None:
         return max(step.at_ns, before_ns)
     return before_ns + (step.after_ns or 0)
-
-
-def without_when(text: str) -> str:
-    """Return a step's text without its leading time."""
-    first, _, rest = text.partition(" ")
-    return rest.strip().partition(" ")[2].strip() if first in ("at", "after") else text

@@ -21,14 +21,14 @@ from cfepy.msg import MsgType, get_type
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.rtos import ENDLESS, Stopwatch
-from cfepy.script import OVER, TYPED, StandingScript, Step, StepVerdict
+from cfepy.script import OVER, ROS_STEPS, TYPED, StandingScript, Step, StepVerdict
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible, visible_line
 
 T = TypeVar("T")
 
-VERBS = ("send", "expect", "reset")
+VERBS = ("send", "expect", "reset", *ROS_STEPS)
 TIMES = ("at", "after", "end")
 EVENT, CONSOLE, TYPED_LINE, REPLY, GOOD, BAD = "event", "console", "typed", "reply", "good", "bad"
 LOOKING = ("page", "events", "save", "help", "quit")
