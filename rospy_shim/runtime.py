@@ -368,6 +368,7 @@ class RosRuntime:
             topic.definition,
             topic.latched,
             topic.unsent,
+            tuple(topic.mistyped),
         )
 
 

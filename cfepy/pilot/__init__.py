@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from cfepy.pilot.problems import RunProblem, failures_of, is_reported, problems_of, problems_so_far
     from cfepy.pilot.results import ENDED, NOT_STARTED, AppResult, Results, TopicResult, mark, never_happened
     from cfepy.pilot.run_loop import BOOT_S, DEFAULT_S, STALLED, SUDDEN, Course
+    from cfepy.pilot.unconnected_topics import loose_ends
 
 __all__ = [
     "BOOT_S",
@@ -55,6 +56,7 @@ __all__ = [
     "failures_of",
     "fly",
     "is_reported",
+    "loose_ends",
     "mark",
     "never_happened",
     "no_such_app",
@@ -82,6 +84,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "Failure",
                 "FailureKind",
             ),
+            ".unconnected_topics": ("loose_ends",),
             ".never_judged": (
                 "SentNames",
                 "no_such_app",

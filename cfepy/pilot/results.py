@@ -193,8 +193,8 @@ class Results:
     each viewer and each topic, and `beside` one for each mission that flew together with it. `script_problems` are the
     entries of the startup script that could not be started. `endless_waits` has a line for each task that no task can
     wake any more. `missed_steps` are the failed steps of the script. `never_judged` are the rules of the mission file
-    without input. `missed_moves` are the moves of the schedule that were not possible. `why_tasks` is why tasks are
-    threads by default although greenlets are installed.
+    without input. `loose_ends` are topics that connect to nothing. `missed_moves` are the moves of the schedule that
+    were not possible. `why_tasks` is why tasks are threads by default although greenlets are installed.
     """
 
     mission: str
@@ -227,6 +227,7 @@ class Results:
     missed_moves: list[str]
     missed_steps: list[str]
     never_judged: list[str]
+    loose_ends: list[str]
     invariants: list[InvariantResult]
     problems: list[str]
 
@@ -274,6 +275,7 @@ class Results:
             endless_waits=[wait.text for wait in at.endless.alone],
             missed_moves=_missed_moves(mission),
             never_judged=_never_judged(mission),
+            loose_ends=_loose_ends(mission),
             missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[each.text for each in problems],
@@ -306,6 +308,15 @@ def _never_judged(mission: Mission) -> list[str]:
     from cfepy.pilot.never_judged import never_judged
 
     return never_judged(mission)
+
+
+def _loose_ends(mission: Mission) -> list[str]:
+    """Return the topics that connect to nothing; only a mission with nodes loads the code for it."""
+    if not mission.processor.topics() and not mission.record.topics:
+        return []
+    from cfepy.pilot.unconnected_topics import loose_ends
+
+    return loose_ends(mission)
 
 
 def _never_happened(rows: list[dict[str, Any]], missed_moves: list[str]) -> list[str]:

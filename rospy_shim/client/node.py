@@ -189,6 +189,7 @@ class Node:
         topic = self.graph.topic(name)
         if topic.join(data_class):
             return topic
+        topic.mistyped.append((self.names.name, data_class._type))
         self.logs.logerr(
             "[%s] has the type %s [%s] for topic %s, which is %s [%s] on the graph: not connected",
             self.names.name,

@@ -41,7 +41,7 @@ class TopicRow(NamedTuple):
     `dropped` counts long messages that lost a segment in a full pipe; the bus itself counts the other losses.
     `held_back` counts messages that waited for the board's publishing rate. `definition` is the type's full text.
     `latched` counts messages that were given to one new subscriber alone. `unsent` is true if there were messages
-    without a subscriber.
+    without a subscriber. `mistyped` has the nodes that are not connected because they have another type, and that type.
     """
 
     name: str
@@ -54,6 +54,7 @@ class TopicRow(NamedTuple):
     definition: str = ""
     latched: int = 0
     unsent: bool = False
+    mistyped: tuple[tuple[str, str], ...] = ()
 
 
 class TopicEntry:
@@ -73,6 +74,7 @@ class TopicEntry:
         self.compiled_subscribers: list[CompiledNode] = []
         self.publisher_names: list[str] = []  # all publishers so far, for the tables
         self.subscriber_names: list[str] = []
+        self.mistyped: list[tuple[str, str]] = []  # nodes that are not connected, with their type
         self.header: Header | None = None  # of the only publisher; None if a message must be looked up in `notes`
         self._shared = False  # there were two publishers at a time; packets of one that left may still wait in pipes
         self.latching = False

@@ -160,7 +160,7 @@ def _nothing() -> None:
 
 def _explain(flown: Flown, longer: str) -> None:
     results, mission = flown.results, flown.mission
-    tell((*told_problems(flown), *results.never_happened))
+    tell((*told_problems(flown), *results.never_happened, *results.loose_ends))
     if results.script_problems:
         script = mission.spec.script
         tell([f'the console output shows the reason; "cfepy check {script}" checks the mission without running it'])

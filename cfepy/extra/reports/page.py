@@ -225,8 +225,8 @@ def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> st
 
 
 def _silent(results: Results) -> str:
-    """List the checks of the mission file for which the run had no data; empty if there are none."""
-    items = "".join(element("li", escaped(text)) for text in results.never_judged)
+    """List the checks of the mission file without data, and the topics that connect to nothing; empty without any."""
+    items = "".join(element("li", escaped(text)) for text in (*results.never_judged, *results.loose_ends))
     return element("ul", items, class_="silent") if items else ""
 
 
