@@ -369,6 +369,25 @@ def add_from_disk(parser: argparse.ArgumentParser) -> None:
 # -- files, begin and end ----------------------------------------------------------------------------------------------
 
 
+def add_action(
+    actions: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, example: str, status: str
+) -> argparse.ArgumentParser:
+    """Add an action of a command, such as `list` of `cfepy rostopic`, whose help is also its description.
+
+    Args:
+        actions: the actions of the command.
+        name: name of the action.
+        text: its help, without a capital letter and a full stop.
+        example: a command line without `cfepy`.
+        status: its exit statuses.
+
+    Returns:
+        The parser of the action.
+    """
+    description = f"{text[0].upper()}{text[1:]}."
+    return actions.add_parser(name, help=text, description=description, examples=(f"cfepy {example}",), epilog=status)
+
+
 def add_json(parser: Options, what: str) -> None:
     """Add the option for a command's findings in JSON; see `cfepy.cli.json_output`.
 

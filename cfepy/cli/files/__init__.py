@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.options import MISSION_HELP, add_json, add_mission, add_output, add_perfetto
+from cfepy.cli.options import MISSION_HELP, add_action, add_json, add_mission, add_output, add_perfetto
 
 TBL_STATUS = "exit status: 0 well, 1 differences or faults were found, 2 bad usage or an unreadable file"
 
@@ -50,13 +50,7 @@ def _add_tbl(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
 def _add_action(
     actions: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, example: str
 ) -> argparse.ArgumentParser:
-    action = actions.add_parser(
-        name,
-        help=text,
-        description=f"{text[0].upper()}{text[1:]}.",
-        examples=(f"cfepy tbl {name} {example}",),
-        epilog=TBL_STATUS,
-    )
+    action = add_action(actions, name, text, f"tbl {name} {example}", TBL_STATUS)
     add_mission(action, "--mission", help=f"take the tables' layouts from this mission: {MISSION_HELP}")
     action.add_argument("--layout", metavar="FILE.yaml", help="take a table's layout from a YAML file that has one")
     action.set_defaults(module="cfepy.cli.files.tbl")

@@ -12,6 +12,7 @@ from cfepy.cli.flight_options import add_flight
 from cfepy.cli.options import (
     MISSION_HELP,
     STATUS_HELP,
+    add_action,
     add_count,
     add_json,
     add_mission,
@@ -141,13 +142,7 @@ def _flown(
     actions: _Actions[argparse.ArgumentParser], name: str, text: str, example: str, source_help: str = _SOURCE_HELP
 ) -> argparse.ArgumentParser:
     """Add an action that reads from a mission, which the command runs."""
-    action = actions.add_parser(
-        name,
-        help=text,
-        description=f"{text[0].upper()}{text[1:]}.",
-        examples=(f"cfepy {example}",),
-        epilog=_TOPIC_STATUS,
-    )
+    action = add_action(actions, name, text, example, _TOPIC_STATUS)
     metavar = "SOURCE" if source_help == _SOURCE_HELP else "MISSION"
     add_mission(action, "source", metavar=metavar, help=source_help)
     add_run_options(action)
@@ -275,6 +270,4 @@ def _add_param_files(actions: _Actions[argparse.ArgumentParser]) -> None:
 def _add_param_action(
     actions: _Actions[argparse.ArgumentParser], name: str, text: str, example: str
 ) -> argparse.ArgumentParser:
-    description = f"{text[0].upper()}{text[1:]}."
-    examples = (f"cfepy rosparam {example}",)
-    return actions.add_parser(name, help=text, description=description, examples=examples, epilog=_PARAM_STATUS)
+    return add_action(actions, name, text, f"rosparam {example}", _PARAM_STATUS)

@@ -12,6 +12,7 @@ from typing import Any
 
 from cfepy.cli.options import (
     MISSION_HELP,
+    add_action,
     add_count,
     add_drawing,
     add_json,
@@ -78,9 +79,7 @@ def _tool(
 def _action(
     actions: _Actions[argparse.ArgumentParser], name: str, text: str, example: str, status: str = _STATUS
 ) -> argparse.ArgumentParser:
-    action = actions.add_parser(
-        name, help=text, description=f"{text[0].upper()}{text[1:]}.", examples=(f"cfepy {example}",), epilog=status
-    )
+    action = add_action(actions, name, text, example, status)
     action.set_defaults(handed=[])
     return action
 
