@@ -62,7 +62,7 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="FILE|seed:N",
         help="check a fault plan against the mission, too, which flies for 3 virtual seconds for that",
     )
-    add_json(check, "what was found")
+    add_json(check, "the mistakes and notes")
     check.set_defaults(module="cfepy.cli.run.check")
 
 

@@ -104,7 +104,7 @@ def _table(root: Marked, find: Find, mistakes: Mistakes) -> TableContents:
     after = mistakes.attempt(partial(_hex, said.get("after"))) or b""
     wants_mark = mistakes.attempt(partial(_wants_mark, said))
     if mistakes.errors and not ("table" in said and {"data", "rows"} & said.keys()):
-        raise mistakes.errors.pop()  # what is missing may have a misspelt key
+        raise mistakes.errors.pop()  # a missing key is perhaps the misspelt one, which has its error already
     if "table" not in said:
         raise root.fail("missing table; write `table: APP.Table`")
     name = said["table"].text()

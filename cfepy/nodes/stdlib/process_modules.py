@@ -4,7 +4,7 @@ The kernel collects garbage at fixed virtual times. If a node could enable autom
 at times that depend on the host. Settings of the whole process are stored for the node that made them, and have no
 effect.
 
-`psutil` reports the load of the simulated processor: processor times are those of the kernel's tasks. All other numbers
+`psutil` reports the load of the simulated processor, from the CPU times of the kernel's tasks. All other numbers
 describe an idle computer: free memory, no traffic on disks and networks, no sensors. A node has `psutil` whether or not
 it is installed on the host.
 """
