@@ -105,4 +105,14 @@ def each_of(reads: Iterable[Callable[[], T]]) -> list[T]:
     Raises:
         UsageError: all their mistakes together.
     """
-    return collected(lambda mistakes: [mistakes.attempt(read) for read in reads])  # type: ignore[misc]  # or it raises
+
+    def collect(mistakes: Mistakes) -> list[T]:
+        found: list[T] = []
+        for read in reads:
+            try:
+                found.append(read())
+            except UsageError as error:
+                mistakes.add(error)
+        return found
+
+    return collected(collect)
