@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from cfepy.cli.main import main
 from tests.extra.c.building import compile_c, needs_compiler, write_mission
 
@@ -29,7 +31,7 @@ SOURCE = """
 """
 
 
-def test_calls_fail_and_messages_are_lost(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
+def test_calls_fail_and_messages_are_lost(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     compile_c(tmp_path, "TEST", SOURCE)
     folder = write_mission(tmp_path, "TEST")
     plan = tmp_path / "plan.yaml"

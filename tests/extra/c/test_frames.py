@@ -42,7 +42,9 @@ RACE = """
 
 
 @pytest.mark.slow
-def test_lost_update_is_found_and_its_timeline_shows_lines_of_c(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
+def test_lost_update_is_found_and_its_timeline_shows_lines_of_c(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     compile_c(tmp_path, "TEST", RACE)
     folder = write_mission(tmp_path, "TEST")
     assert main(["explore", folder, "--for", "2", "--seeds", "30"]) == 1
@@ -52,7 +54,7 @@ def test_lost_update_is_found_and_its_timeline_shows_lines_of_c(tmp_path: Path, 
     assert "PREEMPTED by ADDER" in shown
 
 
-def test_deadlock_is_reported_with_the_waiting_lines_of_c(tmp_path: Path, capsys) -> None:  # type: ignore[no-untyped-def]
+def test_deadlock_is_reported_with_the_waiting_lines_of_c(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     compile_c(
         tmp_path,
         "TEST",
