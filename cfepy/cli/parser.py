@@ -94,6 +94,17 @@ def hand_options_to_nodes(parser: argparse.ArgumentParser, is_node: Callable[[st
         parser.is_for_nodes = is_node
 
 
+def add_example(parser: argparse.ArgumentParser, example: str) -> None:
+    """Add an example to the help of a command, such as one with the options of an add-on.
+
+    Args:
+        parser: parser of the command.
+        example: the whole command line.
+    """
+    if isinstance(parser, CommandParser):
+        parser.examples = (*parser.examples, example)
+
+
 class CommandParser(argparse.ArgumentParser):
     """The parser of a command: options may stand between its words, which argparse does not support.
 

@@ -34,7 +34,7 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         help="repeat the run of a journal, also step by step",
         description="Repeat a run that `cfepy run --record FILE` wrote down, in virtual time and without network, "
         "and compare.",
-        examples=("cfepy replay run.cfepy", "cfepy replay run.cfepy --break /joint_states --pdb ARM_CONTROL"),
+        examples=("cfepy replay run.cfepy", "cfepy replay run.cfepy --info"),
         epilog=_REPLAY_STATUS,
     )
     replay.add_argument("journal", metavar="FILE", help="the journal")

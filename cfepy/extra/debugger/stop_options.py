@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import argparse
 
+from cfepy.cli.parser import add_example
+
 
 def add_stops(replay: argparse.ArgumentParser) -> None:
     """Add the options to the command replay."""
+    add_example(replay, "cfepy replay run.cfepy --break /joint_states --pdb ARM_CONTROL")
     replay.add_argument(
         "--break",
         dest="stops",
