@@ -46,6 +46,7 @@ NEEDS = {
     "extra/reports/test_board_fit.py": "c",
     "extra/viewers/rosbridge/test_applications.py": "ros_host",
     "extra/viewers/rosbridge/test_endurance.py": "ros_host",
+    "extra/viewers/rosbridge/test_entering.py": "ros_host",
     "extra/viewers/rosbridge/test_session.py": "ros_host",
     "extra/viewers/rosbridge/test_strangers.py": "ros_host",
     "extra/viewers/test_bounds.py": "ros_host",
