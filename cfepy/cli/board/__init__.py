@@ -13,6 +13,7 @@ from cfepy.cli.options import add_json, seconds_of
 from cfepy.plugins import Hook
 
 FASTEST_CPU_HZ = 1e11
+_NEW = "board new mine.yaml --cpu-hz 120e6 --round-trip 8us --short 6us --long 20us"
 ACTIONS: Hook[Callable[[Any], None]] = Hook("board_actions")
 """Functions that add actions to the command board."""
 
@@ -23,7 +24,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         "board",
         help="list boards, show whether a mission fits, write a profile",
         description="List boards, report the needs of a mission, or write the profile of your own board.",
-        examples=("cfepy board list", "cfepy board report capture --board rx64m"),
+        examples=("cfepy board list", f"cfepy {_NEW}"),
     )
     actions = board.add_subparsers(metavar="ACTION", required=True)
     boards = actions.add_parser(
@@ -44,7 +45,7 @@ def _add_new(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> No
     new = actions.add_parser(
         "new",
         help="write a profile from three measurements",
-        examples=("cfepy board new mine.yaml --cpu-hz 120e6 --round-trip 8us --short 6us --long 20us",),
+        examples=(f"cfepy {_NEW}",),
         description="Write a profile of a board, whose costs follow from three times that were measured on it; "
         "docs/reference/board_profiles.md explains it.",
     )
