@@ -109,7 +109,7 @@ class RosSide:
     def _started(self) -> RosRuntime:
         ros: RosRuntime | None = self._mission.ros
         if ros is None:
-            raise AbsentError("no ROS node has started yet; let the mission run before")
+            raise AbsentError("no ROS node has started yet; let the mission run first")
         return ros
 
     def _topic(self, name: str) -> Topic:
