@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from cfepy.attachment import Attachment
+from cfepy.cli.flying_progress import FlyingProgress
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
 from cfepy.cli.user_notes import tell, tell_briefly
@@ -133,7 +134,7 @@ def _fly(
     policy = plan.schedule.policy()
     if policy is not None and plan.schedule.is_told:
         policy = watched(policy)
-    flown = fly(plan, attachments=attachments, policy=policy, trace=trace)
+    flown = fly(plan, attachments=attachments, policy=policy, trace=trace, host=FlyingProgress())
     return LookedAt(flown, plan.command_line(), plan.schedule.text(), plan=plan)
 
 
@@ -154,7 +155,7 @@ def _replay(
         again = Replay(journal, stage, until_ns=until_ns)
         if again.policy is not None and journal.plan.schedule.is_told:
             again.policy = watched(again.policy)
-        flown = again.fly(attachments, trace=trace)
+        flown = again.fly(attachments, trace=trace, host=FlyingProgress())
     verdict = again.verdict
     warnings: tuple[str, ...] = ()
     if not verdict.same:

@@ -13,7 +13,7 @@ from cfepy.ground.bag import BagRecorder, RunRecorder, storage
 from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.events import EVENT_IDS, DecodedEvent
 from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
-from cfepy.ground.mcap_writer import McapWriter
+from cfepy.ground.mcap_writer import McapWriter, mcap_library
 from cfepy.mission import Mission, Seen, TopicMessage, matches
 from cfepy.msg import Command, Telemetry, get_header_version
 from cfepy.status import CfeError, UsageError
@@ -42,17 +42,14 @@ class McapRecorder(RunRecorder):
     """
 
     def __init__(self, file: str, patterns: Sequence[str] = (), command: str = "") -> None:
+        mcap_library()  # before an existing file is overwritten
         super().__init__(self._take_topic, file, patterns)
         self._channels: dict[object, int] = {}
         self._dictionary = Dictionary()
         self._flushed_ns = 0
-        try:
-            self._writer = McapWriter(self._file)
-            if command:
-                self._writer.metadata("cfepy", {"command": command})
-        except UsageError:
-            self._file.close()
-            raise
+        self._writer = McapWriter(self._file)
+        if command:
+            self._writer.metadata("cfepy", {"command": command})
 
     def _finish(self) -> None:
         self._writer.finish()

@@ -32,7 +32,7 @@ class McapWriter:
     """
 
     def __init__(self, file: BinaryIO, compression: str = "none") -> None:
-        library = _library()
+        library = mcap_library()
         kind = library.CompressionType[compression.upper()]
         try:
             self._writer: Any = library.Writer(file, CHUNK_BYTES, kind)
@@ -85,7 +85,12 @@ class McapWriter:
         self._writer.finish()
 
 
-def _library() -> ModuleType:
+def mcap_library() -> ModuleType:
+    """Return the library that writes MCAP files.
+
+    Raises:
+        UsageError: it is not installed.
+    """
     try:
         from mcap import writer
     except ImportError:

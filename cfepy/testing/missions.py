@@ -8,7 +8,8 @@ the command that repeats the test to the report of a failed test.
 from __future__ import annotations
 
 import os
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,7 @@ from cfepy.status import UsageError
 from cfepy.testing.hypothesis_tests import ExampleTests
 from cfepy.testing.keywords import suggests_keywords
 from cfepy.writing.escapes import visible
+from cfepy.writing.work_progress import progress_lines
 
 if TYPE_CHECKING:
     from cfepy.testing.journals import FlightJournals
@@ -59,6 +61,30 @@ class Conditions:
     attachments: Sequence[Attachment] = ()
     plans: list[RunPlan] = field(default_factory=list)
     recorded: list[NotingPolicy] = field(default_factory=list)
+
+
+@contextmanager
+def reported_progress(config: pytest.Config) -> Iterator[None]:
+    """Write a line every five seconds of long work, also while pytest captures the output; a context manager.
+
+    A process of pytest-xdist has no report and writes nothing.
+
+    Args:
+        config: pytest's configuration.
+    """
+    reporter = config.pluginmanager.get_plugin("terminalreporter")
+    capture = config.pluginmanager.get_plugin("capturemanager")
+    if reporter is None or capture is None:
+        yield
+        return
+
+    def write(line: str) -> None:
+        with capture.global_and_fixture_disabled():
+            reporter.ensure_newline()
+            reporter.write_line(line)
+
+    with progress_lines(write):
+        yield
 
 
 def leave_out_own_lines(failure: pytest.ExceptionInfo[BaseException]) -> None:

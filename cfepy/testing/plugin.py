@@ -8,6 +8,7 @@ PYTEST_DONT_REWRITE: it is loaded by its entry point or by name, and pytest warn
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import pytest
@@ -70,18 +71,19 @@ def _add(config: pytest.Config, name: str, plugin: type) -> None:
 
 
 @pytest.fixture(scope="session")
-def mission(request: pytest.FixtureRequest) -> Missions:
+def mission(request: pytest.FixtureRequest) -> Iterator[Missions]:
     """Boot missions: `flight = mission("capture", seed=1)`, by folder, launch file or shipped name.
 
     A relative path starts at the folder of the test's file. The flight ends with the test, or with the fixture that
     made it. Give board=, seed=, schedule=, tasks=, faults=, args= (of a launch file) or attachments= as needed.
     docs/how_to/testing.md has examples.
     """
-    from cfepy.testing.missions import Missions
+    from cfepy.testing.missions import Missions, reported_progress
 
     found = request.config.pluginmanager.get_plugin("cfepy-missions")
     if found is None:
         found = Missions(request.config, CURRENT)
         request.config.pluginmanager.register(found, "cfepy-missions")
     assert isinstance(found, Missions)
-    return found
+    with reported_progress(request.config):
+        yield found

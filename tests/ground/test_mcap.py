@@ -124,7 +124,13 @@ def test_full_disk_is_reported_at_the_end(tmp_path: Path) -> None:
         fly(tmp_path, SCRIPTS, str(tmp_path / "run.mcap"))
 
 
-def test_missing_mcap_library_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_missing_mcap_library_is_reported_before_the_file_is_touched(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setitem(sys.modules, "mcap", None)
-    with pytest.raises(UsageError, match="pip install 'cfepy\\[mcap\\]'"):
-        McapRecorder(str(tmp_path / "run.mcap"))
+    (tmp_path / "old.mcap").write_bytes(b"an old recording")
+    for name in ("old.mcap", "new.mcap"):
+        with pytest.raises(UsageError, match="pip install 'cfepy\\[mcap\\]'"):
+            McapRecorder(str(tmp_path / name))
+    assert [each.name for each in tmp_path.iterdir()] == ["old.mcap"]
+    assert (tmp_path / "old.mcap").read_bytes() == b"an old recording"

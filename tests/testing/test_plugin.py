@@ -57,6 +57,24 @@ def test_failed_expectation_reports_the_actual_values(suite: Suite) -> None:
     )
 
 
+def test_long_work_writes_a_line_into_the_report(suite: Suite) -> None:
+    result = suite(
+        """
+        from cfepy.units import NS_PER_S
+        from cfepy.writing.work_progress import WorkProgress
+
+        def test_it(mission):
+            times = iter([4, 5, 9, 10, 11])
+            progress = WorkProgress(lambda: next(times) * NS_PER_S)
+            for number in range(5):
+                progress.show(f"compiling {number} of 5")
+        """
+    )
+    result.assert_outcomes(passed=1)
+    shown = [line for line in result.stdout.lines if "compiling" in line]
+    assert shown == ["cfepy: compiling 1 of 5 (5 s so far)", "cfepy: compiling 3 of 5 (10 s so far)"]
+
+
 def test_a_failure_has_no_control_characters_of_messages(suite: Suite) -> None:
     act = "flight.publish('/jump', data=76)\n    flight.mission.console.write('[talker] \\x1b]0;title\\x07')"
     result = suite(WAITS.format(act=act))

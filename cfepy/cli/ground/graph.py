@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from cfepy.attachment import Attachment
+from cfepy.cli.flying_progress import FlyingProgress
 from cfepy.cli.json_output import check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.options import plan_of
@@ -110,7 +111,7 @@ def _survey_plan(arguments: argparse.Namespace) -> tuple[RunPlan, MissionSpec]:
 @contextmanager
 def _surveyed(plan: RunPlan, spec: MissionSpec, attachments: Sequence[Attachment] = ()) -> Iterator[Mission]:
     """Yield a mission that has flown for the time of the plan, and has not been shut down."""
-    with takeoff(plan, spec=spec, attachments=attachments) as run:
+    with takeoff(plan, spec=spec, attachments=attachments, host=FlyingProgress()) as run:
         tell_briefly(run.notes)
         run.run_until(run.course.until_ns)
         problems = [*run.problems(), *never_happened(run.mission), *loose_ends(run.mission)]

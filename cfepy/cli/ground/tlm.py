@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any, Protocol, TextIO
 
+from cfepy.cli.flying_progress import FlyingProgress
 from cfepy.cli.ground.command_target import RemoteHost, dictionary_for, host_of
 from cfepy.cli.json_output import json_lines, json_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
@@ -262,12 +263,13 @@ def _fly(plan: RunPlan, names: list[str], arguments: argparse.Namespace) -> int:
     wanted = {msg_id for name in names for msg_id in _msg_ids(spec, dictionary, name)}
     seen: list[Seen] = []
     watch = PacketWatch(seen.append, lambda msg_id: msg_id in wanted if wanted else msg_id & 0x1800 == 0x0800)
+    host = FlyingProgress()
     with (
         output_for(dictionary, arguments, is_live=False) as output,
-        takeoff(plan, spec=spec, attachments=[watch]) as run,
+        takeoff(plan, spec=spec, attachments=[watch], host=host) as run,
     ):
         tell_briefly(run.notes)
-        shown = _show_flight(run, seen, output, dictionary, arguments.count)
+        shown = _show_flight(run, host, seen, output, dictionary, arguments.count)
         problems, end_s = (
             [*run.problems(), *never_happened(run.mission)],
             run.mission.kernel.now / NS_PER_S,
@@ -284,13 +286,17 @@ def _msg_ids(spec: MissionSpec, dictionary: Dictionary, name: str) -> list[int]:
     return [topic_id(spec, name)] if name.startswith("/") else dictionary.telemetry_like(name)
 
 
-def _show_flight(run: LiveRun, seen: list[Seen], output: Output, dictionary: Dictionary, most: int | None) -> int:
+def _show_flight(
+    run: LiveRun, host: FlyingProgress, seen: list[Seen], output: Output, dictionary: Dictionary, most: int | None
+) -> int:
     """Show packets until there were enough or the time is over. Returns their number."""
     shown = 0
     while run.course.goes_on and shown != most:
         run.run_until(run.mission.kernel.now + PIECE_NS)
         dictionary.learn(topics_of(run.mission))
         packets = seen if most is None else seen[: most - shown]
+        if packets:
+            host.progress.clear()
         for each in packets:
             output.show(each.packet, each.at_ns)
         shown += len(packets)

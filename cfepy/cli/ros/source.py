@@ -8,6 +8,7 @@ from contextlib import ExitStack
 from types import TracebackType
 from typing import NamedTuple
 
+from cfepy.cli.flying_progress import FlyingProgress
 from cfepy.cli.options import refuse_run_options
 from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.cli.viewed_runs import flight_plan
@@ -85,6 +86,7 @@ class FlightSource:
         self._plan = plan
         self._spec = spec
         self._console = console
+        self._host = FlyingProgress()
         self._flight = ExitStack()
         self._run: LiveRun | None = None
 
@@ -98,12 +100,14 @@ class FlightSource:
         """Fly the mission, and yield the messages as they arrive; see `TopicWatch` for the patterns."""
         seen: list[TopicMessage] = []
         for _ in self._pieces([TopicWatch(seen.append, patterns)]):
+            if seen:
+                self._host.progress.clear()
             yield from seen
             seen.clear()
 
     def _pieces(self, watches: Sequence[TopicWatch] = ()) -> Iterator[None]:
         """Fly the mission in short steps."""
-        flight = takeoff(self._plan, spec=self._spec, attachments=watches, console=self._console)
+        flight = takeoff(self._plan, spec=self._spec, attachments=watches, console=self._console, host=self._host)
         self._run = run = self._flight.enter_context(flight)
         tell_briefly(run.notes)
         while run.course.goes_on:

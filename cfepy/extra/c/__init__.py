@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from cfepy.extra.c.abi import AbiProfile, abi_profile
     from cfepy.extra.c.api import function_names
     from cfepy.extra.c.build_cache import cache_folder, writing_cache
-    from cfepy.extra.c.elf import ElfError, read_shared_object
+    from cfepy.extra.c.elf import ElfError, check_elf_reader, read_shared_object
     from cfepy.extra.c.linking import wanted_names
     from cfepy.extra.c.loading import CompiledLoader
     from cfepy.extra.c.runtime import CRuntime
@@ -56,6 +56,7 @@ __all__ = [
     "build",
     "cache_folder",
     "call_bounded",
+    "check_elf_reader",
     "cpp_compiler",
     "end_bounded",
     "function_names",
@@ -73,7 +74,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".abi": ("AbiProfile", "abi_profile"),
             ".api": ("function_names",),
             ".build_cache": ("cache_folder", "writing_cache"),
-            ".elf": ("ElfError", "read_shared_object"),
+            ".elf": ("ElfError", "check_elf_reader", "read_shared_object"),
             ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),

@@ -127,17 +127,30 @@ class SharedObject:
         return max(each.address + each.memory_size for each in self.segments)
 
 
+def check_elf_reader() -> None:
+    """Check that object files can be read; call it before a build, which may take minutes.
+
+    Raises:
+        UsageError: pyelftools is not installed.
+    """
+    _elf_reader()
+
+
+def _elf_reader() -> Any:
+    try:
+        from elftools.elf.elffile import ELFFile
+    except ImportError:
+        raise UsageError("compiled applications require pyelftools: pip install 'cfepy[c]'") from None
+    return ELFFile
+
+
 def elf_file(stream: BytesIO) -> Any:
     """Return an ELF file as pyelftools reads it.
 
     Raises:
         UsageError: pyelftools is not installed.
     """
-    try:
-        from elftools.elf.elffile import ELFFile
-    except ImportError:
-        raise UsageError("compiled applications require pyelftools: pip install 'cfepy[c]'") from None
-    return ELFFile(stream)
+    return _elf_reader()(stream)
 
 
 def read_shared_object(data: bytes, name: str) -> SharedObject:

@@ -11,7 +11,7 @@ import hashlib
 import os
 import sys
 import tempfile
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from functools import cache
@@ -36,7 +36,9 @@ from cfepy.extra.convert.packages import Program
 from cfepy.mission import ARENA_BYTES
 from cfepy.reading.contained_files import write_contained
 from cfepy.reading.resources import shipped
+from cfepy.rtos import Stopwatch
 from cfepy.status import UsageError
+from cfepy.writing.work_progress import WorkProgress
 from rospy_shim.types.msgs import Library
 
 LANGUAGE = ("-std=c++17", "-fPIC", "-fvisibility=hidden", "-fno-gnu-unique", "-Wall")
@@ -232,7 +234,7 @@ class NodeBuild:
         warnings = made.with_suffix(".warnings")
         if not made.is_file():
             archive = built_core(self._options, self._real_boost, self._types, self.sources.contents)
-            told = compile_units(units)
+            told = compile_units(units, entry.name)
             _link([*(each.object for each in units), archive], made, link_flags(self._options.profile))
             with writing_cache(warnings.parent):
                 warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
@@ -319,7 +321,7 @@ def built_core(options: BuildOptions, real_boost: bool, library: Library, used: 
     archive = _folder() / f"libroscfe-{options.profile.value}-{_digest(key, identity())}.a"
     if not archive.is_file():
         print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
-        compile_units(units)
+        compile_units(units, "the interface library")
         with _scratch() as scratch:
             made = scratch / archive.name
             _call(["ar", "rcs", str(made), *(str(each.object) for each in units)])
@@ -392,8 +394,15 @@ class CompileUnit:
         return [*cpp_compiler(), *self.flags, *folders, *cfe, *maps, *watch, "-c", str(self.source), "-o", str(made)]
 
 
-def compile_units(units: Iterable[CompileUnit]) -> list[str]:
-    """Compile the sources whose object files are not in the cache, a few at once. Returns the compiler's warnings.
+def compile_units(units: Iterable[CompileUnit], name: str) -> list[str]:
+    """Compile the sources whose object files are not in the cache, a few at once.
+
+    Args:
+        units: the sources.
+        name: of the thing that they are part of, for the progress.
+
+    Returns:
+        The compiler's warnings.
 
     Raises:
         CompilerError: it refused one.
@@ -401,15 +410,18 @@ def compile_units(units: Iterable[CompileUnit]) -> list[str]:
     """
     missing = [each for each in units if not each.object.is_file()]
     warnings: list[str] = []
-    for at in range(0, len(missing), MOST_AT_ONCE):
-        group = missing[at : at + MOST_AT_ONCE]
-        with _scratch() as scratch:
-            running = [_Compiler(each, scratch / str(index)) for index, each in enumerate(group)]
-            try:
-                warnings += [each.finished() for each in running]
-            finally:
-                for each in running:
-                    each.end()
+    with WorkProgress(Stopwatch().elapsed_ns) as progress:
+        for at in range(0, len(missing), MOST_AT_ONCE):
+            group = missing[at : at + MOST_AT_ONCE]
+            with _scratch() as scratch:
+                running = [_Compiler(each, scratch / str(index)) for index, each in enumerate(group)]
+                try:
+                    for number, each in enumerate(running, at + 1):
+                        progress.show(f"compiling {name}: {number} of {len(missing)}, {each.source.name}")
+                        warnings.append(each.finished(progress.refresh))
+                finally:
+                    for each in running:
+                        each.end()
     return warnings
 
 
@@ -419,19 +431,23 @@ class _Compiler:
     Args:
         unit: the source.
         folder: folder for its output.
+
+    Attributes:
+        source: the source file.
     """
 
     def __init__(self, unit: CompileUnit, folder: Path) -> None:
         folder.mkdir()
+        self.source = unit.source
         self._unit = unit
         self._made = folder / "made.o"
         self._log = folder / "log"
         with self._log.open("wb") as log:
             self._process = start_bounded(unit.command(self._made), log.fileno())
 
-    def finished(self) -> str:
-        """Wait for it, and keep the object file. Returns its warnings."""
-        status = end_bounded(self._process)
+    def finished(self, while_waiting: Callable[[], object]) -> str:
+        """Wait for it, and keep the object file. `while_waiting` is called every few seconds. Returns its warnings."""
+        status = end_bounded(self._process, while_waiting)
         said = self._log.read_text(encoding="utf-8", errors="replace").rstrip()
         if status:
             raise CompilerError(said or f"{cpp_compiler()[0]} ended with {status}")

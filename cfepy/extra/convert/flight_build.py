@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from cfepy.extra.c import CompilerError
+from cfepy.extra.c import CompilerError, check_elf_reader
 from cfepy.extra.convert.build import BuildOptions, build_node, provided_packages
 from cfepy.extra.convert.capacities import capacities_of
 from cfepy.extra.convert.cpp_sources import collect, main_form
@@ -42,9 +42,10 @@ def build_for_flight(
         The shared object and its entry point.
 
     Raises:
-        UsageError: it cannot be built.
+        UsageError: it cannot be built, or pyelftools is not installed.
         CppNodesError: the section is wrong.
     """
+    check_elf_reader()  # the mission reads the built node
     config = config or CppNodesConfig()
     packages = Packages(node.near, node.env)
     package = read_package(node.folders[0], node.package)

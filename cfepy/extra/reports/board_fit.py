@@ -17,7 +17,7 @@ from cfepy.attachment import Attachment
 from cfepy.es import CFE_APP
 from cfepy.extra.c import ElfError, read_shared_object
 from cfepy.mission import Mission, MissionSpec, Processor, StackUse
-from cfepy.pilot import Results, RunPlan, fly
+from cfepy.pilot import Host, Results, RunPlan, fly
 from cfepy.psp import BoardProfile, load_profile
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
@@ -163,11 +163,12 @@ class BoardFit:
         return {**asdict(self), **named, "missing": self.missing, "cpu": self.cpu}
 
 
-def fit_of(plan: RunPlan) -> BoardFit:
+def fit_of(plan: RunPlan, host: Host | None = None) -> BoardFit:
     """Fly a mission and compute its requirements for its board.
 
     Args:
         plan: the run.
+        host: the host's side; None runs without a break.
 
     Returns:
         The requirements.
@@ -177,7 +178,7 @@ def fit_of(plan: RunPlan) -> BoardFit:
     """
     spec = plan.spec()
     ledger = BoardLedger()
-    flown = fly(plan, spec=spec, attachments=[ledger])
+    flown = fly(plan, spec=spec, attachments=[ledger], host=host)
     board = load_profile(plan.board or spec.board)
     config = flown.mission.config
     rows = sorted(((*key, sum(sizes)) for key, sizes in ledger.claims.items()), key=lambda row: (-row[2], row))

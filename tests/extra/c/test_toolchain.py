@@ -13,10 +13,12 @@ import pytest
 from cfepy.cli.main import main
 from cfepy.extra.c import Built, CompilerError, Options, TableFiles, build
 from cfepy.extra.c.elf import elf_file
+from cfepy.extra.c.toolchain import application
 from cfepy.extra.c.toolchain.compiler import compile_file
 from cfepy.extra.c.toolchain.source_files import find_sources, read_cmake_lists
 from cfepy.fs import read_table_file
 from cfepy.status import UsageError
+from cfepy.writing.work_progress import WorkProgress
 from tests.extra.c.building import console_of, fly, needs_compiler, needs_cpp, said, write_mission
 
 pytestmark = needs_compiler
@@ -64,6 +66,34 @@ def symbols(built: Built) -> dict[str, bool]:
 
 def sections(built: Built) -> set[str]:
     return {each.name for each in library(built).iter_sections()}  # type: ignore[attr-defined]
+
+
+# -- needs and progress ------------------------------------------------------------------------------------------------
+
+
+def test_missing_elf_reader_is_reported_before_anything_is_compiled(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write(app, {"fsw/tables/probe_tbl.c": TABLE})
+    monkeypatch.setitem(sys.modules, "elftools.elf.elffile", None)
+    monkeypatch.setattr(application, "compile_file", lambda *words: pytest.fail("a compiler was started"))
+    with pytest.raises(UsageError, match=r"pip install 'cfepy\[c\]'"):
+        build(app)
+
+
+def test_application_without_tables_is_built_without_the_elf_reader(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "elftools.elf.elffile", None)
+    assert build(app).library.is_file()
+
+
+def test_build_shows_each_source_and_its_number(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Shown(WorkProgress):
+        def show(self, text: str) -> None:
+            texts.append(text)
+
+    texts: list[str] = []
+    monkeypatch.setattr(application, "WorkProgress", Shown)
+    write(app, {"fsw/tables/probe_tbl.c": TABLE})
+    build(app)
+    assert texts == ["compiling probe: 1 of 2, probe.c", "compiling probe: 2 of 2, probe_tbl.c"]
 
 
 # -- sources -----------------------------------------------------------------------------------------------------------

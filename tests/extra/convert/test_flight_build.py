@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from cfepy.extra.convert.build import unique_symbols
 from cfepy.journal import read_journal, replay
 from cfepy.mission import read_mission
 from cfepy.pilot.plan import built_node
+from cfepy.writing.work_progress import WorkProgress
 from dev.convert.ping import ping_package
 
 pytestmark = pytest.mark.slow
@@ -31,6 +33,33 @@ def test_a_launch_file_is_flown(package: Path, capfd: pytest.CaptureFixture[str]
     shown = capfd.readouterr().out
     assert "heard 1 plain-beat-odd!" in shown
     assert "/pulse" in shown
+
+
+def test_missing_elf_reader_is_reported_before_anything_is_compiled(
+    package: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    def compile_nothing(*words: object) -> None:
+        raise AssertionError("a compiler was started")
+
+    monkeypatch.setitem(sys.modules, "elftools.elf.elffile", None)
+    monkeypatch.setattr(build, "start_bounded", compile_nothing)
+    monkeypatch.setenv("CFEPY_CACHE", str(package / "cache"))
+    assert main(["launch", "ping", "ping.launch", "--for", "1"]) != 0
+    assert "pip install 'cfepy[c]'" in capfd.readouterr().err
+
+
+def test_compiling_shows_the_source_and_its_number(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    class Shown(WorkProgress):
+        def show(self, text: str) -> None:
+            texts.append(text)
+
+    texts: list[str] = []
+    monkeypatch.setattr(build, "WorkProgress", Shown)
+    monkeypatch.setenv("CFEPY_CACHE", str(package / "cache"))
+    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
+    library = [each for each in texts if each.startswith("compiling the interface library: ")]
+    assert library[0].split(", ")[0] == f"compiling the interface library: 1 of {len(library)}"
+    assert "compiling left: 1 of 3, sender.cpp" in texts
 
 
 def test_standard_output_of_a_node_is_shown_with_its_name(package: Path, capfd: pytest.CaptureFixture[str]) -> None:

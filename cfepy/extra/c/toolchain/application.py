@@ -16,7 +16,7 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.extra.c.elf import MACHINES, elf_file
+from cfepy.extra.c.elf import MACHINES, check_elf_reader, elf_file
 from cfepy.extra.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
 from cfepy.extra.c.toolchain.headers import CfsTree, headers_folder, read_tree
 from cfepy.extra.c.toolchain.source_files import Sources, find_sources
@@ -24,9 +24,11 @@ from cfepy.reading.contained_files import write_contained
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
 from cfepy.reading.texts import from_bytes
+from cfepy.rtos import Stopwatch
 from cfepy.status import UsageError
 from cfepy.tbl import TableImage
 from cfepy.tbl import build as table_file
+from cfepy.writing.work_progress import WorkProgress
 
 WITHOUT_DEPRECATED = ("CFE_OMIT_DEPRECATED_6_8", "CFE_OMIT_DEPRECATED_6_7", "CFE_OMIT_DEPRECATED_6_6")
 WITHOUT_DEPRECATED_OSAL = "OSAL_OMIT_DEPRECATED"
@@ -111,8 +113,11 @@ def build(folder: str | Path, library: str | Path | None = None, options: Option
     sources = find_sources(Path(folder), options.definitions)
     built = Built(Path(library) if library is not None else sources.folder / f"{sources.name}.so")
     built.library.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix="cfepy-build-") as scratch:
-        _Builder(sources, options, Path(scratch), built).build()
+    with (
+        tempfile.TemporaryDirectory(prefix="cfepy-build-") as scratch,
+        WorkProgress(Stopwatch().elapsed_ns) as progress,
+    ):
+        _Builder(sources, options, Path(scratch), built, progress).build()
     return built
 
 
@@ -124,10 +129,13 @@ class _Builder:
         options: the build options.
         scratch: a folder for temporary files.
         built: gets the results.
+        progress: shows the source that is being compiled.
     """
 
-    def __init__(self, sources: Sources, options: Options, scratch: Path, built: Built) -> None:
+    def __init__(self, sources: Sources, options: Options, scratch: Path, built: Built, progress: WorkProgress) -> None:
         self._sources = sources
+        self._progress = progress
+        self._started = 0
         self._options = options
         self._scratch = scratch
         self._built = built
@@ -145,12 +153,18 @@ class _Builder:
 
     def build(self) -> None:
         """Build code and tables. Nothing is written before everything is compiled."""
+        if self._table_sources:
+            check_elf_reader()
         code = self._code()
-        tables = [] if self._options.tables is TableFiles.NONE else self._tables()
+        tables = self._tables()
         flags = [*(["--coverage"] if self._options.coverage else []), *self._options.flags]
         link(code, self._built.library, flags, with_cpp=any(is_cpp(each) for each in self._sources.code))
         for table in tables:
             self._write(table)
+
+    @property
+    def _table_sources(self) -> Sequence[Path]:
+        return () if self._options.tables is TableFiles.NONE else self._sources.tables
 
     def _write(self, table: TableObject) -> None:
         """Write a table file. One with other contents stays, because a mission may have its own."""
@@ -185,7 +199,7 @@ class _Builder:
 
     def _tables(self) -> list[TableObject]:
         found = []
-        for source in self._sources.tables:
+        for source in self._table_sources:
             made = self._scratch / f"table-{source.name}.o"
             names = [f'-DCFE_APP_NAME="{self._sources.name}"', f"-DCFE_TABLE_NAME={source.stem}", "-DCFE_CPU_NAME=cpu1"]
             self._compile(source, made, [*self._flags, *names, *self._options.flags])
@@ -197,8 +211,11 @@ class _Builder:
         return found
 
     def _compile(self, source: Path, made: Path, flags: Sequence[str]) -> Path:
+        self._started += 1
+        total = len(self._sources.code) + len(self._table_sources)
+        self._progress.show(f"compiling {self._sources.name}: {self._started} of {total}, {source.name}")
         try:
-            warnings = compile_file(source, made, flags)
+            warnings = compile_file(source, made, flags, self._progress.refresh)
         except CompilerError as error:
             hint = ""
             if self._sources.missing and "No such file" in str(error):

@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -38,13 +38,16 @@ def cpp_compiler() -> list[str]:
     return os.environ.get("CXX", "c++").split()
 
 
-def compile_file(source: Path, made: Path, flags: Sequence[str]) -> str:
+def compile_file(
+    source: Path, made: Path, flags: Sequence[str], while_waiting: Callable[[], object] = lambda: None
+) -> str:
     """Compile one file of C or C++ to an object file.
 
     Args:
         source: the file.
         made: the object file.
         flags: more flags.
+        while_waiting: called every few seconds.
 
     Returns:
         The compiler's warnings.
@@ -54,7 +57,7 @@ def compile_file(source: Path, made: Path, flags: Sequence[str]) -> str:
         UsageError: there is no compiler.
     """
     command = [*cpp_compiler(), *CPP_FLAGS] if is_cpp(source) else [*compiler(), *C_FLAGS]
-    return _call([*command, *COMMON, *flags, "-c", str(source), "-o", str(made)])
+    return _call([*command, *COMMON, *flags, "-c", str(source), "-o", str(made)], while_waiting)
 
 
 def link(objects: Sequence[Path], made: Path, flags: Sequence[str], *, with_cpp: bool) -> str:
@@ -97,11 +100,12 @@ def start_bounded(command: Sequence[str], output: int) -> subprocess.Popen[bytes
         raise UsageError(f"{command[0]} {text}, or set CC or CXX to another compiler") from None
 
 
-def end_bounded(process: subprocess.Popen[bytes]) -> int:
+def end_bounded(process: subprocess.Popen[bytes], while_waiting: Callable[[], object] = lambda: None) -> int:
     """Wait for the end of a compiler.
 
     Args:
         process: from `start_bounded`.
+        while_waiting: called every few seconds.
 
     Returns:
         Its exit status; less than 0 when a signal ended it.
@@ -114,6 +118,7 @@ def end_bounded(process: subprocess.Popen[bytes]) -> int:
         for _ in range(_MOST_LOOKS):
             with suppress(subprocess.TimeoutExpired):
                 return process.wait(_LOOK_S)
+            while_waiting()
             now = _family(process.pid)
             if now and now == before and all(state == _ASLEEP for state, _ in now.values()):
                 break
@@ -127,14 +132,18 @@ def end_bounded(process: subprocess.Popen[bytes]) -> int:
             process.wait()
 
 
-def call_bounded(command: Sequence[str]) -> tuple[int, str]:
+def call_bounded(command: Sequence[str], while_waiting: Callable[[], object] = lambda: None) -> tuple[int, str]:
     """Call a compiler with limits until it ends. It raises the errors of `start_bounded` and `end_bounded`.
+
+    Args:
+        command: its command.
+        while_waiting: called every few seconds.
 
     Returns:
         Its exit status, and its output.
     """
     with tempfile.TemporaryFile() as output:
-        status = end_bounded(start_bounded(command, output.fileno()))
+        status = end_bounded(start_bounded(command, output.fileno()), while_waiting)
         output.seek(0)
         return status, output.read(_MOST_SAID).decode("utf-8", "replace")
 
@@ -166,8 +175,8 @@ def _family(pid: int) -> dict[int, tuple[str, int]]:
     return {each: stats[each][1:] for each in found}
 
 
-def _call(command: list[str]) -> str:
-    status, said = call_bounded(command)
+def _call(command: list[str], while_waiting: Callable[[], object] = lambda: None) -> str:
+    status, said = call_bounded(command, while_waiting)
     if status:
         raise CompilerError(said.rstrip() or f"{command[0]} ended with {status}")
     return said.rstrip()

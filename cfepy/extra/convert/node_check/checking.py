@@ -17,7 +17,9 @@ from cfepy.extra.convert.node_check.program import ProgramSources, subscriptions
 from cfepy.extra.convert.packages import Program
 from cfepy.mission import CppNodesConfig
 from cfepy.reading.contained_files import write_contained
+from cfepy.rtos import Stopwatch
 from cfepy.status import UsageError
+from cfepy.writing.work_progress import WorkProgress
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 
 LONGEST_PACKET = 32768
@@ -81,12 +83,13 @@ def _compile(
     folders = [*program.includes, messages, *library_includes(real_boost), refusals]
     compiler = Compiler(report.profile, folders, program.definitions)
     accepted = True
-    for source in program.sources:
-        if source not in sources.files:
-            continue
-        compiled = compiler.compile(source, scratch)
-        accepted = accepted and compiled.ok
-        tell(report, source, compiled, partial(_shown, sources, source, (refusals, messages)))
+    known = [each for each in program.sources if each in sources.files]
+    with WorkProgress(Stopwatch().elapsed_ns) as progress:
+        for number, source in enumerate(known, 1):
+            progress.show(f"compiling {program.type}: {number} of {len(known)}, {source.name}")
+            compiled = compiler.compile(source, scratch, progress.refresh)
+            accepted = accepted and compiled.ok
+            tell(report, source, compiled, partial(_shown, sources, source, (refusals, messages)))
     if accepted and program.sources:
         _measure(report, compiler, sources, scratch)
 

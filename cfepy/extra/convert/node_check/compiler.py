@@ -81,19 +81,20 @@ class Compiler:
         self.command += [f"-D{each}" for each in definitions]
         self.command += [word for place in folders for word in ("-I", str(place))]
 
-    def compile(self, source: Path, scratch: Path) -> Compiled:
+    def compile(self, source: Path, scratch: Path, while_waiting: Callable[[], object] = lambda: None) -> Compiled:
         """Compile a file.
 
         Args:
             source: the file.
             scratch: folder for the list of files that it reads.
+            while_waiting: called every few seconds.
 
         Raises:
             UsageError: there is no such compiler.
         """
         listed = scratch / "used.d"
         listed.unlink(missing_ok=True)
-        status, said = _call([*self.command, "-MD", "-MF", str(listed), str(source)])
+        status, said = _call([*self.command, "-MD", "-MF", str(listed), str(source)], while_waiting)
         errors, problem = _diagnostics(said)
         if status < 0 or (status and not errors):
             problem = problem or f"the compiler ended with {status}"
@@ -158,10 +159,10 @@ def rule_of(message: str, profile: Profile) -> tuple[str, str]:
     return "compile-error", message
 
 
-def _call(command: list[str]) -> tuple[int, str]:
+def _call(command: list[str], while_waiting: Callable[[], object] = lambda: None) -> tuple[int, str]:
     """Call the compiler with limits. Returns its status and its output."""
     try:
-        return call_bounded(command)
+        return call_bounded(command, while_waiting)
     except CompilerError as error:
         return -1, str(error)
 

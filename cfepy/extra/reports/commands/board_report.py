@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
+from cfepy.cli.flying_progress import FlyingProgress
 from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import plan_of_mission
@@ -25,7 +26,7 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: the mission cannot boot, or there is no such board.
     """
     check_json(arguments)
-    fit = fit_of(plan_of_mission(arguments))
+    fit = fit_of(plan_of_mission(arguments), FlyingProgress())
     write_json(arguments, fit.to_dict())
     show_tables([_ram(fit), _pools(fit), _stacks(fit), _cpu(fit)], sys.stdout)
     print()
