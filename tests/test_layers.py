@@ -197,6 +197,7 @@ def is_imported_late(path: Path) -> bool:
 PRINT_PAST = {
     "cfepy.writing.escapes": "it is the place",
     "cfepy.writing.console": "lines of nodes have colours",
+    "cfepy.writing.work_progress": "it erases its line; the text is made visible there",
     "cfepy.cli.display": "lines of nodes have colours",
     "cfepy.cli.ros.node": "the node's lines have colours",
     "cfepy.cli.main": "settings of the stream itself",
