@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from cfepy.extra.c.api import function_names
     from cfepy.extra.c.build_cache import cache_folder, writing_cache
     from cfepy.extra.c.elf import ElfError, check_elf_reader, read_shared_object
+    from cfepy.extra.c.engine import GDB_SYMBOLS
     from cfepy.extra.c.linking import wanted_names
     from cfepy.extra.c.loading import CompiledLoader
     from cfepy.extra.c.runtime import CRuntime
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
+    "GDB_SYMBOLS",
     "AbiProfile",
     "Built",
     "CMakeBudget",
@@ -75,6 +77,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".api": ("function_names",),
             ".build_cache": ("cache_folder", "writing_cache"),
             ".elf": ("ElfError", "check_elf_reader", "read_shared_object"),
+            ".engine": ("GDB_SYMBOLS",),
             ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),

@@ -24,6 +24,8 @@ from cfepy.interpreter.host_system import is_absent
 from cfepy.status import UsageError
 
 SOURCES = Path(__file__).with_name("engine")
+GDB_SYMBOLS = Path(__file__).with_name("symbols.gdb")
+"""The script that gives gdb the symbols of objects as they are loaded."""
 MACHINES = ("x86_64", "aarch64")
 FLAGS = ("-O2", "-fPIC", "-shared", "-fvisibility=hidden", "-fno-strict-aliasing", "-pthread", "-std=gnu11")
 

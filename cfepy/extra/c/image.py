@@ -128,6 +128,7 @@ class Image:
             start = base + segment.address & -PAGE
             self._engine.protect(start, base + segment.address + segment.memory_size - start, segment.rights)
 
+        self._engine.loaded(source.name, source.data, base)
         if chosen:
             self._choose(chosen)
 

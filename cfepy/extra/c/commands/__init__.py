@@ -50,4 +50,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     build.add_argument(
         "--headers", action="store_true", help="print the folder of cfepy's headers, for an editor or another build"
     )
+    build.add_argument(
+        "--gdb-symbols", action="store_true", help="print the script that gives gdb the symbols of applications"
+    )
     build.set_defaults(module=f"{__name__}.build")

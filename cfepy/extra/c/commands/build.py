@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.user_notes import writing
-from cfepy.extra.c import Built, CompilerError, Options, TableFiles, build, headers_folder
+from cfepy.extra.c import GDB_SYMBOLS, Built, CompilerError, Options, TableFiles, build, headers_folder
 from cfepy.status import UsageError
 
 
@@ -23,8 +23,10 @@ def run(arguments: argparse.Namespace) -> int:
     """
     if arguments.headers:
         print(headers_folder())
+    if arguments.gdb_symbols:
+        print(GDB_SYMBOLS)
     if arguments.folder is None:
-        if arguments.headers:
+        if arguments.headers or arguments.gdb_symbols:
             return ENDED_WELL
         raise UsageError("missing folder: cfepy build FOLDER", field="FOLDER")
     try:

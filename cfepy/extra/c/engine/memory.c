@@ -58,6 +58,24 @@ HIDDEN PyObject *memory_protect(PyObject *module, PyObject *arguments)
     Py_RETURN_NONE;
 }
 
+/* A debugger stops here to read the file of a loaded object and to learn its address; see symbols.gdb. */
+__attribute__((visibility("default"), noinline)) void cfepy_image_loaded(const char *name, const void *file,
+                                                                          size_t size, unsigned long base)
+{
+    __asm__ volatile("" : : "r"(name), "r"(file), "r"(size), "r"(base) : "memory");
+}
+
+HIDDEN PyObject *memory_loaded(PyObject *module, PyObject *arguments)
+{
+    const char *name, *file;
+    Py_ssize_t size;
+    unsigned long long base;
+    if (!PyArg_ParseTuple(arguments, "sy#K", &name, &file, &size, &base))
+        return NULL;
+    cfepy_image_loaded(name, file, (size_t)size, (unsigned long)base);
+    Py_RETURN_NONE;
+}
+
 HIDDEN PyObject *memory_clear(PyObject *module, PyObject *arguments)
 {
     unsigned long long at, size;

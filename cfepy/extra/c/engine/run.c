@@ -461,7 +461,7 @@ static PyObject *address_of(PyObject *module, PyObject *object)
 HIDDEN PyObject *memory_map(PyObject *, PyObject *), *memory_unmap(PyObject *, PyObject *);
 HIDDEN PyObject *memory_protect(PyObject *, PyObject *), *memory_clear(PyObject *, PyObject *);
 HIDDEN PyObject *memory_ctype(PyObject *, PyObject *), *memory_make_stub(PyObject *, PyObject *);
-HIDDEN PyObject *memory_make_end(PyObject *, PyObject *);
+HIDDEN PyObject *memory_make_end(PyObject *, PyObject *), *memory_loaded(PyObject *, PyObject *);
 
 static PyObject *has_native(PyObject *module, PyObject *name)
 {
@@ -506,6 +506,7 @@ static PyMethodDef methods[] = {
     {"map", memory_map, METH_VARARGS, "map(address, size): zeros, readable and writable, exactly there"},
     {"unmap", memory_unmap, METH_VARARGS, "unmap(address, size)"},
     {"protect", memory_protect, METH_VARARGS, "protect(address, size, rights): 4 read, 2 write, 1 execute"},
+    {"loaded", memory_loaded, METH_VARARGS, "loaded(name, file, base): let a debugger see the object that is loaded there"},
     {"clear", memory_clear, METH_VARARGS, "clear(address, size): zeros again"},
     {"ctype", memory_ctype, METH_NOARGS, "ctype() -> the tables of <ctype.h>, as bytes from index -128 on"},
     {"make_stub", memory_make_stub, METH_VARARGS, "make_stub(address, number, thread_local=False) -> size: code there that calls a function"},
