@@ -23,7 +23,9 @@ SMALLEST_ARENA, LARGEST_ARENA = 4096, 1 << 30
 TEXT, ARRAY = 64, 16
 """The default capacities in the profile strict: characters of a text and items of an array."""
 MOST_ITEMS = (1 << 24) - 1
-_DEFAULTS = ("text", "array")
+FIELDS = ("profile", "arena_bytes", "capacities")
+DEFAULTS = ("text", "array")
+"""Capacities of fields that are not named."""
 
 
 class CppNodesError(UsageError):
@@ -61,7 +63,7 @@ def read_cpp_nodes(section: Marked, mistakes: Mistakes) -> CppNodesConfig:
     """
     said: dict[str, Any] = {}
     places: dict[str, Marked] = {}
-    for name, entry in mistakes.fields(section, ("profile", "arena_bytes", "capacities")):
+    for name, entry in mistakes.fields(section, FIELDS):
         if name == "profile":
             said[name] = mistakes.attempt(partial(_profile, entry))
         elif name == "arena_bytes":
@@ -83,7 +85,7 @@ def _read_capacities(section: Marked, places: dict[str, Marked], mistakes: Mista
     said: dict[str, Any] = {}
     capacities: dict[str, int] = {}
     for name, entry in mistakes.mapping(section).items():
-        if name in _DEFAULTS:
+        if name in DEFAULTS:
             said[name] = mistakes.attempt(partial(entry.integer, 1, MOST_ITEMS))
         elif name.count("/") != 1 or name.startswith("/") or name.endswith("/"):
             text = "is not a message type; write it with its package, such as `sensor_msgs/JointState: {position: 7}`"

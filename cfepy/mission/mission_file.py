@@ -110,7 +110,7 @@ def read_launches(section: Marked, mistakes: Mistakes) -> tuple[LaunchFile, ...]
 
 
 def _launch(item: Marked) -> LaunchFile:
-    fields = item.mapping(("file", "args")) if isinstance(item.value, dict) else {"file": item}
+    fields = item.mapping(LAUNCH_FIELDS) if isinstance(item.value, dict) else {"file": item}
     if "file" not in fields:
         raise item.fail("missing file; add it, such as `file: demo.launch`")
     path = Path(os.path.normpath(item.file.parent / fields["file"].text()))
@@ -128,7 +128,7 @@ def read_compiled(section: Marked, mistakes: Mistakes) -> CompiledConfig:
         section: its value.
         mistakes: collects unknown keys, and values that are neither true nor false.
     """
-    said = {name: mistakes.attempt(value.flag) for name, value in mistakes.fields(section, _COMPILED_FIELDS)}
+    said = {name: mistakes.attempt(value.flag) for name, value in mistakes.fields(section, COMPILED_FIELDS)}
     return CompiledConfig(**{name: value for name, value in said.items() if value is not None})
 
 
@@ -146,8 +146,8 @@ def read_nodes(section: Marked, mistakes: Mistakes) -> dict[str, NodeConfig]:
     for app, entry in mistakes.mapping(section).items():
         before = len(mistakes.errors)
         said: dict[str, Any] = {}
-        for name, value in mistakes.fields(entry, _NODE_FIELDS):
-            said[name] = mistakes.attempt(partial(_NODE_FIELDS[name], value))
+        for name, value in mistakes.fields(entry, NODE_FIELDS):
+            said[name] = mistakes.attempt(partial(NODE_FIELDS[name], value))
         if len(mistakes.errors) == before:
             if said.get("respawn") and said.get("required"):
                 mistakes.add(
@@ -186,7 +186,7 @@ def read_topics(section: Marked, mistakes: Mistakes) -> dict[str, TopicConfig]:
 def _topic(name: str, entry: Marked, mistakes: Mistakes) -> TopicConfig:
     if not name.startswith("/"):
         mistakes.add(entry.fail(f'invalid topic name {name!r}; it must begin with "/"'))
-    fields = dict(mistakes.fields(entry, ("msg_id", "raw")))
+    fields = dict(mistakes.fields(entry, TOPIC_FIELDS))
     is_raw = mistakes.attempt(fields["raw"].flag) if "raw" in fields else False
     if "msg_id" not in fields and mistakes.errors:
         raise mistakes.errors.pop()  # its key may be misspelt
@@ -212,7 +212,7 @@ def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
     publish: dict[str, BridgedPacket] = {}
     subscribe: list[str] = []
     clock_hz = 0
-    for name, part in mistakes.fields(section, ("publish", "subscribe", "clock")):
+    for name, part in mistakes.fields(section, BRIDGE_FIELDS):
         if name == "publish":
             for topic, entry in mistakes.mapping(part).items():
                 packet = mistakes.whole(partial(_bridged, topic, entry))
@@ -234,7 +234,7 @@ def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
         mistakes: collects unknown keys and values that are not lists of names.
     """
     said: dict[str, tuple[str, ...]] = {}
-    for name, entry in mistakes.fields(section, ("rate", "topics")):
+    for name, entry in mistakes.fields(section, SWEEP_FIELDS):
         items = mistakes.items(entry)
         texts = [mistakes.attempt(item.text) for item in items]
         said[name] = tuple(text for text in texts if text)
@@ -254,14 +254,14 @@ def _bridged(topic: str, entry: Marked, mistakes: Mistakes) -> BridgedPacket:
     if not topic.startswith("/"):
         mistakes.add(entry.fail(f'invalid topic name {topic!r}; it must begin with "/"'))
     if not isinstance(entry.value, dict):
-        return BridgedPacket(str(entry.value))
-    fields = dict(mistakes.fields(entry, ("packet", "raw")))
+        return BridgedPacket(entry.written())
+    fields = dict(mistakes.fields(entry, PACKET_FIELDS))
     is_raw = mistakes.attempt(fields["raw"].flag) if "raw" in fields else False
     if "packet" not in fields and mistakes.errors:
         raise mistakes.errors.pop()  # its key may be misspelt
     if "packet" not in fields:
         raise entry.fail("missing packet; add it, such as `packet: CFE_ES_HK_TLM`")
-    return BridgedPacket(str(fields["packet"].value), bool(is_raw))
+    return BridgedPacket(fields["packet"].written(), bool(is_raw))
 
 
 def _global_topic(entry: Marked) -> str:
@@ -305,20 +305,26 @@ def _release(entry: Marked) -> str:
 
 
 def _texts(section: Marked) -> Mapping[str, str]:
-    return {key: str(value.value) for key, value in section.mapping().items()}
+    parts = section.mapping()
+    return dict(zip(parts, each_of(value.written for value in parts.values()), strict=True))
 
 
 # -- the tables --------------------------------------------------------------------------------------------------------
 
-_COMPILED_FIELDS = ("omit_deprecated", "guard")
+COMPILED_FIELDS = ("omit_deprecated", "guard")
+LAUNCH_FIELDS = ("file", "args")
+TOPIC_FIELDS = ("msg_id", "raw")
+BRIDGE_FIELDS = ("publish", "subscribe", "clock")
+PACKET_FIELDS = ("packet", "raw")
+SWEEP_FIELDS = ("rate", "topics")
 
-_NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
+NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "name": Marked.text,
     "namespace": _namespace,
     "remap": _texts,
     "params": read_tree,
     "params_from": read_files,
-    "args": lambda entry: tuple(str(item.value) for item in entry.items()),
+    "args": lambda entry: tuple(each_of(item.written for item in entry.items())),
     "env": _texts,
     "ordered_sets": Marked.flag,
     "keys": _keys,

@@ -14,6 +14,7 @@ from typing import Any
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.status import UsageError, together
 
+FILE_FIELDS = ("file", "namespace")
 _INT_MIN, _INT_MAX = -(1 << 31), (1 << 31) - 1
 
 
@@ -60,7 +61,7 @@ def _files(section: Marked) -> Iterator[tuple[Path, str]]:
     """Yield (path, namespace) of each file."""
     entries = [section] if isinstance(section.value, str) else section.items()
     for entry in entries:
-        said = {"file": entry} if isinstance(entry.value, str) else entry.mapping(["file", "namespace"])
+        said = {"file": entry} if isinstance(entry.value, str) else entry.mapping(FILE_FIELDS)
         if "file" not in said:
             raise entry.fail("missing file; write `params_from: [robot.yaml]` or {file: robot.yaml, namespace: arm}")
         path = entry.file.parent / said["file"].text()

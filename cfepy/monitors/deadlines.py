@@ -18,10 +18,11 @@ from cfepy.reading.mistakes import Mistakes
 from cfepy.reading.suggestions import listed
 from cfepy.units import NS_PER_S, TIME_UNITS, time_text
 
+PARTS = ("apps", "topics")
 APP_FIELDS = ("response", "period", "jitter", "task")
 TOPIC_FIELDS = ("latency", "at_least_every", "at_most_every")
 LONGEST_NS = 1_000_000 * NS_PER_S
-_TIME = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(ns|us|ms|s|Hz)\s*")
+TIME = re.compile(r"\s*(\d+(?:\.\d*)?|\.\d+)\s*(ns|us|ms|s|Hz)\s*")
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +85,7 @@ def read_deadlines(section: Marked, mistakes: Mistakes) -> Deadlines:
         section: its value.
         mistakes: collects unknown keys and invalid values.
     """
-    parts = dict(mistakes.fields(section, ("apps", "topics")))
+    parts = dict(mistakes.fields(section, PARTS))
     apps = mistakes.mapping(parts["apps"]) if "apps" in parts else {}
     topics = mistakes.mapping(parts["topics"]) if "topics" in parts else {}
     of_apps = [mistakes.whole(partial(_app_deadline, name, entry)) for name, entry in apps.items()]
@@ -149,7 +150,7 @@ def _time(entry: Marked | None, zero: bool = False) -> int | None:
     """
     if entry is None:
         return None
-    match = _TIME.fullmatch(entry.value) if isinstance(entry.value, str) else None
+    match = TIME.fullmatch(entry.value) if isinstance(entry.value, str) else None
     if match is None:
         raise entry.fail(f"must be a time with a unit, such as 500 us, 2.5 ms, 1 s or 50 Hz, not {entry.shown()}")
     number, unit = float(match[1]), match[2]

@@ -27,6 +27,7 @@ from cfepy.status import UsageError
 NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
 CAUSE = "cause"
 SOURCE_FIELDS = ("topic", "packet")
+ANSWER_FIELDS = (*SOURCE_FIELDS, "holds")
 KINDS = ("holds", "function", "within", "again", "eventually")
 FIELDS = (*SOURCE_FIELDS, "holds", "when", "within", "then", "again", "eventually", "file", "function", "after")
 
@@ -183,7 +184,7 @@ def _answer(entry: Marked, fields: Mapping[str, Marked], mistakes: Mistakes) -> 
     if "then" not in fields:
         raise entry.fail("`within` requires `then`; add it, such as `then: {topic: /name}`")
     within_ns = mistakes.attempt(fields["within"].time)
-    then = dict(mistakes.fields(fields["then"], (*SOURCE_FIELDS, "holds")))
+    then = dict(mistakes.fields(fields["then"], ANSWER_FIELDS))
     holds = mistakes.attempt(partial(Predicate.read, then["holds"], (*NAMES, CAUSE))) if "holds" in then else None
     selection = mistakes.attempt(partial(read_selection, then))
     if selection == Selection() and not mistakes.errors:  # otherwise its key may be misspelt

@@ -17,6 +17,7 @@ LAST, SEQUENCE, ANY_ORDER, COUNT = "last", "sequence", "any order", "count"
 FILE, OUTPUT = "file", "output"
 OF_MESSAGES = (LAST, SEQUENCE, ANY_ORDER, COUNT)
 COMPARISONS = (*OF_MESSAGES, FILE, OUTPUT)
+FIELDS = ("compare", "ignore")
 TIMES = ("header.stamp", "header.seq")
 """Fields ignored by default: a difference of a few microseconds is not another result."""
 
@@ -56,7 +57,7 @@ def read_selected_results(section: Marked, mistakes: Mistakes) -> tuple[Selected
 def _selected_result(name: str, entry: Marked, mistakes: Mistakes) -> SelectedResult:
     """Return one result: how it is compared, or a mapping with `compare` and `ignore`."""
     is_mapping = isinstance(entry.value, dict)
-    fields = dict(mistakes.fields(entry, ("compare", "ignore"))) if is_mapping else {"compare": entry}
+    fields = dict(mistakes.fields(entry, FIELDS)) if is_mapping else {"compare": entry}
     ignored = mistakes.items(fields["ignore"]) if "ignore" in fields else []
     paths = [mistakes.attempt(partial(_path, item)) for item in ignored]
     if "compare" not in fields and mistakes.errors:

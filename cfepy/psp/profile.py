@@ -22,7 +22,7 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S, PS_PER_NS
 
 DEFAULT_NODE_CALL_NS = 1000
-_UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
+SIZE_UNITS = {"B": 1, "KiB": 1024, "MiB": 1024 * 1024}
 MOST_BYTES = 1 << 32  # a board with more memory needs no limit
 MOST_LIMIT = (1 << 31) - 1
 MOST_OBJECTS = SERIAL_MAX - 1  # a resource id has 16 bits for the serial number
@@ -30,12 +30,14 @@ LIMIT_NAMES = tuple(known.name for known in fields(PlatformConfig) if known.name
 Limit = int | str | tuple[int, ...]
 """A value of `PlatformConfig`."""
 
-_SIZES = ("program_flash", "data_flash")
-_NUMBERS = (
+REGION_FIELDS = ("name", "size", "retained")
+PORT_FIELDS = ("name", "address", "size")
+SIZES = ("program_flash", "data_flash")
+NUMBERS = (
     "cpu_hz",
     "watchdog_max_ms",
     "tick_ns",
-    *_SIZES,
+    *SIZES,
     "context_switch_cycles",
     "syscall_cycles",
     "copy_cycles_per_byte",
@@ -165,7 +167,7 @@ def _profile(root: Marked, mistakes: Mistakes) -> BoardProfile:
         mistakes.add(root.fail("missing name; a board profile starts with `name: ...`"))
     found: dict[str, Any] = {}
     for key, entry in entries.items():
-        if key in _NUMBERS:
+        if key in NUMBERS:
             found[key] = mistakes.attempt(partial(_number, key, entry))
         else:
             found[key] = mistakes.attempt(partial(_PARTS.get(key, Marked.text), entry))
@@ -186,7 +188,7 @@ def _find(name_or_path: str | Path) -> Path:
 def _number(key: str, entry: Marked) -> int:
     if entry.value is None:
         return 0
-    return _size(entry) if key in _SIZES else entry.integer()
+    return _size(entry) if key in SIZES else entry.integer()
 
 
 def _size(entry: Marked) -> int:
@@ -194,11 +196,11 @@ def _size(entry: Marked) -> int:
     if not isinstance(entry.value, str):
         return entry.integer(highest=MOST_BYTES)
     count, _, unit = entry.value.partition(" ")
-    if not count.isdecimal() or unit not in _UNITS:
-        raise entry.fail(f"must be bytes or a number with {listed(_UNITS)}, such as 512 KiB, not {entry.shown()}")
-    size = int(count) * _UNITS[unit]
+    if not count.isdecimal() or unit not in SIZE_UNITS:
+        raise entry.fail(f"must be bytes or a number with {listed(SIZE_UNITS)}, such as 512 KiB, not {entry.shown()}")
+    size = int(count) * SIZE_UNITS[unit]
     if size > MOST_BYTES:
-        raise entry.fail(f"must be at most {MOST_BYTES // _UNITS['MiB']} MiB, not {entry.shown()}")
+        raise entry.fail(f"must be at most {MOST_BYTES // SIZE_UNITS['MiB']} MiB, not {entry.shown()}")
     return size
 
 
@@ -207,7 +209,7 @@ def _sram(entry: Marked) -> tuple[MemoryRegion, ...]:
 
 
 def _region(entry: Marked) -> MemoryRegion:
-    parts = entry.mapping(["name", "size", "retained"])
+    parts = entry.mapping(REGION_FIELDS)
     for needed in ("name", "size"):
         if needed not in parts:
             raise entry.fail(f"missing {needed}; write a region as {{name: ecc, size: 512 KiB}}")
@@ -220,7 +222,7 @@ def _ports(entry: Marked) -> tuple[PortRange, ...]:
 
 
 def _port_range(entry: Marked) -> PortRange:
-    parts = entry.mapping(["name", "address", "size"])
+    parts = entry.mapping(PORT_FIELDS)
     for needed in ("name", "address", "size"):
         if needed not in parts:
             raise entry.fail(f"missing {needed}; write ports as {{name: gpio, address: 0x8C000, size: 64}}")

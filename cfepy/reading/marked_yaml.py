@@ -108,6 +108,16 @@ class Marked:
             raise self.fail(f"must be text, not {self.shown()}; put it in quotes")
         return self.value
 
+    def written(self) -> str:
+        """Return a single value as text: text itself, a number, or true or false.
+
+        Raises:
+            UsageError: if it is nothing, a list, a mapping or a date.
+        """
+        if not isinstance(self.value, str | int | float):
+            raise self.fail(f"must be text or a number, not {self.shown()}; put it in quotes")
+        return str(self.value)
+
     def flag(self) -> bool:
         """Return the value as true or false.
 

@@ -69,8 +69,9 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
 def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     new = commands.add_parser(
         "new",
-        help="write a new application, mission or fault plan",
-        description="Write the skeleton of an application or a mission, which runs unchanged, or a random fault plan.",
+        help="write a new application, mission, fault plan or schema",
+        description="Write the skeleton of an application or a mission, which runs unchanged, a random fault plan, or "
+        "JSON schemas for an editor.",
         examples=("cfepy new app thermal", "cfepy new faults capture --seed 3"),
     )
     kinds = new.add_subparsers(metavar="KIND", dest="kind", required=True)
@@ -92,6 +93,20 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         kind.add_argument("name", metavar="NAME", help="also the name of the new folder")
         kind.set_defaults(module="cfepy.cli.run.new")
     _add_new_faults(kinds)
+    _add_new_schema(kinds)
+
+
+def _add_new_schema(kinds: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    schema = kinds.add_parser(
+        "schema",
+        help="JSON schemas, with which an editor completes mission files",
+        description="Write the JSON schemas of mission files, board profiles and fault plans, and print the line that "
+        "lets an editor complete such a file and mark its mistakes.",
+        examples=("cfepy new schema", "cfepy new schema rover/schemas"),
+        epilog="exit status: 0 well, 2 a file cannot be written",
+    )
+    schema.add_argument("folder", nargs="?", default="schemas", metavar="FOLDER", help="the folder (default: schemas)")
+    schema.set_defaults(module="cfepy.cli.run.new_schema")
 
 
 def _add_new_faults(kinds: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
