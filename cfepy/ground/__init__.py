@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
     from cfepy.ground.json_messages import message_from_json
     from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
+    from cfepy.ground.layout_sources import DeclaredField, DeclaredLayout, declared_layouts
     from cfepy.ground.link import CI_PORT, TO_PORT, GroundLink
     from cfepy.ground.mcap_recorder import recorder_of
     from cfepy.ground.node import (
@@ -67,6 +68,8 @@ __all__ = [
     "AbsentError",
     "BagReader",
     "CommandTrial",
+    "DeclaredField",
+    "DeclaredLayout",
     "Decoded",
     "DecodedEvent",
     "Dictionary",
@@ -89,6 +92,7 @@ __all__ = [
     "bag_series",
     "candidates",
     "check_message_type",
+    "declared_layouts",
     "definitions_of",
     "dictionary_of",
     "empty_mission",
@@ -146,6 +150,11 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "is_bag",
             ),
             ".command_trial": ("CommandTrial",),
+            ".layout_sources": (
+                "DeclaredField",
+                "DeclaredLayout",
+                "declared_layouts",
+            ),
             ".dictionary": (
                 "Decoded",
                 "Dictionary",

@@ -60,7 +60,7 @@ if TYPE_CHECKING:
     from cfepy.mission.outside import Arrival, OutsideStream
     from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
     from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
-    from cfepy.mission.python_code import find_code, find_node
+    from cfepy.mission.python_code import find_code, find_declarations, find_node
     from cfepy.mission.record import DataRace, Overwrite, Reset, StackUse, Traffic
     from cfepy.mission.run_pieces import FIRST_PIECE_NS, PieceLength
     from cfepy.mission.settings import with_settings
@@ -127,6 +127,7 @@ __all__ = [
     "endless_waits",
     "find_code",
     "find_compiled",
+    "find_declarations",
     "find_node",
     "find_script",
     "hearing",
@@ -244,6 +245,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ),
             ".python_code": (
                 "find_code",
+                "find_declarations",
                 "find_node",
             ),
             ".record": (

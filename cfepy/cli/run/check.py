@@ -6,7 +6,6 @@ Warnings follow the errors, as `file:line: warning: what`.
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 
 from cfepy.cli.json_output import check_json, write_json
@@ -14,7 +13,6 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.mission import read_mission
 from cfepy.pilot import MissionProblem, check_mission, problem_of
 from cfepy.status import UsageError
-from cfepy.writing.escapes import visible_line
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -33,7 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
     errors = [finding for finding in findings if not finding.is_warning]
     warnings = [finding for finding in findings if finding.is_warning]
     for finding in (*errors, *warnings):
-        print(_line(finding))
+        print(finding)
     packages = sorted({finding.package for finding in findings if finding.package})
     if packages:
         print(f"install the missing packages: pip install {' '.join(packages)}")
@@ -72,17 +70,3 @@ def _check_faults(arguments: argparse.Namespace, flies: bool) -> list[MissionPro
     except UsageError as error:
         errors = list(error.each)
     return [problem_of(error, Path(arguments.faults)) for error in errors]
-
-
-def _line(finding: MissionProblem) -> str:
-    place = visible_line(_shown(finding.file))
-    text = ("warning: " if finding.is_warning else "") + finding.text.replace(f"{Path.cwd()}{os.sep}", "")
-    return f"{place}:{finding.line}: {visible_line(text)}" if finding.line else f"{place}: {visible_line(text)}"
-
-
-def _shown(path: Path) -> str:
-    """Return a path in its shortest form relative to the working directory."""
-    try:
-        return os.path.relpath(path) if path.is_relative_to(Path.cwd()) else str(path)
-    except OSError:
-        return str(path)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from cfepy.extra.c.build_cache import cache_folder, writing_cache
     from cfepy.extra.c.elf import ElfError, check_elf_reader, read_shared_object
     from cfepy.extra.c.engine import GDB_SYMBOLS
+    from cfepy.extra.c.ground_check import ground_differences
     from cfepy.extra.c.linking import wanted_names
     from cfepy.extra.c.loading import CompiledLoader
     from cfepy.extra.c.runtime import CRuntime
@@ -62,6 +63,7 @@ __all__ = [
     "cpp_compiler",
     "end_bounded",
     "function_names",
+    "ground_differences",
     "headers_folder",
     "read_shared_object",
     "start_bounded",
@@ -78,6 +80,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".build_cache": ("cache_folder", "writing_cache"),
             ".elf": ("ElfError", "check_elf_reader", "read_shared_object"),
             ".engine": ("GDB_SYMBOLS",),
+            ".ground_check": ("ground_differences",),
             ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
             ".runtime": ("CRuntime",),

@@ -6,15 +6,12 @@ this, so an object of one build runs with the other, and passes invalid handles.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from enum import Enum
-from functools import lru_cache
-from io import BytesIO
-from typing import Any
 
-from cfepy.extra.c.elf import SharedObject, elf_file
+from cfepy.extra.c.elf import SharedObject
+from cfepy.extra.c.structs import structs_of
 
-_HANDLE = b"CFE_TBL_Handle_t"
+_HANDLE = "CFE_TBL_Handle_t"
 _WITH_HANDLES = frozenset(
     (
         *("CFE_TBL_DumpToBuffer", "CFE_TBL_GetAddress", "CFE_TBL_GetAddresses", "CFE_TBL_GetStatus", "CFE_TBL_Load"),
@@ -49,35 +46,7 @@ def abi_profile(source: SharedObject) -> AbiProfile:
     """
     if _WITH_HANDLES.isdisjoint(source.wanted()):
         return AbiProfile.EITHER
-    size = _size_of_handle(source.data)
+    size = structs_of(source.data).size_of(_HANDLE)
     if size == 0:
         return AbiProfile.UNKNOWN
     return AbiProfile.DEPRECATED if size == 2 else AbiProfile.OMIT_DEPRECATED
-
-
-@lru_cache(64)  # a mission may boot many times in a process
-def _size_of_handle(data: bytes) -> int:
-    """Return the bytes of a CFE_TBL_Handle_t; 0 if that is not known."""
-    elf = elf_file(BytesIO(data))
-    try:
-        return next(_sizes(elf), 0)
-    except Exception:  # debug data may be damaged: pyelftools raises errors of many types
-        return 0
-
-
-def _sizes(elf: Any) -> Iterator[int]:
-    """Yield the size of CFE_TBL_Handle_t from each unit that has it."""
-    for unit in elf.get_dwarf_info().iter_CUs() if elf.has_dwarf_info() else ():
-        for entry in unit.get_top_DIE().iter_children():
-            name = entry.attributes.get("DW_AT_name")
-            if entry.tag == "DW_TAG_typedef" and name is not None and name.value == _HANDLE:
-                yield _size_of(entry)
-
-
-def _size_of(entry: Any) -> int:
-    """Return the bytes of a type; for a typedef, of the type behind it."""
-    while "DW_AT_byte_size" not in entry.attributes:
-        if "DW_AT_type" not in entry.attributes:
-            return 0
-        entry = entry.get_DIE_from_attribute("DW_AT_type")
-    return int(entry.attributes["DW_AT_byte_size"].value)

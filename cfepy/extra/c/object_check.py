@@ -1,4 +1,5 @@
-"""Compiled code that a startup script names, checked before a run: entry points, missing functions, the ABI."""
+"""Compiled code that a startup script names, checked before a run: entry points, missing functions, the ABI,
+the layouts of its ground names."""
 
 from __future__ import annotations
 
@@ -9,6 +10,7 @@ from cfepy.es import CFE_LIB, StartupEntry
 from cfepy.extra.c.abi import AbiProfile, abi_profile
 from cfepy.extra.c.api import function_names
 from cfepy.extra.c.elf import ElfError, read_shared_object
+from cfepy.extra.c.ground_check import ground_differences
 from cfepy.extra.c.linking import wanted_names
 from cfepy.mission import NODE_SYMBOL, MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
@@ -45,6 +47,7 @@ def check_compiled(
         hint = did_you_mean(entry.symbol, functions, "correct the name, or export the function (it may be static)")
         yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
     yield from _check_needs(script, entries, entry, set(wanted))
+    yield from ground_differences(entry.path, script.parent)
 
 
 def _check_needs(

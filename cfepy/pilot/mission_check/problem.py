@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.status import UsageError
+from cfepy.writing.escapes import visible_line
 
 
 class MissionProblem(NamedTuple):
@@ -24,6 +26,20 @@ class MissionProblem(NamedTuple):
     text: str
     is_warning: bool = False
     package: str = ""
+
+    def __str__(self) -> str:
+        """Return the problem as a line, with its file relative to the working directory."""
+        place = visible_line(_shown(self.file))
+        text = ("warning: " if self.is_warning else "") + self.text.replace(f"{Path.cwd()}{os.sep}", "")
+        return f"{place}:{self.line}: {visible_line(text)}" if self.line else f"{place}: {visible_line(text)}"
+
+
+def _shown(path: Path) -> str:
+    """Return a path in its shortest form relative to the working directory."""
+    try:
+        return os.path.relpath(path) if path.is_relative_to(Path.cwd()) else str(path)
+    except OSError:
+        return str(path)
 
 
 def problem_of(error: UsageError, file: Path, is_warning: bool = False) -> MissionProblem:

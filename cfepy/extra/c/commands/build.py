@@ -8,7 +8,16 @@ from pathlib import Path
 
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.user_notes import writing
-from cfepy.extra.c import GDB_SYMBOLS, Built, CompilerError, Options, TableFiles, build, headers_folder
+from cfepy.extra.c import (
+    GDB_SYMBOLS,
+    Built,
+    CompilerError,
+    Options,
+    TableFiles,
+    build,
+    ground_differences,
+    headers_folder,
+)
 from cfepy.status import UsageError
 
 
@@ -54,7 +63,8 @@ def _options(arguments: argparse.Namespace) -> Options:
 
 
 def _tell(built: Built) -> None:
-    for warning in built.warnings:
+    library = built.library.resolve()
+    for warning in (*built.warnings, *ground_differences(f"/cf/{library.name}", library.parent)):
         print(warning, file=sys.stderr)
     for file in (built.library, *built.tables):
         print(file)
