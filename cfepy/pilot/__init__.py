@@ -13,6 +13,7 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
+    from cfepy.pilot.idleness import idle_nodes
     from cfepy.pilot.mission_check import MissionProblem, check_mission, problem_of
     from cfepy.pilot.never_judged import SentNames, no_such_app
     from cfepy.pilot.peers import boot_of
@@ -55,6 +56,7 @@ __all__ = [
     "check_mission",
     "failures_of",
     "fly",
+    "idle_nodes",
     "is_reported",
     "loose_ends",
     "mark",
@@ -84,6 +86,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "Failure",
                 "FailureKind",
             ),
+            ".idleness": ("idle_nodes",),
             ".unconnected_topics": ("loose_ends",),
             ".never_judged": (
                 "SentNames",

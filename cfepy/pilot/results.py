@@ -157,6 +157,7 @@ class Mark:
     memory: MemoryResult
     sb: dict[str, int]
     endless: EndlessWaits
+    idle_nodes: list[str]
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
@@ -177,6 +178,7 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
         mission.processor.sb_task.housekeeping(),
         endless_waits(mission),
+        _idle_nodes(mission),
     )
 
 
@@ -193,8 +195,8 @@ class Results:
     each viewer and each topic, and `beside` one for each mission that flew together with it. `script_problems` are the
     entries of the startup script that could not be started. `endless_waits` has a line for each task that no task can
     wake any more. `missed_steps` are the failed steps of the script. `never_judged` are the rules of the mission file
-    without input. `loose_ends` are topics that connect to nothing. `missed_moves` are the moves of the schedule that
-    were not possible. `why_tasks` is why tasks are threads by default although greenlets are installed.
+    without input. `loose_ends` are topics that connect to nothing, and idle nodes. `missed_moves` are the moves of the
+    schedule that were not possible. `why_tasks` is why tasks are threads by default although greenlets are installed.
     """
 
     mission: str
@@ -275,7 +277,7 @@ class Results:
             endless_waits=[wait.text for wait in at.endless.alone],
             missed_moves=_missed_moves(mission),
             never_judged=_never_judged(mission),
-            loose_ends=_loose_ends(mission),
+            loose_ends=[*_loose_ends(mission), *at.idle_nodes],
             missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[each.text for each in problems],
@@ -317,6 +319,15 @@ def _loose_ends(mission: Mission) -> list[str]:
     from cfepy.pilot.unconnected_topics import loose_ends
 
     return loose_ends(mission)
+
+
+def _idle_nodes(mission: Mission) -> list[str]:
+    """Return the nodes that do nothing; only a mission with nodes loads the code for it."""
+    if mission.ros is None:
+        return []
+    from cfepy.pilot.idleness import idle_nodes
+
+    return idle_nodes(mission)
 
 
 def _never_happened(rows: list[dict[str, Any]], missed_moves: list[str]) -> list[str]:

@@ -238,6 +238,8 @@ class Graph:
         self.nodes: dict[str, Node] = {}
         self.compiled: dict[str, CompiledNode] = {}
         self.services: dict[str, ServiceEntry] = {}
+        self.displaced: list[tuple[str, str, str]] = []
+        """Nodes that gave way to another one: their name, the application of the former, the application of the new one."""
         self.params = ParameterTree(config.params)
         self.ids = MsgIds(config)
 
@@ -259,6 +261,7 @@ class Graph:
         former = self.nodes.get(name)
         self.nodes[name] = node
         if former is not None and former is not node:
+            self.displaced.append((name, former.config.app, node.config.app))
             former.give_way()
 
     def forget_node(self, node: Node) -> None:

@@ -195,6 +195,7 @@ class PlannedTest:
     results: Path  # file for the results of the test
     problem: str = ""  # why it has no node
     compiled: CppNode | None = None  # its node, if it is in C++
+    displaces: LaunchRemark | None = None  # the node of the file that it shuts down, because both have one name
 
 
 @dataclass(slots=True)
@@ -369,6 +370,16 @@ def node_environment(environ: Mapping[str, str], namespace: str = SEP) -> dict[s
     return {**kept, "ROS_NAMESPACE": namespace.rstrip(SEP)} if namespace != SEP else kept
 
 
+def _displaces(test: LaunchTest, former: LaunchNode) -> LaunchRemark:
+    """Return a remark about a node that ROS's master shuts down when a test with its name starts."""
+    name = former.full_name
+    text = (
+        f"test {test.test_name} runs as node {name}, so it shuts down the node {name} of line {former.line} "
+        f'(type {former.type}); give the test another name: name="{name.rpartition(SEP)[2]}_test"'
+    )
+    return LaunchRemark(text, test.node.file, test.node.line, before_runs=False)
+
+
 class Planner:
     """Makes applications of nodes.
 
@@ -412,8 +423,13 @@ class Planner:
                 plan.compiled[config.app] = config
             elif config is not None:
                 plan.nodes[config.app] = config
-        tests = (mistakes.attempt(partial(self._test, test, remarks)) for test in launch.tests)
-        plan.tests += [test for test in tests if test is not None]
+        tests = [(test, mistakes.attempt(partial(self._test, test, remarks))) for test in launch.tests]
+        nodes = {node.full_name: node for node in launch.nodes}
+        for test, planned in tests:
+            former = nodes.get(test.node.full_name)
+            displaces = None if former is None else _displaces(test, former)
+            remarks += [] if displaces is None else [displaces]
+            plan.tests += [] if planned is None else [replace(planned, displaces=displaces)]
         return plan
 
     def _config_or_remark(self, node: LaunchNode, remarks: list[LaunchRemark]) -> NodeConfig | CppNode | None:

@@ -8,6 +8,7 @@ from xml.etree import ElementTree
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.pilot import check_mission
 from tests.cli.ros_packages import Launch, demo, write_launch
 
 __all__ = ["demo", "write_launch"]  # fixtures
@@ -105,3 +106,16 @@ def test_rostests_own_test_nodes(write_launch: Launch, capsys: pytest.CaptureFix
     assert "[rostest.published.__main__.PublishTest/test_publish][passed]" in shown
     assert "[rostest.there.__main__.ParamTest/test_param][passed]" in shown
     assert " * TESTS: 4\n * ERRORS: 0\n * FAILURES: 1" in shown
+
+
+def test_test_with_the_name_of_a_node_is_named(write_launch: Launch, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write_launch(TALKER + CHECK.format('name="talker" time-limit="2"', "hello", ""))
+    told = (
+        "test check runs as node /talker, so it shuts down the node /talker of line 1 (type talker.py); "
+        'give the test another name: name="talker_test"'
+    )
+    assert main(["rostest", file]) == 1
+    shown = capsys.readouterr().err
+    assert f"{file}:1: {told}" in shown
+    assert "/talker: the node of TALKER was shut down when the node of TALKER2 took its name" in shown
+    assert [each.text for each in check_mission(file)] == [told]

@@ -30,7 +30,7 @@ from cfepy.ground import (
     spread_out,
 )
 from cfepy.mission import Mission, MissionSpec
-from cfepy.pilot import RunPlan, loose_ends, never_happened, takeoff
+from cfepy.pilot import RunPlan, idle_nodes, loose_ends, never_happened, takeoff
 from cfepy.status import UsageError
 
 WIDEST = 100  # characters of a line if the output is not a terminal
@@ -114,6 +114,6 @@ def _surveyed(plan: RunPlan, spec: MissionSpec, attachments: Sequence[Attachment
     with takeoff(plan, spec=spec, attachments=attachments, host=FlyingProgress()) as run:
         tell_briefly(run.notes)
         run.run_until(run.course.until_ns)
-        problems = [*run.problems(), *never_happened(run.mission), *loose_ends(run.mission)]
+        problems = [*run.problems(), *never_happened(run.mission), *loose_ends(run.mission), *idle_nodes(run.mission)]
         yield run.mission
     tell(problems)

@@ -167,7 +167,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise UsageError("missing <test>; use `cfepy launch` to run a launch file without tests", file=file)
         build = builder(arguments.cpp_nodes)
         built, left_out = built_programs(plan, build)
-        tell([*plan.notes, *left_out])
+        tell([*plan.notes, *left_out, *(test.displaces for test in plan.tests if test.displaces is not None)])
         tests = TestResults()
         for test in plan.tests:
             if not interrupts.asked:
@@ -242,10 +242,11 @@ class _Runner:
         written = SavedRunFiles(Path("/"), os.path.realpath(test.results.parent))
         with WatchedHost(self._interrupts, self._display) as host:
             flown = fly(run, spec=spec, attachments=[written], console=host.console, host=host)
-        tell(flown.results.never_happened)
         if test.compiled is not None:
             _keep_results(test, flown)
-        return self._judged(test, node, suite, flown)
+        results = self._judged(test, node, suite, flown)
+        tell([*flown.results.never_happened, *(() if results.passed else flown.results.loose_ends)])
+        return results
 
     def _program(self, node: CppNode) -> BuiltProgram:
         """Build a test in C++.
