@@ -239,7 +239,7 @@ class Graph:
         self.compiled: dict[str, CompiledNode] = {}
         self.services: dict[str, ServiceEntry] = {}
         self.displaced: list[tuple[str, str, str]] = []
-        """Nodes that gave way to another one: their name, the application of the former, the application of the new one."""
+        """Nodes that gave way to another one: name, the former application, the new one."""
         self.params = ParameterTree(config.params)
         self.ids = MsgIds(config)
 
