@@ -64,6 +64,8 @@ NEEDS = {
     "packaging/test_ci.py": "exploration",
     "packaging/test_take_out.py": EVERY,
     "packaging/test_wheel.py": "c",
+    "pilot/test_idleness.py::test_synchronizer_that_never_calls_back_has_a_line": "ros_libraries",
+    "pilot/test_idleness.py::test_synchronizer_without_callback_has_a_line": "ros_libraries",
     "pilot/mission_check/test_ros_files.py::test_a_launch_file_with_many_problems": "c convert",
     "pilot/mission_check/test_missing_imports.py::test_import_of_a_node": "ros_libraries",
     "pilot/test_never_judged.py": "exploration reports",

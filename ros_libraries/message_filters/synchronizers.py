@@ -10,6 +10,7 @@ from typing import Any
 import rospy
 
 from .filters import SimpleFilter, stamp_of
+from .match_record import MatchRecord
 
 Queue = dict[Any, Any]
 """Messages of one filter by stamp, in the order in which they came."""
@@ -35,6 +36,7 @@ class TimeSynchronizer(SimpleFilter):
         """Take the messages of some filters."""
         self.queues: list[Queue] = [{} for _ in fs]
         self.latest_stamps = [rospy.Time(0) for _ in fs]
+        self.__record__ = MatchRecord(self, fs)
         self.input_connections = [
             each.registerCallback(self.add, queue, index)
             for index, (each, queue) in enumerate(zip(fs, self.queues, strict=True))
@@ -50,7 +52,7 @@ class TimeSynchronizer(SimpleFilter):
         """
         with self.lock:
             behind = self.__follow_clock__(my_queue, my_queue_index)
-            self.__keep__(msg, msg.header.stamp, my_queue)
+            self.__keep__(msg, msg.header.stamp, my_queue, my_queue_index)
             if behind:
                 return
             for stamp in sorted(set(self.queues[0]).intersection(*self.queues[1:])):
@@ -68,13 +70,17 @@ class TimeSynchronizer(SimpleFilter):
             self.latest_stamps[index] = now
         return bool(max(self.latest_stamps) != now)
 
-    def __keep__(self, msg: Any, stamp: Any, queue: Queue) -> None:
+    def __keep__(self, msg: Any, stamp: Any, queue: Queue, index: int | None) -> None:
         queue[stamp] = msg
+        self.__record__.count(index, stamp, self.queues)
         while len(queue) > self.queue_size:
-            del queue[min(queue)]
+            oldest = min(queue)
+            del queue[oldest]
+            self.__record__.drop(index, oldest)
 
     def __emit__(self, stamps: Sequence[Any]) -> None:
         """Pass on the messages with these stamps, one for each queue, and forget them."""
+        self.__record__.matches += 1
         pairs = list(zip(self.queues, stamps, strict=True))
         self.signalMessage(*(queue[stamp] for queue, stamp in pairs))
         for queue, stamp in pairs:
@@ -109,10 +115,11 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         """Add a message; see `TimeSynchronizer.add`."""
         stamp = stamp_of(msg, self.allow_headerless)
         if stamp is None:
+            self.__record__.refuse(my_queue_index)
             return
         with self.lock:
             behind = self.__follow_clock__(my_queue, my_queue_index)
-            self.__keep__(msg, stamp, my_queue)
+            self.__keep__(msg, stamp, my_queue, my_queue_index)
             self.__forget_the_future()
             if not behind:
                 self.__match(stamp, my_queue_index)
