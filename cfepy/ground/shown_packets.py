@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.topics import Topic
-from cfepy.mission import UNIX_AT_CFE_EPOCH, MissionSpec
+from cfepy.mission import UNIX_AT_CFE_EPOCH, Mission, MissionSpec
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Layout, Telemetry
 from cfepy.reading.mistakes import each_of
 from cfepy.status import UsageError
@@ -127,9 +127,11 @@ class PacketSerializer:
 
     Args:
         layout: layout of the payload.
+        zero_s: Unix time when spacecraft time is 0, in s.
     """
 
-    def __init__(self, layout: Layout) -> None:
+    def __init__(self, layout: Layout, zero_s: int = UNIX_AT_CFE_EPOCH) -> None:
+        self._zero_s = zero_s
         self._size = TLM_HEADER_SIZE + layout.size
         self._pieces = list(_pieces(list(layout.cells())))
 
@@ -139,7 +141,7 @@ class PacketSerializer:
             return None
         seconds, subseconds = _time(packet, 6)
         count = (packet[2] << 8 | packet[3]) & 0x3FFF
-        parts = [_header(count, seconds + UNIX_AT_CFE_EPOCH & 0xFFFFFFFF, subseconds * 1_000_000_000 >> 16, 0)]
+        parts = [_header(count, seconds + self._zero_s & 0xFFFFFFFF, subseconds * 1_000_000_000 >> 16, 0)]
         for start, end, is_text in self._pieces:
             data = packet[start:end]
             if is_text:
@@ -183,7 +185,7 @@ class ShownPackets:
     """The section of a mission file.
 
     Args:
-        spec: the mission.
+        mission: the mission.
 
     Attributes:
         packets: published packets, by topic.
@@ -195,24 +197,25 @@ class ShownPackets:
         UsageError: if there is no such packet.
     """
 
-    def __init__(self, spec: MissionSpec) -> None:
+    def __init__(self, mission: Mission) -> None:
+        spec = mission.spec
         bridge = spec.ros.bridge
         self.heard = bridge.subscribe
         self.packets: dict[str, ShownPacket] = {}
         self.clock_ns = NS_PER_S // bridge.clock_hz if bridge.clock_hz else 0
         if bridge.publish:
-            self._read(spec)
+            self._read(spec, spec.zero_s(mission.config))
         self.types = {topic: each.type for topic, each in self.packets.items()}
         if self.clock_ns:
             self.types[CLOCK] = _plain_type(CLOCK_TYPE)
 
-    def _read(self, spec: MissionSpec) -> None:
+    def _read(self, spec: MissionSpec, zero_s: int) -> None:
         bridge = spec.ros.bridge
         dictionary = dictionary_of(spec)
         packets = each_of(partial(_declared, dictionary, spec, topic) for topic in bridge.publish)
         for (topic, (_, is_raw)), found in zip(bridge.publish.items(), packets, strict=True):
             if isinstance(found, Telemetry) and found.payload.size and not is_raw:
-                serialize = PacketSerializer(found.payload).message
+                serialize = PacketSerializer(found.payload, zero_s).message
                 self.packets[topic] = ShownPacket(found.msg_id, type_of(found.name, found.payload), serialize)
             else:
                 self.packets[topic] = ShownPacket(found.msg_id, _plain_type(RAW), _whole)

@@ -21,6 +21,7 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 from cfepy import __version__
 from cfepy.ground.dictionary import Dictionary
 from cfepy.ground.topics import Topic, library_of
+from cfepy.mission import UNIX_AT_CFE_EPOCH
 from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Layout, Telemetry, ValueNames
 from cfepy.writing.markup import printable
 
@@ -176,14 +177,16 @@ class TypeSet:
             _dynamic(add(encoding, "SizeInBits"), count, slope, intercept)
         return name
 
-    def time(self) -> str:
-        """Return the 48 bits of time in a telemetry header: seconds and 65536ths since cFE's epoch."""
+    def time(self, zero_s: int) -> str:
+        """Return the 48 bits of time in a telemetry header: seconds and 65536ths since a Unix time in s."""
+        from numpy import datetime64
+
         name = "spacecraft_time"
         if self._is_new(name):
             kind = self._type("AbsoluteTime", name)
             encoding = add(kind, "Encoding", units="seconds", scale=repr(2**-16))
             add(encoding, "IntegerDataEncoding", sizeInBits="48", encoding="unsigned")
-            add(add(kind, "ReferenceTime"), "Epoch").text = "1980-01-01T00:00:00"
+            add(add(kind, "ReferenceTime"), "Epoch").text = str(datetime64(zero_s, "s"))
         return name
 
     def _is_new(self, name: str) -> bool:
@@ -214,18 +217,19 @@ def _dynamic(size: Element, count: str, slope: int, intercept: int) -> None:
     add(value, "LinearAdjustment", slope=str(slope), intercept=str(intercept))
 
 
-def xtce_of(name: str, dictionary: Dictionary) -> str:
+def xtce_of(name: str, dictionary: Dictionary, zero_s: int = UNIX_AT_CFE_EPOCH) -> str:
     """Return the XTCE document of a mission.
 
     Args:
         name: name of the space system.
         dictionary: its packets; topics of unknown type are left out.
+        zero_s: Unix time when spacecraft time is 0, in s.
     """
     system = Element("SpaceSystem", {"name": xtce_name(name), "xmlns": NAMESPACE})
     system.set("xmlns:xsi", "http://www.w3.org/2001/XMLSchema-instance")
     system.set("xsi:schemaLocation", SCHEMA)
     add(system, "Header", version=__version__, validationStatus="Working")
-    _Telemetry(add(system, "TelemetryMetaData")).add_packets(dictionary.telemetry.values())
+    _Telemetry(add(system, "TelemetryMetaData"), zero_s).add_packets(dictionary.telemetry.values())
     add_commands(add(system, "CommandMetaData"), dictionary.commands.values())
     indent(system)
     return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(system, encoding="unicode") + "\n"
@@ -234,19 +238,19 @@ def xtce_of(name: str, dictionary: Dictionary) -> str:
 class _Telemetry:
     """TelemetryMetaData under construction."""
 
-    def __init__(self, parent: Element) -> None:
+    def __init__(self, parent: Element, zero_s: int) -> None:
         self._types = TypeSet(parent, "Parameter")
         self._parameters = add(parent, "ParameterSet")
         self._containers = add(parent, "ContainerSet")
         self._names: set[str] = set()
-        self._add_headers()
+        self._add_headers(zero_s)
 
-    def _add_headers(self) -> None:
+    def _add_headers(self, zero_s: int) -> None:
         entries = self._container(ROOT, "the CCSDS primary header", is_abstract=True)
         for name, bits in PRIMARY_HEADER:
             self._entry(entries, name, self._types.bits(bits))
         entries = self._container(TELEMETRY, "cFE's telemetry header", is_abstract=True)
-        self._entry(entries, "TIME", self._types.time())
+        self._entry(entries, "TIME", self._types.time(zero_s))
         self._padding(entries, 4)
         self._base(ROOT, TYPE="0", SEC_HDR_FLG="1")
 

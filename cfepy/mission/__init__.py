@@ -59,12 +59,12 @@ if TYPE_CHECKING:
     )
     from cfepy.mission.outside import Arrival, OutsideStream
     from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
-    from cfepy.mission.processor import CORE_APPS, UNIX_AT_CFE_EPOCH, Processor
+    from cfepy.mission.processor import CORE_APPS, Processor
     from cfepy.mission.python_code import find_code, find_declarations, find_node
     from cfepy.mission.record import DataRace, Overwrite, Reset, StackUse, Traffic
     from cfepy.mission.run_pieces import FIRST_PIECE_NS, PieceLength
     from cfepy.mission.settings import with_settings
-    from cfepy.mission.spec import BuiltProgram, MissionSpec, SweepConfig
+    from cfepy.mission.spec import UNIX_AT_CFE_EPOCH, BuiltProgram, MissionSpec, SweepConfig
     from cfepy.mission.topic_watch import TopicMessage, TopicWatch, matches
     from cfepy.mission.tracebacks import app_traceback, described, reason
 
@@ -240,7 +240,6 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ),
             ".processor": (
                 "CORE_APPS",
-                "UNIX_AT_CFE_EPOCH",
                 "Processor",
             ),
             ".python_code": (
@@ -257,6 +256,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ),
             ".settings": ("with_settings",),
             ".spec": (
+                "UNIX_AT_CFE_EPOCH",
                 "BuiltProgram",
                 "MissionSpec",
                 "SweepConfig",

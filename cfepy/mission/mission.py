@@ -11,7 +11,6 @@ import warnings
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
@@ -121,9 +120,7 @@ class Mission:
         self.seed = seed
         self.tasks, self.why_tasks = kind = task_kind(tasks)
         self.board = board if isinstance(board, BoardProfile) else load_profile(board or self.spec.board)
-        limits = self.spec.limits.config(self.board, self.spec.has_nodes)
-        ids = self.spec.ids
-        self.config = replace(limits, cfe_version=self.spec.cfe_version, given=tuple(ids)).with_limits(ids)
+        self.config = self.spec.config(self.board)
         self.console = console if console is not None else Console()
         self.trace = Trace() if trace is None else trace
         self.record = RunRecord()

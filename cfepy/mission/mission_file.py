@@ -16,6 +16,7 @@ from typing import Any
 
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
+from cfepy.mission.epoch import read_epoch, refuse_both
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
 from cfepy.mission.spec import CompiledConfig, SweepConfig
@@ -36,9 +37,9 @@ class MissionSections:
     """The content of a mission file, as far as it could be read.
 
     Attributes:
-        name, board, cfe_version, compiled, cpp_nodes, limits, nodes, topics, params, params_from, ordered_sets,
-            connection_delay, ros_bridge, launch, sweep: the values of these sections; `name` and `board` are None if
-            missing.
+        name, board, cfe_version, epoch, compiled, cpp_nodes, limits, nodes, topics, params, params_from, ordered_sets,
+            connection_delay, ros_bridge, launch, sweep: the values of these sections; `name`, `board` and `epoch` are
+            None if missing.
         demands: the sections of `DEMANDS`, unread.
         places: all known sections in the file, unread.
     """
@@ -46,6 +47,7 @@ class MissionSections:
     name: str | None = None
     board: str | None = None
     cfe_version: str = DEFAULT_RELEASE
+    epoch: int | None = None
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
     cpp_nodes: CppNodesConfig = field(default_factory=CppNodesConfig)
     limits: MissionLimits = field(default_factory=MissionLimits)
@@ -95,6 +97,8 @@ def read_mission_file(path: Path, mistakes: Mistakes) -> MissionSections:
         value = _READERS[name](section, mistakes) if name in _READERS else None
         if value is not None:
             said[name] = value
+    if "epoch" in places and "limits" in places and (error := refuse_both(places["epoch"], places["limits"])):
+        mistakes.add(error)
     return MissionSections(**said, demands={name: places[name] for name in DEMANDS if name in places}, places=places)
 
 
@@ -345,6 +349,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "name": _single(Marked.text),
     "board": _single(Marked.text),
     "cfe_version": _single(_release),
+    "epoch": _single(read_epoch),
     "compiled": read_compiled,
     "cpp_nodes": read_cpp_nodes,
     "limits": read_limits,

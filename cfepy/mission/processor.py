@@ -40,7 +40,6 @@ from cfepy.rtos import Kernel, StallWatch
 from cfepy.sb import SbTask, SoftwareBus
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
-from cfepy.units import NS_PER_S
 from cfepy.writing.console import Console
 
 if TYPE_CHECKING:
@@ -53,7 +52,6 @@ EVS_PRIORITY, SB_PRIORITY, ES_PRIORITY, TIME_PRIORITY, TBL_PRIORITY = 61, 64, 68
 CORE_APPS = ("CFE_EVS", "CFE_SB", "CFE_ES", "CFE_TIME", "CFE_TBL")
 ROS_FILE = "/cf/roscore.so"
 """The virtual path for the code of ROS's own application (`rospy_shim.parameters.app`)."""
-UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +82,7 @@ class Machine:
     @property
     def epoch_ns(self) -> int:
         """The Unix time at virtual time 0 in ns: the spacecraft's clock, as ROS nodes read it."""
-        return (UNIX_AT_CFE_EPOCH + self.config.time_def_met_secs + self.config.time_def_stcf_secs) * NS_PER_S
+        return self.spec.start_ns(self.config)
 
 
 class RunFiles:

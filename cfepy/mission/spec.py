@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import NamedTuple
 
+from cfepy.config.platform import PlatformConfig
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.es import StartupEntry
 from cfepy.es import entries as read_entries
@@ -15,9 +16,13 @@ from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.nodes import CppNode, NodeConfig, RosConfig
+from cfepy.psp import BoardProfile
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import STARTUP_BYTES
 from cfepy.reading.marked_yaml import Marked
+from cfepy.units import NS_PER_S, NS_PER_US
+
+UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +100,7 @@ class MissionSpec:
         demands: the unread sections of the mission file with rules for a run; `cfepy.monitors.run_rules` reads them.
         sweep: the meaning of a rate, for `cfepy sweep`.
         ids: the identities of `cfepy.config.platform.IDENTITIES` that the run overrides.
+        epoch_ns: date at which the computer is switched on, as Unix time in ns; None for the time of cFE's defaults.
         beside: the missions that fly together with it; this one can see the declarations of their applications.
     """
 
@@ -114,6 +120,7 @@ class MissionSpec:
     demands: Mapping[str, Marked] = field(default_factory=dict)
     sweep: SweepConfig = field(default_factory=SweepConfig)
     ids: Mapping[str, int] = field(default_factory=dict)
+    epoch_ns: int | None = None
     beside: tuple[MissionSpec, ...] = ()
 
     @property
@@ -125,6 +132,44 @@ class MissionSpec:
     def entries(self) -> tuple[StartupEntry, ...]:
         """The entries of the startup script, in order; read once."""
         return tuple(read_entries(self.startup_script, RELEASES[self.cfe_version].longest_entry))
+
+    def config(self, board: BoardProfile) -> PlatformConfig:
+        """Return the platform configuration on a board.
+
+        Raises:
+            UsageError: if the mission needs more than the board has.
+        """
+        limits = replace(self.limits.config(board, self.has_nodes), cfe_version=self.cfe_version, given=tuple(self.ids))
+        config = limits.with_limits(self.ids)
+        if self.epoch_ns is None:
+            return config
+        from cfepy.mission.epoch import starting_at
+
+        return starting_at(config, self.epoch_ns, UNIX_AT_CFE_EPOCH)
+
+    def start_ns(self, config: PlatformConfig) -> int:
+        """Return the Unix time when the computer is switched on, in ns: ROS time at virtual time 0.
+
+        Args:
+            config: the mission's configuration.
+        """
+        if self.epoch_ns is not None:
+            return self.epoch_ns
+        seconds = config.time_def_met_secs + config.time_def_stcf_secs
+        seconds -= config.time_def_leaps if config.time_cfg_default_utc else 0
+        micros = config.time_def_met_subs + config.time_def_stcf_subs
+        return (UNIX_AT_CFE_EPOCH + seconds) * NS_PER_S + micros * NS_PER_US
+
+    def zero_s(self, config: PlatformConfig) -> int:
+        """Return the Unix time when spacecraft time is 0, in s.
+
+        That is 1980-01-01. With an epoch, TAI is ahead of the UTC of ROS, so its 0 is earlier by the leap seconds.
+
+        Args:
+            config: the mission's configuration.
+        """
+        is_tai = self.epoch_ns is not None and not config.time_cfg_default_utc
+        return UNIX_AT_CFE_EPOCH - (config.time_def_leaps if is_tai else 0)
 
     @property
     def scripts(self) -> dict[str, Path]:

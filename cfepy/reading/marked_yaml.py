@@ -210,7 +210,10 @@ def _mark(loader: Any, node: Any, path: Path, field: str) -> Marked:
     if node.id == "sequence":
         items = [_mark(loader, item, path, f"{field}[{index}]") for index, item in enumerate(node.value)]
         return Marked(items, path, line, field)
-    return Marked(constructed(loader, node), path, line, field)
+    try:
+        return Marked(constructed(loader, node), path, line, field)
+    except YamlError as error:
+        raise UsageError(error.text, file=path, line=error.line, field=field or None) from None
 
 
 def _pairs(loader: Any, node: Any, path: Path, field: str) -> Iterator[tuple[str, Marked]]:

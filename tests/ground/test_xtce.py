@@ -17,7 +17,7 @@ from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.topics import Topic, topics_of
 from cfepy.ground.values import flat, named_fields
 from cfepy.ground.xtce import NAMESPACE, cells_with_padding, xtce_name, xtce_of
-from cfepy.mission import Mission, read_mission
+from cfepy.mission import UNIX_AT_CFE_EPOCH, Mission, read_mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
 from cfepy.msg import Command, Layout, MsgType, Telemetry, get_type, telemetry
 from cfepy.writing.console import Console
@@ -92,6 +92,14 @@ class Export:
 @pytest.fixture(scope="module")
 def export(tmp_path_factory: pytest.TempPathFactory) -> Export:
     return Export(tmp_path_factory.mktemp("xtce"))
+
+
+@pytest.mark.parametrize(
+    ("zero_s", "epoch"), [(UNIX_AT_CFE_EPOCH, "1980-01-01T00:00:00"), (UNIX_AT_CFE_EPOCH - 37, "1979-12-31T23:59:23")]
+)
+def test_time_counts_from_the_zero_of_spacecraft_time(zero_s: int, epoch: str) -> None:
+    root = ElementTree.fromstring(xtce_of("m", Dictionary(), zero_s))
+    assert [each.text for each in root.iter(f"{{{NAMESPACE}}}Epoch")] == [epoch]
 
 
 SERVICES = ("CFE_ES_HK_TLM", "CFE_EVS_HK_TLM", "CFE_SB_HK_TLM", "CFE_TBL_HK_TLM", "CFE_TIME_HK_TLM")

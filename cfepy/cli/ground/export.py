@@ -21,6 +21,7 @@ from cfepy.mission import read_mission
 from cfepy.msg import Telemetry
 from cfepy.pilot import booting
 from cfepy.plugins import Hook
+from cfepy.psp import load_profile
 from cfepy.reading.contained_files import write_contained
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -58,7 +59,7 @@ def _xtce(arguments: argparse.Namespace) -> int:
         dictionary.learn(surveyed_topics(spec))
     for problem in dictionary.problems:
         print(f"cfepy: {problem}", file=sys.stderr)
-    document = xtce_of(spec.name, dictionary)
+    document = xtce_of(spec.name, dictionary, spec.zero_s(spec.config(load_profile(spec.board))))
     write_text(arguments.output, document, "--output", arguments)
     return ENDED_WELL
 

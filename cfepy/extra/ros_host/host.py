@@ -102,7 +102,7 @@ class RosHost:
         self._look_at_s = 0.0
         self._is_over = False
         self.selector.register(self.errands, EVENT_READ, lambda events: self.errands.deliver())
-        self.shown = ShownPackets(mission.spec)
+        self.shown = ShownPackets(mission)
         self._ears: dict[str, list[OutsideClient]] = {}  # by topic, of shown packets and /clock
         self._tell_at_ns = 0
         mission.record.tables[TABLE] = self.counts.rows

@@ -76,7 +76,7 @@ class FoxgloveViewer(TopicWatch):
         mission.record.tables[TABLE] = self._counts.rows
         self._dictionary = dictionary_of(mission.spec)
         self._channels = ShownChannels(self._server, self._dictionary, self._counts)
-        self._shown = shown = ShownPackets(mission.spec)
+        self._shown = shown = ShownPackets(mission)
         self._shown_as: dict[int, list[str]] = {}
         for topic, packet in shown.packets.items():
             self._shown_as.setdefault(packet.msg_id, []).append(topic)

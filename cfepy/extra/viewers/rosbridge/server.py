@@ -51,7 +51,7 @@ class RosbridgeServer(PacketWatch):
 
     def begin(self, mission: Any) -> None:
         uri = f"http://{self.place}/"
-        packets = ShownPackets(mission.spec).packets
+        packets = ShownPackets(mission).packets
         self._shown = frozenset(each.msg_id for each in packets.values())
         self._node = BridgeNode(mission, uri, self._lost, packets)
         self._rosapi = Rosapi(self._node, uri)
