@@ -13,6 +13,7 @@ from cfepy.ground import (
     DecodedEvent,
     Dictionary,
     MessageDecoder,
+    Series,
     SeriesSet,
     Topic,
     dictionary_of,
@@ -20,10 +21,11 @@ from cfepy.ground import (
     packet_series,
     topics_of,
 )
+from cfepy.ground.on_demand import DecodingList, OnDemand
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen, TopicWatch
 from cfepy.monitors import Heard
-from cfepy.msg import Command, MsgType, get_type
+from cfepy.msg import TLM_HEADER_SIZE, Command, MsgType, Telemetry, get_header_size, get_type
 from cfepy.sb import SoftwareBus
 from cfepy.units import NS_PER_S
 
@@ -86,9 +88,10 @@ class FlightLog(Attachment):
         self.lines: list[str] = []
         self._spec = spec
         self._decoder = MessageDecoder()
-        self._heard: dict[str, list[Heard]] = {}
-        self._declared = SeriesSet()  # of packets
-        self._in_series: dict[int, int] = {}  # how many packets of a MsgId are in it
+        self._heard: dict[str, DecodingList[Heard]] = {}
+        self._read: dict[int, DecodingList[Packet]] = {}  # by MsgId
+        self._series: dict[int, dict[str, Series]] = {}  # of packets, by MsgId and name
+        self._in_series: dict[int, int] = {}  # how many packets of a MsgId are in them
         self._packet_watch = PacketWatch(self._take_packet)
         self._topic_watch = TopicWatch(self.topics.take_message)
         self._mission: Mission | None = None
@@ -114,14 +117,17 @@ class FlightLog(Attachment):
         if seen.msg_id in EVENT_IDS:
             self.events.append(DecodedEvent.of(seen))
 
-    def heard(self, topic: str) -> list[Heard]:
-        """Return the messages on a ROS topic."""
-        series = self.topics.get(topic)
-        if series is None:
-            return []
-        found = self._heard.setdefault(topic, [])
-        found += [Heard.of(message, self._decoder) for message in series.sent[len(found) :]]
-        return found
+    def heard(self, topic: str) -> OnDemand[Heard]:
+        """Return the messages on a ROS topic so far."""
+        found = self._heard.get(topic)
+        if found is None:
+            series = self.topics.get(topic)
+            found = DecodingList(
+                () if series is None else series.sent, lambda message: Heard.of(message, self._decoder)
+            )
+            if series is not None:
+                self._heard[topic] = found
+        return found.present()
 
     def here(self) -> Here:
         """Return the present end of the log."""
@@ -137,28 +143,56 @@ class FlightLog(Attachment):
             dictionary.learn(topics_of(self._mission))
         return Packet(seen, dictionary)
 
+    def read(self, msg_id: int) -> OnDemand[Packet]:
+        """Return the packets of a MsgId so far, decoded."""
+        found = self._read.get(msg_id)
+        if found is None:
+            found = DecodingList(self.packets.get(msg_id, ()), self.packet)
+            if msg_id in self.packets and isinstance(self.dictionary.telemetry_of(f"0x{msg_id:04X}"), Telemetry):
+                self._read[msg_id] = found  # that of a topic may get a type later
+        return found.present()
+
     def series(self) -> SeriesSet:
         """Return everything sent so far with a known layout: topics, telemetry and commands by name."""
         found = SeriesSet()
         for name in self.topics.names:
             found.add(self.topics.series(name))
-        for msg_id, packets in self.packets.items():
-            for seen in packets[self._in_series.get(msg_id, 0) :]:
-                self._take_into_series(seen)
-            self._in_series[msg_id] = len(packets)
-        for name in self._declared.names:
-            found.add(self._declared.series(name))
+        for msg_id in self.packets:
+            for series in self._of_msg_id(msg_id):
+                found.add(series)
         return found
 
-    def _take_into_series(self, seen: Seen) -> None:
-        entry = self.dictionary.declared_as(seen.packet)
-        if entry is None:
-            return
-        series = self._declared.get(entry.name)
-        if series is None:
-            series = packet_series(entry.name, isinstance(entry, Command), self.dictionary)
-            self._declared.add(series)
-        series.add(seen)
+    def series_of(self, name: str) -> Series | None:
+        """Return the messages of a topic, or the packets of a name, sent so far; None if there is none."""
+        series = self.topics.get(name)
+        if series is not None:
+            return series
+        entry = self.dictionary.telemetry.get(name) or self.dictionary.commands.get(name)
+        of_msg_id = () if entry is None or entry.msg_id not in self.packets else self._of_msg_id(entry.msg_id)
+        return next((each for each in of_msg_id if each.name == name), None)
+
+    def _of_msg_id(self, msg_id: int) -> list[Series]:
+        """Return the series of the packets of a MsgId. All of a telemetry packet are one series. Packets that share
+        a MsgId are sorted one by one, each once.
+        """
+        packets = self.packets[msg_id]
+        found = self._series.setdefault(msg_id, {})
+        is_telemetry = get_header_size(packets[0].packet) == TLM_HEADER_SIZE
+        entry = self.dictionary.telemetry_of(f"0x{msg_id:04X}")
+        if is_telemetry and self.dictionary.declared_as(packets[0].packet) is None:
+            return []
+        if is_telemetry and isinstance(entry, Telemetry) and not entry.variants:
+            if entry.name not in found:
+                found[entry.name] = packet_series(entry.name, False, self.dictionary, packets)
+            return [*found.values()]
+        for seen in packets[self._in_series.get(msg_id, 0) :]:
+            each = self.dictionary.declared_as(seen.packet)
+            if each is not None:
+                if each.name not in found:
+                    found[each.name] = packet_series(each.name, isinstance(each, Command), self.dictionary)
+                found[each.name].add(seen)
+        self._in_series[msg_id] = len(packets)
+        return [*found.values()]
 
     def telemetry_names(self) -> list[str]:
         """Return the names of the telemetry packets sent so far, in the order of their first packets."""

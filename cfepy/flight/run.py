@@ -9,6 +9,7 @@ It finds the data of a `FlightLog` by name, and creates the errors of failed exp
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -134,7 +135,7 @@ class Run:
         Raises:
             UsageError: if nothing was sent under this name.
         """
-        found = self.log.topics.get(name)
+        found = self.log.series_of(name)
         return self.series.series(name) if found is None else found
 
     def plot(self, name: str, *fields: str, file: str | os.PathLike[str] | None = None) -> Picture:
@@ -161,11 +162,14 @@ class Run:
         notes = () if self._flown is None else self._flown.notes
         return page_of_run(self._numbers, self.problems, notes, self.events, self.console)
 
-    def messages(self, topic: str) -> list[Any]:
-        """Return all messages on a ROS topic, including those without a subscriber."""
-        return [each.msg for each in self.history(topic)]
+    def messages(self, topic: str) -> Sequence[Any]:
+        """Return all messages on a ROS topic so far, including those without a subscriber. Each is decoded when it is
+        read, so `messages(topic)[-1]` takes the same time in a long run.
+        """
+        series = self.log.topics.get(topic)
+        return [] if series is None else series.messages
 
-    def history(self, topic: str) -> list[Heard]:
+    def history(self, topic: str) -> Sequence[Heard]:
         """Return the messages on a ROS topic: `msg` is the message, `sender` its sender, `t` its time in virtual s."""
         return self.log.heard(topic)
 
@@ -183,15 +187,14 @@ class Run:
             raise self._failure(f"telemetry {self.dictionary.telemetry_of(name).name} until now", instead)
         return self.log.packet(found[-1])
 
-    def packets(self, name: str) -> list[Packet]:
-        """Return all packets of a kind, by the name of the telemetry or its MsgId, including those without a
-        subscriber.
+    def packets(self, name: str) -> Sequence[Packet]:
+        """Return all packets of a kind so far, by the name of the telemetry or its MsgId, including those without a
+        subscriber. Each is decoded when it is read.
 
         Raises:
             UsageError: if the packet is not in the dictionary.
         """
-        msg_id = self.dictionary.telemetry_of(name).msg_id
-        return [self.log.packet(seen) for seen in self.log.packets.get(msg_id, ())]
+        return self.log.read(self.dictionary.telemetry_of(name).msg_id)
 
     def stdout(self, node: str) -> list[str]:
         """Return the lines that a node has printed and logged, without the node's name in front.

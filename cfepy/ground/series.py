@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cfepy.attachment import Attachment
 from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.fields import MessageDecoder, array_of, columns_of, names_in, path_of, steps_of, unit_at, values_at
+from cfepy.ground.on_demand import DecodingList
 from cfepy.ground.topics import topics_of
 from cfepy.ground.values import unknown_field
 from cfepy.mission import Mission, PacketWatch, Seen, TopicMessage, TopicWatch, matches
@@ -55,7 +56,6 @@ class Series:
         stamp: returns the on-board time at which it was sent, in ns; None if there is no such time.
 
     Attributes:
-        count: number of messages sent.
         most: maximum number of messages kept, fewer if they are large; None for all. Beyond it, every second one is
             dropped.
         every: one of this number of messages is kept.
@@ -63,17 +63,27 @@ class Series:
 
     def __init__(self, name: str, type: str, read: Callable[[Any], Any], stamp: Callable[[Any], int | None]) -> None:
         self.name, self.type = name, type
-        self.count, self.every = 0, 1
+        self.every = 1
         self.most: int | None = None
-        self._bytes = 0
+        self._added = self._bytes = 0
         self._read, self._stamp = read, stamp
         self._sent: list[Any] = []
-        self._messages: list[Any] = []
+        self._messages = DecodingList(self._sent, read)
+
+    @classmethod
+    def over(
+        cls, name: str, type: str, read: Callable[[Any], Any], stamp: Callable[[Any], int | None], sent: list[Any]
+    ) -> Series:
+        """Return a series over a list of undecoded messages that others extend; see the class for the arguments."""
+        made = cls(name, type, read, stamp)
+        made._sent = sent
+        made._messages = DecodingList(sent, read)
+        return made
 
     def add(self, sent: TopicMessage | Seen | RecordedPacket) -> None:
         """Add a message."""
-        self.count += 1
-        if (self.count - 1) % self.every:
+        self._added += 1
+        if (self._added - 1) % self.every:
             return
         self._sent.append(sent)
         if self.most is not None:
@@ -84,7 +94,13 @@ class Series:
     def _drop_half(self) -> None:
         self.every *= 2
         self._bytes //= 2
-        self._sent, self._messages = self._sent[::2], self._messages[::2]
+        self._sent = self._sent[::2]
+        self._messages = DecodingList(self._sent, self._read)
+
+    @property
+    def count(self) -> int:
+        """Number of messages sent."""
+        return len(self._sent) if self.every == 1 else self._added
 
     @property
     def sent(self) -> Sequence[Any]:
@@ -110,13 +126,10 @@ class Series:
 
     @property
     def messages(self) -> Sequence[Any]:
-        """The messages as nodes receive them, packets as mappings of their fields.
-
-        Raises:
-            UsageError: if the bytes of one are not a valid message.
+        """The messages as nodes receive them, packets as mappings of their fields. Each is decoded when it is read;
+        that raises `UsageError` if its bytes are not a valid message.
         """
-        self._messages += map(self._read, self._sent[len(self._messages) :])
-        return self._messages
+        return self._messages.present()
 
     @property
     def times_ns(self) -> NDArray[Any]:
@@ -483,16 +496,17 @@ def _is_telemetry(msg_id: int) -> bool:
     return msg_id & HEADER_BITS == TELEMETRY_BITS
 
 
-def packet_series(name: str, is_command: bool, dictionary: Dictionary) -> Series:
-    """Return an empty series of packets.
+def packet_series(name: str, is_command: bool, dictionary: Dictionary, sent: list[Seen] | None = None) -> Series:
+    """Return a series of packets.
 
     Args:
         name: name in the dictionary.
         is_command: whether they are commands, which have no time in their header.
         dictionary: decodes them.
+        sent: the packets, to which others add; None for an empty series of its own.
     """
     kind, stamp = ("command", _no_stamp) if is_command else ("telemetry", _spacecraft_time)
-    return Series(name, kind, lambda seen: dictionary.fields_of(seen.packet), stamp)
+    return Series.over(name, kind, lambda seen: dictionary.fields_of(seen.packet), stamp, [] if sent is None else sent)
 
 
 def _spacecraft_time(seen: Seen) -> int:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.ground import Dictionary, MessageDecoder
 from cfepy.pilot.pilot import fly
 from cfepy.pilot.plan import RunPlan
 from cfepy.schedules.schedule import Schedule
@@ -183,3 +184,51 @@ def test_before_there_are_nodes_and_after_the_end(folder: Path) -> None:
         assert flight.results.virtual_s == 0
         with pytest.raises(ExpectationError, match="the flight is over"):
             flight.run_for(1)
+
+
+def test_last_message_of_a_topic_is_decoded_alone(flight: Flight, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A look at a topic or a packet takes the same time in a long run."""
+    decoded: list[str] = []
+    for kind, method in ((MessageDecoder, "decode"), (Dictionary, "decode")):
+        real = getattr(kind, method)
+        monkeypatch.setattr(kind, method, lambda *args, real=real: decoded.append("") or real(*args))
+    flight.run_for(3)
+    flight.send("CFE_ES_SEND_HK")
+    flight.run_for(0.1)
+    assert len(flight.topic("/count")) == len(flight.messages("/count")) == len(flight.history("/count")) > 30
+    looks = [
+        lambda: flight.topic("/count").messages[-1].data,
+        lambda: flight.messages("/count")[-1].data,
+        lambda: flight.history("/count")[-1].msg.data,
+        lambda: flight.topic("CFE_EVS_LONG_EVENT_MSG").messages[-1]["Message"],
+        lambda: flight.packets("CFE_EVS_LONG_EVENT_MSG")[-1]["Message"],
+    ]
+    for look in looks:
+        decoded.clear()
+        assert look()
+        assert len(decoded) <= 1
+    assert len(flight.topic("CFE_EVS_LONG_EVENT_MSG")) == len(flight.events) > 10
+
+
+def test_commands_and_packets_that_share_a_msgid_are_series_of_their_own(flight: Flight) -> None:
+    flight.run_for(1)
+    for _ in range(2):
+        flight.send("CFE_ES_NOOP")
+        flight.send("CFE_ES_RESET_COUNTERS")
+        flight.run_for(0.1)
+        noops = flight.topic("CFE_ES_NOOP")
+        assert (len(noops), noops.type) == (len(flight.topic("CFE_ES_RESET_COUNTERS")), "command")
+    assert (len(noops), noops.count) == (2, 2)
+    assert {"CFE_ES_NOOP", "CFE_ES_RESET_COUNTERS", "/count", "CFE_EVS_LONG_EVENT_MSG"} <= {*flight.series.names}
+    with pytest.raises(UsageError, match="unknown topic or packet"):
+        flight.topic("CFE_ES_NOPE")
+
+
+def test_messages_of_an_earlier_request_stay(flight: Flight) -> None:
+    flight.run_for(0.5)
+    before, history = flight.messages("/count"), flight.history("/count")
+    counts = len(before), len(history)
+    flight.run_for(1)
+    assert (len(before), len(history)) == counts
+    assert flight.messages("/nothing") == flight.history("/nothing") == []
+    assert flight.messages("/count")[: counts[0]] == before
