@@ -23,6 +23,7 @@ if TYPE_CHECKING:
         CppNodesConfig,
         CppNodesError,
     )
+    from cfepy.mission.drawn_parameters import CHOICE, INTEGERS, ParameterDistribution
     from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
     from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
     from cfepy.mission.host_actions import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
@@ -72,11 +73,13 @@ __all__ = [
     "ARENA_BYTES",
     "ARRAY",
     "CALL",
+    "CHOICE",
     "COMPILED_STACK_BYTES",
     "CORE_APPS",
     "FILE",
     "FIRST_PIECE_NS",
     "HOST",
+    "INTEGERS",
     "KEPT_ENVIRONMENT",
     "LAUNCH_FILES",
     "LOCK_FILE",
@@ -108,6 +111,7 @@ __all__ = [
     "OutsideStream",
     "Overwrite",
     "PacketWatch",
+    "ParameterDistribution",
     "PieceLength",
     "Processor",
     "RaisedError",
@@ -179,6 +183,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "CppNodesConfig",
                 "CppNodesError",
             ),
+            ".drawn_parameters": ("CHOICE", "INTEGERS", "ParameterDistribution"),
             ".endless_wait": (
                 "EndlessWait",
                 "EndlessWaits",

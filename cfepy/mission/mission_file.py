@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
@@ -24,6 +24,10 @@ from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.reading.mistakes import Mistakes, each_of
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.mission.drawn_parameters import ParameterDistribution
 
 DEMANDS = ("invariants", "results", "deadlines", "inversions")
 """Sections with rules for a run."""
@@ -231,14 +235,18 @@ def read_bridge(section: Marked, mistakes: Mistakes) -> RosBridge:
 
 
 def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
-    """Return the section `sweep:`: the rates of the mission and their topics, for `cfepy sweep --rate`.
+    """Return the section `sweep:`: the rates, topics and distributions of the mission, for `cfepy sweep`.
 
     Args:
         section: its value.
-        mistakes: collects unknown keys and values that are not lists of names.
+        mistakes: collects unknown keys, values that are not lists of names, and invalid distributions.
     """
-    said: dict[str, tuple[str, ...]] = {}
+    said: dict[str, Any] = {}
     for name, entry in mistakes.fields(section, SWEEP_FIELDS):
+        if name == "draw":
+            drawn = {each: mistakes.attempt(partial(_drawn, item)) for each, item in mistakes.mapping(entry).items()}
+            said[name] = {each: found for each, found in drawn.items() if found is not None}
+            continue
         items = mistakes.items(entry)
         texts = [mistakes.attempt(item.text) for item in items]
         said[name] = tuple(text for text in texts if text)
@@ -246,6 +254,15 @@ def read_sweep(section: Marked, mistakes: Mistakes) -> SweepConfig:
             if name == "topics" and text and not text.startswith("/"):
                 mistakes.add(item.fail(f'invalid topic name {text!r}; it must begin with "/"'))
     return SweepConfig(**said)
+
+
+def _drawn(entry: Marked) -> ParameterDistribution:
+    from cfepy.mission.drawn_parameters import ParameterDistribution
+
+    try:
+        return ParameterDistribution.parse(entry.text())
+    except UsageError as error:
+        raise error if error.file is not None else entry.fail(error.text) from None
 
 
 def _clock_hz(entry: Marked) -> int:
@@ -320,7 +337,7 @@ LAUNCH_FIELDS = ("file", "args")
 TOPIC_FIELDS = ("msg_id", "raw")
 BRIDGE_FIELDS = ("publish", "subscribe", "clock")
 PACKET_FIELDS = ("packet", "raw")
-SWEEP_FIELDS = ("rate", "topics")
+SWEEP_FIELDS = ("rate", "topics", "draw")
 
 NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "name": Marked.text,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.config.platform import PlatformConfig
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
@@ -23,6 +23,9 @@ from cfepy.reading.marked_yaml import Marked
 from cfepy.units import NS_PER_S, NS_PER_US
 
 UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
+
+if TYPE_CHECKING:
+    from cfepy.mission.drawn_parameters import ParameterDistribution
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +49,12 @@ class SweepConfig:
     Attributes:
         rate: full names of parameters (with a slash) and names of launch arguments that a rate in Hz sets.
         topics: topics that then have this rate; empty for all topics of the mission.
+        draw: distributions of parameters and launch arguments, by name, for a sweep that draws them.
     """
 
     rate: tuple[str, ...] = ()
     topics: tuple[str, ...] = ()
+    draw: Mapping[str, ParameterDistribution] = field(default_factory=dict)
 
 
 class BuiltProgram(NamedTuple):

@@ -58,3 +58,53 @@ def test_what_cannot_be_swept(words: list[str], told: str, capsys: pytest.Captur
         status = ended.code
     assert status == 2
     assert told in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_drawn_runs_are_the_same_from_any_number_of_processes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    draws = ["--runs", "6", "--draw", "/left/rate=uniform:60,180", "--draw", "/left/report_period=choice:1,2"]
+    measures = ["--measure", "/left_to_right", "--measure", "last:/left_to_right.data"]
+    outs = []
+    for jobs in ("1", "2"):
+        files = ["--csv", f"{jobs}.csv", "--json", f"{jobs}.json", "--picture", f"{jobs}.svg"]
+        assert main([*WORDS, *draws, *measures, *files, "--jobs", jobs]) == 0
+        outs.append(capsys.readouterr().out.replace(f"{jobs}.svg", "PICTURE"))
+    assert outs[0] == outs[1]
+    for suffix in ("csv", "json", "svg"):
+        assert Path(f"1.{suffix}").read_bytes() == Path(f"2.{suffix}").read_bytes()
+    rows = list(csv.DictReader(Path("1.csv").read_text(encoding="utf-8").splitlines()))
+    assert [each["run"] for each in rows] == list("012345") == [each["seed"] for each in rows]
+    (group,) = json.loads(Path("1.json").read_text(encoding="utf-8"))["groups"]
+    assert group["runs"] == 6
+    assert "last:/left_to_right.data" in [each["measure"] for each in group["measures"]]
+    worst = rows[group["worst"]["run"]]
+    words = group["worst"]["command"].split()
+    assert words[:2] == ["cfepy", "run"]
+    assert f"/left/rate={worst['/left/rate']}" in words
+    assert main([*words[1:], "--quiet", "--json", "again.json"]) == 0
+    assert json.loads(Path("again.json").read_text(encoding="utf-8"))["trace"] == worst["trace"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--draw", "/left/rate"], "invalid drawn parameter '/left/rate'; expected /NAME=KIND:NUMBERS"),
+        (["--draw", "/left/rate=normal:1,-1"], "/left/rate: invalid distribution 'normal:1,-1'; DEVIATION must"),
+        (["--draw", "/left/rate=normal:1,1", "--draw", "/left/rate=normal:1,2"], "--draw: /left/rate is given twice"),
+        (["--draw", "/left/rate=normal:1,1", "--set", "/left/rate=5"], "--draw: /left/rate is already set by --set"),
+        (["--draw", "/left/rate=normal:1,1", "--rate", "50"], "--draw: /left/rate is already set by --rate"),
+        (["--draw-seed", "1"], "--draw-seed: requires --draw or --runs"),
+        (["--runs", "100001"], "more than 100,000 points"),
+        (["--measure", "most:/left_to_right.data"], "--measure: unknown measure 'most'"),
+    ],
+)
+def test_draws_that_are_refused(words: list[str], told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    try:
+        status: object = main([*WORDS, *words])
+    except SystemExit as ended:
+        status = ended.code
+    assert status == 2
+    assert told in capsys.readouterr().err

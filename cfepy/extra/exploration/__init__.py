@@ -16,10 +16,14 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.extra.exploration.batch import Lot, answers
+    from cfepy.extra.exploration.draws import Drawn, draws_of
     from cfepy.extra.exploration.exploration import DEFAULT_SEEDS, Expedition, Report, Told
+    from cfepy.extra.exploration.field_measures import FieldMeasure, FieldValue
     from cfepy.extra.exploration.longest import Worst
     from cfepy.extra.exploration.made_moves import MadeMove
     from cfepy.extra.exploration.mission_transfer import files_read, ship
+    from cfepy.extra.exploration.monte_carlo import Group, Quantity, groups_of
+    from cfepy.extra.exploration.monte_carlo_picture import picture_of_draws
     from cfepy.extra.exploration.progress import make_progress
     from cfepy.extra.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
     from cfepy.extra.exploration.search import SeededSearch, seeded_kinds
@@ -49,14 +53,19 @@ __all__ = [
     "NOT_POSSIBLE",
     "STILL_THERE",
     "WIDTH",
+    "Drawn",
     "Expedition",
     "Failure",
+    "FieldMeasure",
+    "FieldValue",
     "Finding",
+    "Group",
     "Knee",
     "Lot",
     "MadeMove",
     "Point",
     "PointNumbers",
+    "Quantity",
     "ReplayedFailure",
     "Report",
     "SeededSearch",
@@ -76,12 +85,15 @@ __all__ = [
     "Worst",
     "answers",
     "budget_of",
+    "draws_of",
     "files_read",
+    "groups_of",
     "important",
     "knees",
     "make_crew",
     "make_progress",
     "numbers_of",
+    "picture_of_draws",
     "picture_of_sweep",
     "points_of",
     "replay_all",
@@ -130,6 +142,10 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "seeds_of",
                 "values_of",
             ),
+            ".draws": ("Drawn", "draws_of"),
+            ".field_measures": ("FieldMeasure", "FieldValue"),
+            ".monte_carlo": ("Group", "Quantity", "groups_of"),
+            ".monte_carlo_picture": ("picture_of_draws",),
             ".exploration": (
                 "DEFAULT_SEEDS",
                 "Expedition",

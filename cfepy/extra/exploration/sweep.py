@@ -13,6 +13,8 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 from cfepy.extra.exploration.batch import Lot
+from cfepy.extra.exploration.draws import Drawn
+from cfepy.extra.exploration.field_measures import FieldMeasure, FieldValue, recorder_of
 from cfepy.extra.exploration.mission_transfer import PlanElsewhere
 from cfepy.monitors import Arrivals, TrafficWatch
 from cfepy.pilot import BootError, Results, RunPlan, SentNames, fly
@@ -32,6 +34,8 @@ class Point(NamedTuple):
         settings: parameters and their values, including the parameters of the rate.
         launch_args: arguments of the launch file.
         seed: seed of all random values.
+        run: number of the run of a sweep that draws values, from 0; None in another sweep.
+        drawn: the drawn values of the run; they are among the settings and the arguments too.
     """
 
     board: str | None = None
@@ -39,6 +43,8 @@ class Point(NamedTuple):
     settings: tuple[tuple[str, str], ...] = ()
     launch_args: tuple[tuple[str, str], ...] = ()
     seed: int = 0
+    run: int | None = None
+    drawn: Drawn = ()
 
     def plan(self, base: RunPlan) -> RunPlan:
         """Return the run of this point."""
@@ -91,6 +97,7 @@ class PointNumbers:
         problem: the first problem of the run; empty for none.
         trace: digest of the run.
         trouble: traceback of an error of cfepy itself, which is not an error of the mission.
+        values: the measured values of fields, in their order.
     """
 
     board: str = ""
@@ -101,17 +108,19 @@ class PointNumbers:
     problem: str = ""
     trace: str = ""
     trouble: str = ""
+    values: tuple[FieldValue, ...] = ()
 
     @property
     def sent(self) -> tuple[TopicNumbers, ...]:
         """The topics with messages: one without any has no rate, and is not the slowest."""
         return tuple(each for each in self.topics if each.sent)
 
-    def why_not_clean(self, rate_hz: float | None) -> str:
+    def why_not_clean(self, rate_hz: float | None, needs_messages: bool = True) -> str:
         """Return why a rate is not clean; empty if it is.
 
         Args:
             rate_hz: the requested rate; None if there is none, and only losses count.
+            needs_messages: whether a run without any measured topic is not clean.
         """
         if self.problem or self.trouble:
             return self.problem or self.trouble.splitlines()[-1]
@@ -123,7 +132,10 @@ class PointNumbers:
             if rate_hz is not None and topic.delivered_hz < rate_hz * (1 - RATE_TOLERANCE):
                 held = f", {topic.held_back} were held back" if topic.held_back else ""
                 return f"{topic.name} came at {topic.delivered_hz:.1f} Hz{held}"
-        return "" if self.topics else "no message came"
+        unmeasured = next((each for each in self.values if each.value is None), None)
+        if unmeasured is not None:
+            return f"no value of {unmeasured.name}: {unmeasured.why}"
+        return "" if self.topics or self.values or not needs_messages else "no message came"
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,15 +145,17 @@ class Sweep(Lot[Point, PointNumbers]):
     Attributes:
         plan: the settings that all points share.
         topics: names of the topics that are measured; empty for all ROS topics with messages.
+        fields: the fields that are measured.
     """
 
     plan: RunPlan
     topics: tuple[str, ...] = ()
+    fields: tuple[FieldMeasure, ...] = ()
 
     def judge(self, subject: Point) -> PointNumbers:
-        watch = TrafficWatch()
+        watch, recorded = TrafficWatch(), recorder_of(self.fields)
         try:
-            flown = fly(subject.plan(self.plan), attachments=[watch])
+            flown = fly(subject.plan(self.plan), attachments=[watch, *recorded])
         except (BootError, UsageError) as error:
             return PointNumbers(board=subject.board or "", problem=str(error).splitlines()[0])
         except Exception:
@@ -155,6 +169,7 @@ class Sweep(Lot[Point, PointNumbers]):
             tuple(self._numbers(results, watch, SentNames(flown.mission))),
             _first_problem(results),
             flown.trace,
+            values=tuple(each.value_in(recorded[0]) for each in self.fields),
         )
 
     def died(self, subject: Point, fate: str, words: str) -> PointNumbers:
@@ -230,7 +245,7 @@ class SweepRow(NamedTuple):
     @property
     def why_not_clean(self) -> str:
         """Why the point is not clean; see `PointNumbers.why_not_clean`."""
-        return self.numbers.why_not_clean(self.point.rate_hz)
+        return self.numbers.why_not_clean(self.point.rate_hz, needs_messages=self.point.run is None)
 
 
 def knees(rows: Sequence[SweepRow]) -> list[Knee]:
@@ -260,18 +275,29 @@ COLUMNS = (
     *("board", "rate_hz", "seed", "topic", "sent", "received", "lost", "held_back", "delivered_hz"),
     *("latency_mean_us", "latency_max_us", "cpu", "ram_peak_bytes", "clean", "problem", "trace"),
 )
-"""The columns of a table of points, with a row for each topic of each point; other varied values follow `seed`."""
+"""The columns of a table of points, with a row for each topic of each point.
+
+After `seed` come the other varied values, and at the end the measured fields. A sweep that draws begins with the
+number of the run.
+"""
 
 
 def sweep_table(rows: Sequence[SweepRow]) -> tuple[list[str], list[list[Any]]]:
     """Return a sweep as a table: heads, and a row for each topic of each point, in the order of the points."""
-    names = list(dict.fromkeys(name for row in rows for name, _ in row.varied))
-    heads = [*COLUMNS[:3], *names, *COLUMNS[3:]]
-    return heads, [_cells(row, topic, names) for row in rows for topic in row.numbers.topics or (None,)]
+    names = list(dict.fromkeys(name for row in rows for name, _ in (*row.varied, *row.point.drawn)))
+    fields = list(dict.fromkeys(each.name for row in rows for each in row.numbers.values))
+    is_drawn = any(row.point.run is not None for row in rows)
+    heads = [*(["run"] if is_drawn else []), *COLUMNS[:3], *names, *COLUMNS[3:], *fields]
+    found = []
+    for row in rows:
+        measured = {each.name: each.value for each in row.numbers.values}
+        begin, end = [row.point.run] if is_drawn else [], [measured.get(name, "") for name in fields]
+        found += [[*begin, *_cells(row, topic, names), *end] for topic in row.numbers.topics or (None,)]
+    return heads, found
 
 
 def _cells(row: SweepRow, topic: TopicNumbers | None, names: Sequence[str]) -> list[Any]:
-    point, numbers, varied = row.point, row.numbers, dict(row.varied)
+    point, numbers, varied = row.point, row.numbers, dict((*row.varied, *row.point.drawn))
     of_topic: list[Any] = [""] * 8
     if topic is not None:
         of_topic = [topic.name, topic.sent, topic.received, topic.lost, topic.held_back, topic.delivered_hz]

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from functools import partial
 from itertools import product
 
+from cfepy.extra.exploration.draws import Drawn
 from cfepy.extra.exploration.sweep import Point
 from cfepy.mission import MissionSpec
 from cfepy.psp import load_profile
@@ -112,40 +113,59 @@ def points_of(
     boards: Sequence[str | None],
     rates: Sequence[float],
     varied: Sequence[tuple[str, Sequence[str]]],
-    seeds: Sequence[int],
+    seeds: Sequence[int] | None,
+    draws: Sequence[Drawn] = (),
 ) -> list[tuple[Point, tuple[tuple[str, str], ...]]]:
-    """Return all points, boards outermost and seeds innermost, each with its varied values.
+    """Return all points, boards outermost, then drawn runs and seeds innermost, each with its varied values.
 
     Args:
         spec: the mission.
         boards: names or files; None is the mission's own.
         rates: in Hz; an empty list flies the mission at its own rate.
         varied: names of parameters (with a slash) and arguments of the launch file, each with its values.
-        seeds: seeds of all random values.
+        seeds: seeds of all random values; None for 0, or for the number of the run if values are drawn.
+        draws: drawn values of each run; an empty list draws nothing.
 
     Raises:
-        UsageError: a board does not exist, the mission does not define the target of a rate, a varied parameter is also
-            that target, or there are too many points.
+        UsageError: a board does not exist, the mission does not define the target of a rate, two options set the same
+            parameter, or there are too many points.
     """
     each_of(partial(load_profile, board) for board in boards if board is not None)
     sets = spec.sweep.rate
     if rates and not sets:
         text = "missing target of --rate; add `sweep: {rate: [/node/rate]}` to the mission file, or use --set"
         raise UsageError(text, file=spec.mission_file or spec.script, field="--rate")
-    both = next((name for name, _ in varied if rates and name in sets), None)
-    if both is not None:
-        raise UsageError(f"{both} is already set by --rate; leave one of them out", field="--set")
+    drawn = [name for name, _ in draws[0]] if draws else []
+    _check_targets([name for name, _ in varied], drawn, sets if rates else ())
     axes = [[(name, value) for value in values] for name, values in varied]
-    count = len(boards) * max(1, len(rates)) * len(seeds)
+    count = len(boards) * max(1, len(rates)) * max(1, len(draws)) * len(seeds or (0,))
     for axis in axes:
         count *= len(axis)
     if count > MOST_POINTS:
         raise UsageError(f"more than {MOST_POINTS:,} points ({count:,}); give fewer values", field="--set")
     found = []
     asked: Sequence[float | None] = rates or [None]
-    for board, chosen, rate, seed in product(boards, product(*axes), asked, seeds):
-        said = [*chosen, *((name, f"{rate:g}") for name in sets if rate is not None)]
+    runs: Sequence[tuple[int | None, Drawn]] = list(enumerate(draws)) or [(None, ())]
+    for board, chosen, rate, (run, values) in product(boards, product(*axes), asked, runs):
+        said = [*chosen, *values, *((name, f"{rate:g}") for name in sets if rate is not None)]
         settings = tuple((name, value) for name, value in said if name.startswith("/"))
         args = tuple((name, value) for name, value in said if not name.startswith("/"))
-        found.append((Point(board, rate, settings, args, seed), chosen))
+        for seed in [run or 0] if seeds is None else seeds:
+            found.append((Point(board, rate, settings, args, seed, run, values), chosen))
     return found
+
+
+def _check_targets(varied: Sequence[str], drawn: Sequence[str], by_rate: Sequence[str]) -> None:
+    """Check that each parameter is set once.
+
+    Raises:
+        UsageError: two options set one.
+    """
+    for names, option, others, other in (
+        (varied, "--set", by_rate, "--rate"),
+        (drawn, "--draw", by_rate, "--rate"),
+        (drawn, "--draw", varied, "--set"),
+    ):
+        both = next((name for name in names if name in others), None)
+        if both is not None:
+            raise UsageError(f"{both} is already set by {other}; leave one of them out", field=option)

@@ -6,6 +6,7 @@ A command belongs here when it flies a mission many times to find failures.
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from cfepy.cli.csv_cells import add_quote_formulas
 from cfepy.cli.options import (
@@ -15,6 +16,10 @@ from cfepy.cli.options import (
     seconds_of,
 )
 from cfepy.cli.parser import shared_group
+from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.mission import ParameterDistribution
 
 DEFAULT_SEEDS = 100
 MOST_SEEDS = 100_000_000
@@ -134,12 +139,12 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
     sweep = commands.add_parser(
         "sweep",
         help="find the highest rate without losses, on many boards",
-        description="Run a mission at every combination of boards, rates, values and seeds. VALUES are values and "
-        "ranges with commas between: 10..1000 are the preferred numbers from 10 to 1000, ten a decade; 10..50:10 "
-        "are 10, 20, 30, 40 and 50.",
+        description="Run a mission at every combination of boards, rates, values and seeds, or with drawn values. "
+        "VALUES are values and ranges with commas between: 10..1000 are the preferred numbers from 10 to 1000, ten a "
+        "decade; 10..50:10 are 10, 20, 30, 40 and 50.",
         examples=(
             "cfepy sweep capture --rate 10..1000 --board rx64m",
-            "cfepy sweep capture --set /arm/rate=20,50 --csv sweep.csv",
+            "cfepy sweep capture --runs 200 --draw /arm/rate=normal:1000,20 --csv sweep.csv",
         ),
         epilog="exit status: 0 well, whatever was found; 1 an error in cfepy itself; 2 bad usage, or a mission that "
         "cannot be read; 130 ended by Ctrl-C, after a report",
@@ -152,9 +157,11 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         action="append",
         default=[],
         metavar="NAME|FILE",
-        help="boards, with commas between, or the option several times (default: the mission's)",
+        help="boards, with commas between (default: the mission's)",
     )
-    sweep.add_argument("--seed", dest="seeds", default="0", metavar="N", help="seeds; VALUES (default: 0)")
+    sweep.add_argument(
+        "--seed", dest="seeds", metavar="N", help="seeds; VALUES (default: 0; of a drawn run its number)"
+    )
     sweep.add_argument(
         "--set",
         dest="varied",
@@ -165,7 +172,22 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="VALUES of a ROS parameter (/arm/rate=20,50) or of a launch argument (rate=20,50)",
     )
     sweep.add_argument(
-        "--measure", action="append", default=[], metavar="TOPIC", help="measure this (default: as in the mission file)"
+        "--draw",
+        dest="drawn",
+        action="append",
+        type=_drawn_of,
+        default=[],
+        metavar="/PARAM=KIND",
+        help="draw it in each run: normal:10,0.5 or uniform:1,2 or integers:1..6 or choice:a,b (the guide has all)",
+    )
+    sweep.add_argument("--runs", type=_count_of, metavar="N", help="number of drawn runs (default: 100)")
+    sweep.add_argument("--draw-seed", type=_number_of, metavar="N", help="seed of the drawn values (default: 0)")
+    sweep.add_argument(
+        "--measure",
+        action="append",
+        default=[],
+        metavar="TOPIC",
+        help="a topic (default: as in the mission file), or a field: last, min, max or mean:/odom.twist.linear.x",
     )
     add_run_options(sweep, without=["board", "seed", "settings"])
     _add_crew(sweep)
@@ -184,6 +206,20 @@ def _varied_of(text: str) -> tuple[str, str]:
             f"invalid parameter setting {text!r}; expected /NAME=VALUES, such as /arm/rate=20,50"
         )
     return name, values
+
+
+def _drawn_of(text: str) -> tuple[str, ParameterDistribution]:
+    from cfepy.mission import ParameterDistribution
+
+    name, mark, distribution = text.partition("=")
+    if not mark or not name or not distribution:
+        raise argparse.ArgumentTypeError(
+            f"invalid drawn parameter {text!r}; expected /NAME=KIND:NUMBERS, such as /arm/rate=normal:1000,20"
+        )
+    try:
+        return name, ParameterDistribution.parse(distribution)
+    except UsageError as error:
+        raise argparse.ArgumentTypeError(f"{name}: {error.text}") from None
 
 
 def _count_of(text: str) -> int:
