@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Any
 
-from cfepy.es import STATE_NAMES
+from cfepy.es import STATE_NAMES, AppRecord
 from cfepy.evs import CRITICAL, DEBUG, ERROR, INFORMATION
 from cfepy.ground import kind_of, names_in
 from cfepy.mission import CORE_APPS, EndlessWaits, Mission, Reset, Traffic, endless_waits
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
 RESET_TYPES = {RST_TYPE_PROCESSOR: "PROCESSOR", RST_TYPE_POWERON: "POWERON"}
 NOT_STARTED = "NOT STARTED"
-ENDED = "ENDED"
+RUNNING, ENDED = "RUNNING", "ENDED"
 PERCENT_OF_FEW_DIGITS, LEAST_PERCENT = 0.1, 0.0001
 TOLERANCE = 1.1  # for a measured rate, because messages just before the mission was operational count too
 
@@ -173,13 +173,21 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         mission.kernel.now,
         wall_ns,
         {msg_id: count.sent for msg_id, count in traffic.items()},
-        {app.name: STATE_NAMES[app.state] for app in mission.cfe.es.apps},
+        {app.name: _state(app) for app in mission.cfe.es.apps},
         [PipeResult(pipe.name, pipe.app_name, pipe.depth, pipe.peak, pipe.dropped) for pipe in sb.pipes],
         MemoryResult(memory.used, memory.peak, memory.limit, memory.by_owner()),
         mission.processor.sb_task.housekeeping(),
         endless_waits(mission),
         _idle_nodes(mission),
     )
+
+
+def _state(app: AppRecord) -> str:
+    """Return the state of an application. ES does not notice if a main task ends without CFE_ES_ExitApp."""
+    main = app.tasks.get(app.main_task_id)
+    state = STATE_NAMES[app.state]
+    has_ended = state == RUNNING and (main is None or (main.task is not None and main.task.done))
+    return ENDED if has_ended and not app.is_core else state
 
 
 @dataclass(frozen=True, slots=True)

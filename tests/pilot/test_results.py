@@ -36,6 +36,11 @@ def Restarts(cfe):
     cfe.es.restart_app(cfe.es.get_app_id())
     while cfe.es.run_loop(1):
         cfe.os.task_delay(100)
+
+def Leaves(cfe):
+    cfe.es.run_loop(1)
+    cfe.os.task_delay(200)
+    cfe.os.task_exit()
 """
 WALL_NS = 500_000_000
 
@@ -78,6 +83,12 @@ def test_restarts_are_counted(tmp_path: Path) -> None:
     assert app.restarts > 1  # it asks for the next one each time
     assert (app.deaths, app.core) == (0, False)
     assert results.problems == []
+
+
+def test_application_whose_main_task_has_exited_is_ended(tmp_path: Path) -> None:
+    """ES itself still takes it for RUNNING, as NASA's does."""
+    results = results_of(tmp_path, "Leaves")
+    assert [app.state for app in results.apps if app.name == "LEAVES"] == ["ENDED"]
 
 
 def test_missing_app_is_not_started(tmp_path: Path) -> None:
