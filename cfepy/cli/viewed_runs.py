@@ -6,8 +6,10 @@ For values over time it can also be a bag.
 from __future__ import annotations
 
 import argparse
+import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment
 from cfepy.cli.flying_progress import FlyingProgress
@@ -21,6 +23,12 @@ from cfepy.rtos import Policy
 from cfepy.status import UsageError
 from cfepy.trace import Trace
 from cfepy.units import NS_PER_S
+
+if TYPE_CHECKING:
+    from cfepy.journal import Journal, Replay, Stage
+
+StoryOf = Callable[[RunPlan, str], Any]
+"""Returns the story of a run whose files are below a folder, which is empty if they have their own paths."""
 
 
 def flight_plan(arguments: argparse.Namespace) -> RunPlan:
@@ -43,7 +51,8 @@ class LookedAt:
         schedule: the schedule of the run.
         notes: messages for the user.
         warnings: why it is not the requested run; empty if it is.
-        plan: the plan of a run that was flown; None for a replay.
+        journal: name of the journal that was replayed; empty for a run that was flown.
+        story: the result of `story_of`; None without one.
     """
 
     flown: Flown
@@ -51,7 +60,8 @@ class LookedAt:
     schedule: str
     notes: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
-    plan: RunPlan | None = None
+    journal: str = ""
+    story: Any = None
 
     def status(self) -> int:
         """Print notes and warnings to standard error. Returns the exit status of the command."""
@@ -66,6 +76,7 @@ def look_at(
     attachments: Sequence[Attachment],
     watched: Callable[[Policy], Policy] = lambda policy: policy,
     trace: Trace | None = None,
+    story_of: StoryOf | None = None,
 ) -> LookedAt:
     """Do the run that the command line names.
 
@@ -74,6 +85,7 @@ def look_at(
         attachments: attachments that watch the run.
         watched: wraps the policy of a schedule that is given as deviations from fifo.
         trace: receives the records; None makes one.
+        story_of: returns the story of a run whose schedule is given as deviations from fifo.
 
     Returns:
         The run.
@@ -82,9 +94,9 @@ def look_at(
         UsageError: there is no such run, or an option is for the other kind of source.
     """
     if _is_journal(arguments.source):
-        return _replay(arguments, attachments, watched, trace)
+        return _replay(arguments, attachments, watched, trace, story_of)
     _refuse_from_disk(arguments)
-    return _fly(arguments, attachments, watched, trace)
+    return _fly(arguments, attachments, watched, trace, story_of)
 
 
 def _refuse_from_disk(arguments: argparse.Namespace) -> None:
@@ -127,6 +139,7 @@ def _fly(
     attachments: Sequence[Attachment],
     watched: Callable[[Policy], Policy],
     trace: Trace | None,
+    story_of: StoryOf | None,
 ) -> LookedAt:
     plan = flight_plan(arguments)
     if arguments.until is not None:
@@ -135,7 +148,8 @@ def _fly(
     if policy is not None and plan.schedule.is_told:
         policy = watched(policy)
     flown = fly(plan, attachments=attachments, policy=policy, trace=trace, host=FlyingProgress())
-    return LookedAt(flown, plan.command_line(), plan.schedule.text(), plan=plan)
+    story = story_of(plan, "") if story_of is not None and plan.schedule.is_told else None
+    return LookedAt(flown, plan.command_line(), plan.schedule.text(), story=story)
 
 
 def _replay(
@@ -143,6 +157,7 @@ def _replay(
     attachments: Sequence[Attachment],
     watched: Callable[[Policy], Policy],
     trace: Trace | None,
+    story_of: StoryOf | None,
 ) -> LookedAt:
     from cfepy.journal import Replay, read_journal, staged
 
@@ -156,6 +171,7 @@ def _replay(
         if again.policy is not None and journal.plan.schedule.is_told:
             again.policy = watched(again.policy)
         flown = again.fly(attachments, trace=trace, host=FlyingProgress())
+        story = None if story_of is None else _story(journal, stage, again, flown, story_of)
     verdict = again.verdict
     warnings: tuple[str, ...] = ()
     if not verdict.same:
@@ -166,4 +182,17 @@ def _replay(
         warnings = (f"{text}; it was compared up to record {verdict.agreed.records:,}",)
     until = [] if arguments.until is None else ["--until", f"{arguments.until:g}"]
     command = command_line(["cfepy", "replay", arguments.source, *until])
-    return LookedAt(flown, command, journal.plan.schedule.text(), stage.notes, warnings)
+    name = os.path.basename(arguments.source)
+    return LookedAt(flown, command, journal.plan.schedule.text(), stage.notes, warnings, name, story)
+
+
+def _story(journal: Journal, stage: Stage, again: Replay, flown: Flown, story_of: StoryOf) -> Any:
+    """Return the story of a replayed run, with the files of the replay.
+
+    A run with input from outside has none, because its plan alone does not repeat it.
+    """
+    if not (journal.plan.schedule.is_told and again.verdict.same) or journal.pauses or journal.answers:
+        return None
+    plan = stage.plan
+    plan = plan if plan.script is not None else replace(plan, seconds=flown.results.virtual_s)
+    return story_of(plan, stage.root)

@@ -14,7 +14,7 @@ from cfepy.journal.journal import Journal, is_journal, read_journal
 from cfepy.journal.mission_files import CARRIED, Carrier, MissionFile, ReadFiles, files_of
 from cfepy.journal.recorder import JournalRecorder, record
 from cfepy.journal.replay import Replay, ReplayVerdict, replay
-from cfepy.journal.replay_files import HiddenRoot, moved_environ, settled, staged
+from cfepy.journal.replay_files import HiddenRoot, Stage, moved_environ, settled, staged
 
 __all__ = [
     "CARRIED",
@@ -26,6 +26,7 @@ __all__ = [
     "ReadFiles",
     "Replay",
     "ReplayVerdict",
+    "Stage",
     "differences",
     "environ_of",
     "files_of",

@@ -101,6 +101,11 @@ class PlanElsewhere(RunPlan):
 
     root: str = ""
 
+    @classmethod
+    def of(cls, plan: RunPlan, root: str) -> PlanElsewhere:
+        """Return a plan whose paths already lie below the root."""
+        return cls(**{each.name: getattr(plan, each.name) for each in fields(plan)}, root=root)
+
     def spec(self) -> MissionSpec:
         return settled(RunPlan.spec(self), self.root)
 

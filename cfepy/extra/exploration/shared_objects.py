@@ -7,6 +7,7 @@ variable. If the creation was not seen, the name is looked up among the variable
 from __future__ import annotations
 
 import ast
+import linecache
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import PurePath
@@ -124,7 +125,7 @@ def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
     """
     read_at, written_at = (int(place.rpartition(":")[2]) for place in (read, written))
     try:
-        tree = parsed_input(read_limited(file, PYTHON_BYTES), depth=_DEPTH)
+        tree = parsed_input(_source(file), depth=_DEPTH)
     except (OSError, SyntaxError, ValueError):
         return False
     sources: dict[str, list[ast.AST]] = {}
@@ -137,6 +138,14 @@ def is_made_of(file: str, read: str, written: str, variable: str) -> bool:
                 sources.setdefault(ast.unparse(target), []).append(node.value)
             values += [node.value] if node.lineno == written_at else []
     return _comes_from(values, sources, variable)
+
+
+def _source(file: str) -> bytes:
+    """Return a source file; in a replay, the one of the journal, which `linecache` has without a time."""
+    entry = linecache.cache.get(file)
+    if entry is not None and len(entry) == 4 and entry[1] is None:
+        return "".join(entry[2]).encode()
+    return read_limited(file, PYTHON_BYTES)
 
 
 def _comes_from(values: list[ast.AST], sources: dict[str, list[ast.AST]], variable: str) -> bool:

@@ -15,6 +15,7 @@ from textwrap import wrap
 from cfepy.extra.exploration.cause import Evidence, cause_of
 from cfepy.extra.exploration.failure_kinds import FailureWatch
 from cfepy.extra.exploration.made_moves import MadeMove, MoveNotingPolicy
+from cfepy.extra.exploration.mission_transfer import PlanElsewhere
 from cfepy.extra.exploration.run_times import RunTimes
 from cfepy.extra.exploration.task_look import (
     ANSWERS,
@@ -145,15 +146,18 @@ def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[M
     return Story(rows, important(rows, moves, culprit, f"{cause} {text}"), cause, end, failure.at_ns)
 
 
-def story_of_run(plan: RunPlan) -> Story | None:
+def story_of_run(plan: RunPlan, root: str = "") -> Story | None:
     """Return the story of a run under a schedule with some deviations from fifo.
 
     Args:
         plan: the run; it is flown again, and the run under fifo.
+        root: folder that stands for the root of its files; empty for none.
 
     Returns:
         The story of the first failure that the run under fifo does not have; None if there is none.
     """
+    if root:
+        plan = PlanElsewhere.of(plan, root)
     fifo = Trial(plan).fly(plan.schedule.at({}))
     trial = Trial(plan).against(fifo.results)
     noting = MoveNotingPolicy(plan.schedule.policy() or Policy())

@@ -6,13 +6,13 @@ The data of a long run is summed up while it goes on, so its memory does not gro
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from cfepy.evs import ERROR
-from cfepy.extra.reports.bins import Bins, Histogram
-from cfepy.extra.reports.noteworthy import event_in, mark_of
+from cfepy.extra.reports.bins import Bins, ExactActivity, ExactWindow, Histogram
+from cfepy.extra.reports.noteworthy import event_in, is_end_of_app, mark_of
 from cfepy.ground import DecodedEvent, LiveNames, MissionGraph, graph_of
 from cfepy.monitors import Observer, Sent, app_of
 from cfepy.pilot.determinism_look import place_text
@@ -73,6 +73,7 @@ class Collector(Observer):
     Attributes:
         apps: activity by application, in order of appearance.
         topics: activity by MsgId, in order of appearance.
+        exact: exact times around marks and ERROR events, and at the end of the run.
         drops: number of lost messages by place.
         events: the first `MOST` events.
         event_count: number of all events.
@@ -91,6 +92,7 @@ class Collector(Observer):
         super().__init__()
         self.apps: dict[str, AppActivity] = {}
         self.topics: dict[int, TopicActivity] = {}
+        self.exact = ExactActivity()
         self.drops: dict[DropPlace, int] = {}
         self.events: list[DecodedEvent] = []
         self.lines: list[ConsoleLine] = []
@@ -117,6 +119,7 @@ class Collector(Observer):
     def conclude(self) -> None:
         """Record the data that the end of the tasks would change."""
         self.end_ns = self._kernel.now
+        self.exact.conclude(self.end_ns)
         self.memory = self.mission.memory.totals()
         self.graph = graph_of(self.mission, {msg_id: topic.senders for msg_id, topic in self.topics.items()})
 
@@ -127,6 +130,7 @@ class Collector(Observer):
     def on_leave(self, task: Task, at_ns: int, waits: bool) -> None:
         if at_ns > self._since_ns:
             self._app(task).busy.add_span(self._since_ns, at_ns)
+        self.exact.add(app_of(task), self._since_ns, at_ns)
 
     def _app(self, task: Task) -> AppActivity:
         name = app_of(task)
@@ -139,11 +143,13 @@ class Collector(Observer):
         topic = self._topic(sent.msg_id)
         topic.sent.add(sent.at_ns)
         topic.senders.add(app_of(sent.task))
+        self.exact.add(sent.msg_id, sent.at_ns, sent.at_ns)
         event = event_in(sent.msg_id, packet, sent.at_ns)
         if event is not None:
             self.event_count += 1
             if event.event_type >= ERROR:
                 self.first_errors.setdefault(event.app, sent.at_ns)
+                self.exact.keep()
             _keep(self.events, event)
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
@@ -166,6 +172,8 @@ class Collector(Observer):
         mark = mark_of(line)
         if mark is not None:
             self._mark(*mark, at_ns)
+        elif is_end_of_app(line):
+            self.exact.keep()
 
     def on_note(self, text: str, at_ns: int) -> None:
         self._mark(*(mark_of(text) or ("note", text)), at_ns)
@@ -177,6 +185,7 @@ class Collector(Observer):
         return _SwitchNotes(inner, lambda *switch: self._mark(SWITCH, _switch_text(*switch), switch[0].now))
 
     def _mark(self, kind: str, text: str, at_ns: int) -> None:
+        self.exact.keep()
         self.mark_counts[kind] = count = self.mark_counts.get(kind, 0) + 1
         if count <= MOST_OF_A_KIND:
             self.marks.append(PageMark(at_ns, kind, text))
@@ -188,6 +197,35 @@ class Collector(Observer):
         all_bins = [bins for app in self.apps.values() for bins in (app.runs, app.busy)]
         all_bins += [topic.sent for topic in self.topics.values()]
         return max((bins.width_ns for bins in all_bins), default=1)
+
+
+def timeline_data(collector: Collector) -> dict[str, Any]:
+    """Return the data of the timeline: lanes of counts by time, run-length coded, and instants. Times in ns."""
+    width_ns = collector.width_ns()
+    lanes: list[dict[str, Any]] = []
+    for name, app in collector.apps.items():
+        lane = {"name": name, "kind": "app", "runs": app.runs.runs(width_ns), "busy": app.busy.runs(width_ns)}
+        lanes.append(lane)
+    sent = sorted(collector.topics, key=lambda msg_id: collector.names[msg_id])
+    for msg_id in sent:
+        runs = collector.topics[msg_id].sent.runs(width_ns)
+        lanes.append({"name": collector.names[msg_id], "kind": "topic", "runs": runs, "busy": []})
+    marks = [[mark.at_ns, mark.kind, mark.text] for mark in collector.marks]
+    numbers: dict[str | int, int] = {name: number for number, name in enumerate(collector.apps)}
+    numbers |= {msg_id: len(collector.apps) + number for number, msg_id in enumerate(sent)}
+    exact = [_exact(window, numbers) for window in collector.exact.windows]
+    return {"end": collector.end_ns, "width": width_ns, "lanes": lanes, "marks": marks, "exact": exact}
+
+
+def _exact(window: ExactWindow, lanes: Mapping[str | int, int]) -> dict[str, Any]:
+    """Return a window of exact activities as plain data: lane, distance of the begin from the last one, length, ..."""
+    found: list[int] = []
+    before = window.from_ns
+    for each in window.activities:
+        if each.lane in lanes:
+            found += [lanes[each.lane], each.begin_ns - before, each.end_ns - each.begin_ns]
+            before = each.begin_ns
+    return {"from": window.from_ns, "to": window.to_ns, "activities": found}
 
 
 class _SwitchNotes(AskingPolicy):

@@ -128,14 +128,16 @@ def _cells(row: Sequence[str], marks: Sequence[str | None]) -> Iterator[str]:
             yield element("th", inside, scope="row", class_=mark, data_order=order)
 
 
-def meter(share: float, text: str, is_lost: bool = True) -> str:
+def meter(share: float, text: str, is_lost: bool = True, has_limit: bool = True) -> str:
     """Return a bar from 0 to 1 with a text; more than 1 is shown as full.
 
     Args:
         share: the used share.
         text: HTML to the right of the bar.
         is_lost: True if a full bar is a problem.
+        has_limit: False if the whole is no limit, so that a large share has no colour.
     """
     level = "high" if share >= 0.95 and is_lost else "raised" if share >= 0.75 else None
+    level = level if has_limit else None
     width = f"--share:{min(max(share, 0.0), 1.0) * 100:.2f}%"
     return element("span", element("span", "", class_="bar", style=width), class_=f"meter {level or ''}".strip()) + text

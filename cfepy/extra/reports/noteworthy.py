@@ -14,6 +14,10 @@ DEADLINE, FAULT, INVARIANT = "deadline", "fault", "invariant"
 _PREFIXES = {PREFIX: DEADLINE, "cfepy fault ": FAULT, "invariant ": INVARIANT}
 
 
+_ENDS = ("CFE_ES_ExitApp: ", " died of an exception")
+"""Parts of the lines about an application that ends."""
+
+
 def event_in(msg_id: int, packet: bytes | bytearray, at_ns: int) -> DecodedEvent | None:
     """Return the event that a packet carries, or None.
 
@@ -37,3 +41,8 @@ def mark_of(line: str) -> tuple[str, str] | None:
             text = line.removeprefix(prefix)
             return kind, text.partition(" ")[2] if kind == DEADLINE else text
     return None
+
+
+def is_end_of_app(line: str) -> bool:
+    """Return whether a line of the console reports the end of an application."""
+    return any(part in line for part in _ENDS)

@@ -5,7 +5,7 @@ const data = JSON.parse(document.getElementById("timeline-data").textContent);
 const canvas = document.getElementById("timeline-canvas");
 const box = canvas.parentElement;
 const context = canvas.getContext("2d");
-const ROW = 18, TOP = 24, LEAST_BINS = 8, MARK_REACH = 5, MOST_NAMED = 12;
+const ROW = 18, TOP = 24, LEAST_BINS = 8, LEAST_EXACT = 200, MARK_REACH = 5, MOST_NAMED = 12;
 
 /* Return the sums of a lane's counts up to each bin. The count of any time interval is then one subtraction. */
 function sums(runs) {
@@ -19,9 +19,22 @@ function sums(runs) {
 }
 
 const lanes = data.lanes.map(lane => ({ ...lane, runs: sums(lane.runs), busy: sums(lane.busy) }));
+
+/* Return the activities of each lane in a time range whose exact times are known, as [begin, end] in ns. */
+function exactOf(range) {
+  const found = lanes.map(() => []), numbers = range.activities;
+  let begin = range.from;
+  for (let at = 0; at < numbers.length; at += 3) {
+    begin += numbers[at + 1];
+    found[numbers[at]].push([begin, begin + numbers[at + 2]]);
+  }
+  return { from: range.from, to: range.to, lanes: found };
+}
+
+const exact = data.exact.map(exactOf);
 const end = Math.max(data.end, data.width);
 let view = { from: 0, to: end };
-let focus = null;  // the instant of the link that the reader clicked last
+let focus = null;  // the instant of the link that the reader clicked last, or of the failure
 let labels = 150;
 
 function between(table, from, to) {
@@ -37,10 +50,13 @@ function seconds(ns) {
   return (ns / 1e9).toFixed(digits) + " s";
 }
 
+function micro(ns) { return (ns / 1e9).toFixed(9) + " s"; }
+
 function color(name) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
 
 function setView(from, to) {
-  const span = Math.min(end, Math.max(LEAST_BINS * data.width, to - from));
+  const middle = (from + to) / 2, isExact = exact.some(range => range.from <= middle && middle <= range.to);
+  const span = Math.min(end, Math.max(isExact ? LEAST_EXACT : LEAST_BINS * data.width, to - from));
   const start = Math.min(Math.max(0, from + (to - from - span) / 2), end - span);
   view = { from: start, to: start + span };
   draw();
@@ -117,12 +133,25 @@ function drawLane(lane, row, width) {
     most = Math.max(most, found[x]);
   }
   context.fillStyle = color(lane.kind === "app" ? "--app" : "--topic");
+  const ranges = shownExactly(span / room);
+  const isKnown = at => ranges.some(range => range.from <= at && at <= range.to);
   for (let x = 0; x < columns; x++) {
-    if (!found[x]) continue;
+    if (!found[x] || isKnown(view.from + (x + 0.5) / columns * span)) continue;
     context.globalAlpha = 0.25 + 0.75 * found[x] / most;
     context.fillRect(labels + x, y + 3, 1, ROW - 6);
   }
   context.globalAlpha = 1;
+  for (const range of ranges)
+    for (const [begin, stop] of range.lanes[row]) {
+      if (stop < view.from || begin > view.to) continue;
+      const x = Math.max(labels, place(begin, width));
+      context.fillRect(x, y + 3, Math.max(2, place(Math.min(stop, view.to), width) - x), ROW - 6);
+    }
+}
+
+/* Return the ranges that are drawn exactly, when a pixel of so many ns is shorter than a bin. */
+function shownExactly(pixel) {
+  return pixel >= data.width ? [] : exact.filter(range => range.from <= view.to && range.to >= view.from);
 }
 
 /* Draw each mark as a tick at the top and a line across the lanes. The lines are fainter if there are many marks. */
@@ -148,8 +177,13 @@ function describe(event) {
   const at = view.from + x / room * span, reach = MARK_REACH / room * span;
   const marks = data.marks.filter(mark => Math.abs(mark[0] - at) < reach).slice(0, 3);
   const texts = marks.map(mark => mark[1] + " at " + (mark[0] / 1e9).toFixed(6) + " s: " + mark[2]);
-  const lane = lanes[row];
-  if (lane) {
+  const lane = lanes[row], range = shownExactly(span / room).find(each => each.from <= at && at <= each.to);
+  if (lane && range) {
+    const near = range.lanes[row].filter(([begin, stop]) => begin - reach < at && at < stop + reach).slice(0, 3);
+    const what = lane.kind === "app" ? "ran from " : "sent at ";
+    const times = near.map(([begin, stop]) => what + micro(begin) + (lane.kind === "app" ? " to " + micro(stop) : ""));
+    if (times.length) texts.unshift(lane.name + " " + times.join(", "));
+  } else if (lane) {
     const from = Math.floor(at / data.width) * data.width, to = Math.max(from + data.width, at + span / room);
     const count = between(lane.runs, from, to), busy = between(lane.busy, from, to);
     const what = lane.kind === "app" ? " runs" : " sent";
@@ -191,7 +225,8 @@ const KEYS = { "+": "in", "=": "in", "-": "out", ArrowLeft: "left", ArrowRight: 
 for (const name in ACTIONS) document.getElementById("timeline-" + name).addEventListener("click", ACTIONS[name]);
 movable(canvas, describe);
 /* Values over time. */
-const STEP_MISSING = 65535, PLOT = 170, PLOT_TOP = 28, PLOT_BOTTOM = 12, TEXTS = 36, TIMES = 20;
+const STEP_MISSING = 65535, FIRST_GROUPS = 2, PLOT = 170, PLOT_TOP = 28, PLOT_BOTTOM = 12, TEXTS = 36, TIMES = 20;
+const SELECT = "Select fields to draw them.";
 const valuesCanvas = document.getElementById("values-canvas");
 const COLORS = ["--line-1", "--line-2", "--line-3", "--line-4", "--line-5", "--line-6", "--line-7", "--line-8"];
 
@@ -358,13 +393,21 @@ function tellValues(event) {
 
 function choose(group, box) {
   if (box.checked) chosen.add(group); else chosen.delete(group);
-  document.getElementById("values-tip").textContent = chosen.size ? "" : "Select fields to draw them.";
+  document.getElementById("values-tip").textContent = chosen.size ? "" : SELECT;
   drawValues();
+}
+
+/* Return the groups that are drawn before the reader selects some: of topics, else of the packets of the mission's own
+   applications, else of cFE's, and of events at last. Values that never change say little. */
+function firstGroups() {
+  const found = groups.filter(group => group.lines && group.lines.some(line => line.data !== undefined));
+  const kinds = [/^\//, /^(?!CFE_)/, /^(?!CFE_EVS_)/, /^/].map(kind => found.filter(group => kind.test(group.series.name)));
+  return new Set((kinds.find(kind => kind.length) || []).slice(0, FIRST_GROUPS));
 }
 
 function fillPicker() {
   const picker = document.getElementById("values-fields"), filter = document.getElementById("values-filter");
-  const parts = new Map(), rows = [];
+  const parts = new Map(), rows = [], first = firstGroups();
   for (const group of groups) {
     if (!parts.has(group.series)) {
       const part = document.createElement("details"), head = document.createElement("summary");
@@ -376,6 +419,8 @@ function fillPicker() {
     }
     const row = document.createElement("label"), box = document.createElement("input"), about = document.createElement("span");
     box.type = "checkbox";
+    box.checked = first.has(group);
+    if (box.checked) { chosen.add(group); parts.get(group.series).open = true; }
     box.addEventListener("change", () => choose(group, box));
     about.className = "type";
     about.textContent = [group.count > 1 ? "[" + group.count + "]" : "", group.unit].filter(Boolean).join(" ");
@@ -395,6 +440,7 @@ function fillPicker() {
 
 if (valuesCanvas) {
   fillPicker();
+  document.getElementById("values-tip").textContent = chosen.size ? "" : SELECT;
   movable(valuesCanvas, tellValues);
 }
 
@@ -402,9 +448,15 @@ if (valuesCanvas) {
 for (const link of document.querySelectorAll("a[data-at]"))
   link.addEventListener("click", () => {
     focus = Number(link.dataset.at);
-    const span = Math.max(end / 50, 4 * LEAST_BINS * data.width);
+    const span = Number(link.dataset.span) || Math.max(end / 50, 4 * LEAST_BINS * data.width);
     setView(focus - span / 2, focus + span / 2);
   });
+
+/* Open on the failure, and with the first fields that change. */
+if (data.open) {
+  focus = data.open[2];
+  setView(data.open[0], data.open[1]);
+}
 
 new ResizeObserver(draw).observe(box);
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", draw);

@@ -11,19 +11,28 @@ from __future__ import annotations
 import hashlib
 import platform
 from base64 import b64encode
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import shorten
 from typing import Any
 
 from cfepy import __version__
 from cfepy.extra.reports.bins import Histogram
-from cfepy.extra.reports.collector import MOST, MOST_OF_A_KIND, SWITCH, Collector
+from cfepy.extra.reports.collector import MOST, MOST_OF_A_KIND, SWITCH, Collector, timeline_data
 from cfepy.extra.reports.html_text import Numbers, PageSection, TableCell, json_text, meter, section, table
-from cfepy.extra.reports.page_story import STORY, PageStory, instant, story_section
+from cfepy.extra.reports.page_story import (
+    MOST_SWITCHES,
+    STORY,
+    STORY_SPAN_NS,
+    PageStory,
+    instant,
+    opened_range,
+    problems_of_page,
+    story_section,
+)
 from cfepy.extra.reports.page_values import value_data, values_section
 from cfepy.ground import SeriesSet, graph_svg
-from cfepy.pilot import FailureKind, Flown, Results, RunProblem
+from cfepy.pilot import Flown, Results, RunProblem
 from cfepy.units import NS_PER_S, time_text
 from cfepy.writing.markup import element, escaped
 
@@ -32,7 +41,7 @@ NEVER = ("never", "never judged")
 SHARES = (0.5, 0.95, 0.99)
 BAR_WIDTH, PICTURE_HEIGHT = 5, 24
 STACK = "stack"
-MOST_SWITCHES = 20  # shown among the problems
+MOST_OF_TITLE = 100  # characters
 FATES = {
     "sent": "Sent",
     "delivered": "Delivered",
@@ -57,6 +66,7 @@ class About:
         source: the source of the page: a journal, or a mission.
         warnings: warnings for the reader.
         story: the story of a failure that the schedule shows and fifo does not, or None.
+        journal: name of the journal; empty for a run that was flown.
     """
 
     command: str
@@ -64,6 +74,7 @@ class About:
     source: str
     warnings: tuple[str, ...] = ()
     story: PageStory | None = None
+    journal: str = ""
 
 
 def page_of(flown: Flown, collector: Collector, about: About, recorded: SeriesSet | None = None) -> str:
@@ -103,10 +114,11 @@ def page_of(flown: Flown, collector: Collector, about: About, recorded: SeriesSe
         _others(numbers),
     ]
     data = element("script", json_text(plain), type="application/json", id="numbers")
-    data += element("script", json_text(timeline_data(collector)), type="application/json", id="timeline-data")
+    timeline = timeline_data(collector) | {"open": opened_range(flown, collector)}
+    data += element("script", json_text(timeline), type="application/json", id="timeline-data")
     drawable = [] if values is None else values.plain
     data += element("script", json_text(drawable), type="application/json", id="values-data")
-    return _document(f"{results.mission}: cfepy run", _navigation(body) + element("main", "".join(body)) + data)
+    return _document(_title(flown, collector, about), _navigation(body) + element("main", "".join(body)) + data)
 
 
 def _document(title: str, body: str) -> str:
@@ -134,13 +146,14 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
     results = flown.results
     booted = "never" if results.booted_s is None else numbers.show("booted_s", f"{results.booted_s:.6f}") + " s"
     facts = {
+        "Mission": escaped(results.mission),
         "Board": escaped(results.board),
         "Seed": numbers.show("seed", str(results.seed)),
         "Schedule": escaped(about.schedule),
         "Virtual time": f"{numbers.show('virtual_s', f'{results.virtual_s:,.3f}')} s",
         "OPERATIONAL at": booted,
         "Tasks": escaped(str(results.task_kind)),
-        "Mission source": escaped(about.source),
+        "Source": escaped(about.source),
         "Versions": escaped(f"cfepy {__version__}, Python {platform.python_version()}"),
         "Trace": element("code", escaped(results.trace)),
     }
@@ -150,9 +163,21 @@ def _header(flown: Flown, numbers: Numbers, about: About, collector: Collector) 
     listed = "".join(element("div", element("dt", name) + element("dd", value)) for name, value in facts.items())
     command = element("dt", "Command to repeat the run") + element("dd", element("code", escaped(about.command)))
     warnings = "".join(element("p", escaped(text), class_="banner bad", role="note") for text in about.warnings)
-    title = element("h1", escaped(results.mission)) + warnings + _problems(flown, collector, about.story)
+    title = element("h1", escaped(_title(flown, collector, about))) + warnings
+    title += _problems(flown, collector, about.story)
     title += _silent(results)
     return element("header", title + element("dl", listed + element("div", command, class_="wide"), class_="facts"))
+
+
+def _title(flown: Flown, collector: Collector, about: About) -> str:
+    """Return the title: the journal, or the mission, and the outcome of the run."""
+    results = flown.results
+    name = about.journal or results.mission
+    found = list(problems_of_page(flown, collector))
+    if not found:
+        return f"{name}: no problems in {results.virtual_s:,.6g} s"
+    text = shorten(found[0].text.splitlines()[0], MOST_OF_TITLE, placeholder="...")
+    return f"{name}: {text}" + (f", and {len(found) - 1} more" if len(found) > 1 else "")
 
 
 def _timeline() -> str:
@@ -193,22 +218,9 @@ def _navigation(body: list[str]) -> str:
     return element("nav", "".join(links), aria_label="Parts of this page")
 
 
-def timeline_data(collector: Collector) -> dict[str, Any]:
-    """Return the data of the timeline: lanes of counts by time, run-length coded, and instants. Times in ns."""
-    width_ns = collector.width_ns()
-    lanes: list[dict[str, Any]] = []
-    for name, app in collector.apps.items():
-        lane = {"name": name, "kind": "app", "runs": app.runs.runs(width_ns), "busy": app.busy.runs(width_ns)}
-        lanes.append(lane)
-    for msg_id, topic in sorted(collector.topics.items(), key=lambda item: collector.names[item[0]]):
-        lanes.append({"name": collector.names[msg_id], "kind": "topic", "runs": topic.sent.runs(width_ns), "busy": []})
-    marks = [[mark.at_ns, mark.kind, mark.text] for mark in collector.marks]
-    return {"end": collector.end_ns, "width": width_ns, "lanes": lanes, "marks": marks}
-
-
 def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> str:
     """Show the number of problems and a list of them; the time of each problem links to the timeline."""
-    found = list(_found(flown, collector))
+    found = list(problems_of_page(flown, collector))
     if not found:
         return element("p", "No problems", class_="banner good")
     title = element("p", f"{len(found)} problem{'s' if len(found) > 1 else ''}")
@@ -220,7 +232,7 @@ def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> st
     if switches:
         one = len(switches) == 1
         items += element("p", f"The schedule made {'one switch' if one else f'{len(switches)} switches'} in this run:")
-        items += element("ul", "".join(_item(each, "switch") for each in switches[:MOST_SWITCHES]))
+        items += element("ul", "".join(_item(each, SWITCH) for each in switches[:MOST_SWITCHES]))
     return element("div", title + items, class_="banner bad", role="note")
 
 
@@ -230,18 +242,12 @@ def _silent(results: Results) -> str:
     return element("ul", items, class_="silent") if items else ""
 
 
-def _found(flown: Flown, collector: Collector) -> Iterator[RunProblem]:
-    """Yield all problems of a run. A deadlock lasts until its end, so it gets the time of the end."""
-    for problem in flown.problems:
-        is_at_end = any(failure.kind in (FailureKind.DEADLOCK, FailureKind.STUCK) for failure in problem.failures)
-        yield problem._replace(at_ns=collector.end_ns) if problem.at_ns is None and is_at_end else problem
-
-
 def _item(problem: RunProblem, kind: str = "") -> str:
     """Show a problem, with a link to its place in the timeline."""
     if problem.at_ns is None:
         return element("li", escaped(problem.text), class_=kind or None)
-    link = instant(problem.at_ns, f"{problem.at_ns / NS_PER_S:.6f} s")
+    span_ns = STORY_SPAN_NS if kind == SWITCH else None
+    link = instant(problem.at_ns, f"{problem.at_ns / NS_PER_S:.6f} s", span_ns)
     return element("li", f"{link}: {escaped(problem.text)}", class_=kind or None)
 
 
@@ -324,7 +330,8 @@ def _marks(results: Results, numbers: Numbers, collector: Collector) -> str:
     ]
     for mark in collector.marks:
         if mark.kind != "reset":
-            at = TableCell(instant(mark.at_ns, f"{mark.at_ns / NS_PER_S:.6f}"), mark.at_ns / NS_PER_S)
+            span_ns = STORY_SPAN_NS if mark.kind == SWITCH else None
+            at = TableCell(instant(mark.at_ns, f"{mark.at_ns / NS_PER_S:.6f}", span_ns), mark.at_ns / NS_PER_S)
             rows.append((at, escaped(mark.kind), escaped(mark.text)))
     if not rows:
         return ""
@@ -498,7 +505,8 @@ def _budget(results: Results, numbers: Numbers, collector: Collector) -> str:
     for owner, size in memory.by_owner.items():
         share = size / (memory.limit or max(memory.used, 1))
         stack = stacks.get(owner, 0)
-        booked = TableCell(meter(share, numbers.show(f"memory.by_owner.{owner}"), memory.limit is not None), size)
+        bar = meter(share, numbers.show(f"memory.by_owner.{owner}"), has_limit=memory.limit is not None)
+        booked = TableCell(bar, size)
         rows.append([escaped(owner), booked, TableCell(f"{stack:,}", stack), TableCell(f"{share:.1%}", share)])
     whole = "Share of the board" if memory.limit else "Share of the used bytes"
     parts = table("RAM by owner", ("Owner", "Bytes", "Bytes of stacks", whole), rows, (1, 2, 3), class_="sortable")

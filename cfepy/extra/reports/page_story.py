@@ -1,17 +1,27 @@
-"""The part of a run's page that presents a failure as a story: its cause, and the actions of each task before it."""
+"""The part of a run's page that presents a failure as a story: its cause, and the actions of each task before it.
+
+The time range of the failure, on which the timeline opens, is here too.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from cfepy.extra.reports.collector import SWITCH, Collector
 from cfepy.extra.reports.html_text import TableCell, section, table
+from cfepy.pilot import FailureKind, Flown, RunProblem
 from cfepy.units import NS_PER_S
 from cfepy.writing.markup import element, escaped
 
 STORY = "story"
 """The anchor of the part."""
+STORY_SPAN_NS = 40_000
+"""Time range of the timeline around an operation: races are some microseconds wide."""
+MOST_SWITCHES = 20
+"""Switches of the schedule that the page shows among the problems."""
+OPENED_SHARE = 50  # of the run, around a failure without a switch
 
 
 class StoryRow(NamedTuple):
@@ -51,7 +61,7 @@ def story_section(story: PageStory) -> str:
     """Return the part itself."""
     cause = element("p", f"Cause: {escaped(story.cause)}", class_="banner bad") if story.cause else ""
     heads = ("At, s", *story.tasks)
-    rows = [_cells(number, row, len(story.tasks)) for number, row in enumerate(story.rows)]
+    rows = [_cells(number, row, story.tasks) for number, row in enumerate(story.rows)]
     about = "The operations of the tasks involved in the failure. Each time links to the timeline."
     end = element("p", escaped(story.end))
     return section(
@@ -59,15 +69,47 @@ def story_section(story: PageStory) -> str:
     )
 
 
-def _cells(number: int, row: StoryRow, columns: int) -> list[str]:
-    """Return HTML of a row. Many rows have the same time, so they are sorted by their number."""
-    text = escaped(row.text)
-    cells = [""] * columns
-    cells[row.column or 0] = element("strong", text, class_="switch") if row.is_switch else text
-    when = "" if row.at_ns is None else instant(row.at_ns, f"{row.at_ns / NS_PER_S:.6f}")
+def _cells(number: int, row: StoryRow, tasks: Sequence[str]) -> list[str]:
+    """Return HTML of a row. Many rows have the same time, so they are sorted by their number.
+
+    On a narrow screen, which has no room for columns, the name of the task stands before the text.
+    """
+    text = element("strong", escaped(row.text), class_="switch") if row.is_switch else escaped(row.text)
+    cells = [""] * len(tasks)
+    name = None if row.column is None else tasks[row.column]
+    cells[row.column or 0] = text if name is None else element("span", text, class_="act", data_task=name)
+    when = "" if row.at_ns is None else instant(row.at_ns, f"{row.at_ns / NS_PER_S:.6f}", STORY_SPAN_NS)
     return [TableCell(when, number), *cells]
 
 
-def instant(at_ns: int, text: str) -> str:
-    """Return a link to an instant in the timeline of the page."""
-    return element("a", text, href="#timeline", data_at=at_ns, title="Show this instant in the timeline")
+def instant(at_ns: int, text: str, span_ns: int | None = None) -> str:
+    """Return a link to an instant in the timeline of the page.
+
+    Args:
+        at_ns: virtual time.
+        text: text of the link.
+        span_ns: time range to show; None for a share of the run.
+    """
+    title = "Show this instant in the timeline"
+    return element("a", text, href="#timeline", data_at=at_ns, data_span=span_ns, title=title)
+
+
+def opened_range(flown: Flown, collector: Collector) -> list[int] | None:
+    """Return the range in ns that the timeline shows first, and the instant that it marks; None for the whole run.
+
+    These are the switches of the schedule in a failed run, and otherwise the first problem that has a time.
+    """
+    problems = [each.at_ns for each in problems_of_page(flown, collector) if each.at_ns is not None]
+    if not problems:
+        return None
+    switches = [mark.at_ns for mark in collector.marks if mark.kind == SWITCH][:MOST_SWITCHES]
+    first, last = (switches[0], switches[-1]) if switches else (problems[0], problems[0])
+    rim = max(STORY_SPAN_NS, last - first) // 2 if switches else collector.end_ns // (2 * OPENED_SHARE)
+    return [max(0, first - rim), last + rim, first]
+
+
+def problems_of_page(flown: Flown, collector: Collector) -> Iterator[RunProblem]:
+    """Yield all problems of a run. A deadlock lasts until its end, so it gets the time of the end."""
+    for problem in flown.problems:
+        is_at_end = any(failure.kind in (FailureKind.DEADLOCK, FailureKind.STUCK) for failure in problem.failures)
+        yield problem._replace(at_ns=collector.end_ns) if problem.at_ns is None and is_at_end else problem

@@ -6,6 +6,7 @@ import json
 import re
 from html.parser import HTMLParser
 from pathlib import Path
+from shutil import copytree, rmtree
 
 import pytest
 from hypothesis import given
@@ -13,7 +14,7 @@ from hypothesis import strategies as st
 
 from cfepy.cli.main import main
 from cfepy.extra.reports.collector import Collector
-from cfepy.extra.reports.html_text import json_text, numbers_in
+from cfepy.extra.reports.html_text import json_text, meter, numbers_in
 from cfepy.extra.reports.page import About, page_of
 from cfepy.ground.series import SeriesRecorder
 from cfepy.pilot import RunPlan, pilot
@@ -241,3 +242,30 @@ def test_failure_is_shown_as_a_story_with_its_switch(tmp_path: Path) -> None:
     assert '<strong class="switch">=== PREEMPTED by MAPPER.odom.2 ===</strong>' in text
     assert main([*words, "--schedule", "moves:MAPPER.scan@660/on_scan.__enter__=MAPPER.odom"]) == 0  # does not fail
     assert "What happened" not in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.slow
+def test_page_of_a_journal_has_the_story_and_a_title(tmp_path: Path) -> None:
+    """The files of the mission come from the journal: the mission's own folder is gone."""
+    mission, journal, page = tmp_path / "bug", tmp_path / "race.cfepy", tmp_path / "report.html"
+    copytree(Path(__file__).parents[2] / "quality" / "missions" / "lost_update", mission)
+    moves = "moves:ODOMETER.left_tic@670/on_ticks.publish/4=ODOMETER.right_ti"
+    main(["run", str(mission), "--for", "1.3", "--quiet", "--schedule", moves, "--record", str(journal)])
+    rmtree(mission)
+    assert main(["report", str(journal), "-o", str(page)]) == 0
+    text = page.read_text(encoding="utf-8")
+    assert "<h1>race.cfepy: WHEELS ended with exit status 1 (node /wheels)</h1>" in text
+    assert '<a href="#story">What happened</a>: an update of Odometer.travelled is lost' in text
+    assert 'data-task="ODOMETER.right_ti.2">writes Odometer.travelled</span>' in text
+
+
+def test_title_has_the_mission_and_the_first_problem(shown: Shown) -> None:
+    first, *others = shown.flown.problems
+    text = escaped(first.text.splitlines()[0])
+    assert f"<h1>{shown.flown.results.mission}: {text[:40]}" in shown.page
+    assert f", and {len(others)} more</h1>" in shown.page
+
+
+def test_share_without_a_limit_has_no_colour() -> None:
+    assert 'class="meter raised"' in meter(0.9, "")
+    assert 'class="meter"' in meter(0.9, "", has_limit=False)

@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 
+from cfepy.cli.main import main
 from cfepy.extra.reports.collector import Collector
 from cfepy.extra.reports.html_text import numbers_in
 from cfepy.extra.reports.page import About, page_of
@@ -54,7 +55,7 @@ def shown_range(browser: Browser) -> tuple[int, int]:
 
 
 def test_page_loads_without_an_error_or_a_request(opened: Browser) -> None:
-    assert opened.evaluate("document.title").endswith("cfepy run")
+    assert opened.evaluate("document.title") == opened.evaluate("document.querySelector('h1').innerText")
     assert opened.errors == []
     assert opened.requests == []
 
@@ -86,7 +87,20 @@ def test_output_of_a_node_executes_nothing(opened: Browser) -> None:
     assert "<img src=x" in opened.evaluate("document.getElementById('console').innerText")
 
 
+def show_all(browser: Browser) -> None:
+    browser.evaluate("document.getElementById('timeline-all').click()")
+
+
+def test_page_opens_on_the_first_problem(opened: Browser) -> None:
+    at = int(opened.evaluate("document.querySelector('.banner a[data-at]').dataset.at"))
+    begin, end = shown_range(opened)
+    show_all(opened)
+    assert begin < at < end
+    assert end - begin < shown_range(opened)[1] / 10
+
+
 def test_the_timeline_zooms_and_moves(opened: Browser) -> None:
+    show_all(opened)
     begin, end = shown_range(opened)
     assert begin == 0
     assert end >= 3_000_000_000
@@ -105,6 +119,7 @@ def test_the_timeline_zooms_and_moves(opened: Browser) -> None:
 
 def test_timeline_zooms_at_the_mouse(opened: Browser) -> None:
     opened.evaluate("document.getElementById('timeline-canvas').scrollIntoView({behavior: 'instant'})")
+    show_all(opened)
     place = "(r => [r.left, r.top, r.width])(document.getElementById('timeline-canvas').getBoundingClientRect())"
     left, top, width = opened.evaluate(place)
     begin, end = shown_range(opened)
@@ -117,6 +132,7 @@ def test_timeline_zooms_at_the_mouse(opened: Browser) -> None:
 
 
 def test_timeline_shows_drawn_pixels(opened: Browser) -> None:
+    show_all(opened)
     colors = """(() => {
         const canvas = document.getElementById('timeline-canvas');
         const data = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
@@ -128,14 +144,24 @@ def test_timeline_shows_drawn_pixels(opened: Browser) -> None:
 
 
 def test_keys_work_on_the_timeline(opened: Browser) -> None:
+    show_all(opened)
     begin, end = shown_range(opened)
     press = "document.getElementById('timeline-canvas').dispatchEvent(new KeyboardEvent('keydown', {key: '+'}))"
     opened.evaluate(press)
     assert shown_range(opened)[1] - shown_range(opened)[0] < end - begin
 
 
+def test_fields_that_change_are_drawn_at_first(opened: Browser) -> None:
+    assert not opened.evaluate("document.getElementById('values-canvas').hidden")
+    checked = "[...document.querySelectorAll('.fields input:checked')].length"
+    assert opened.evaluate(checked) == opened.evaluate("chosen.size") > 0
+    assert opened.evaluate("[...chosen].every(group => group.lines.some(line => line.data !== undefined))")
+
+
 def test_chosen_field_is_drawn(opened: Browser, shown: Shown) -> None:
+    show_all(opened)
     is_hidden = "document.getElementById('values-canvas').hidden"
+    opened.evaluate("document.querySelectorAll('.fields input:checked').forEach(box => box.click())")
     assert opened.evaluate(is_hidden)
     name = "CFE_EVS_LONG_EVENT_MSG"
     opened.evaluate(f"""(() => {{
@@ -207,6 +233,33 @@ def test_problem_links_to_its_story_and_the_story_to_the_timeline(
     browser.evaluate("document.querySelector('.story a[data-at]').click()")
     begin, end = shown_range(browser)
     assert begin <= 1_000_000_000 <= end
+
+
+RACE = "moves:ODOMETER.left_tic@670/on_ticks.publish/4=ODOMETER.right_ti"
+
+
+def test_race_of_a_journal_is_shown_exactly_and_fits_the_window(browser: Browser, tmp_path: Path) -> None:
+    mission = str(Path(__file__).parents[2] / "quality" / "missions" / "lost_update")
+    journal, page = tmp_path / "race.cfepy", tmp_path / "race.html"
+    main(["run", mission, "--for", "1.3", "--quiet", "--schedule", RACE, "--record", str(journal)])
+    assert main(["report", str(journal), "-o", str(page)]) == 0
+    browser.resize(1280, 900)
+    browser.errors.clear()
+    browser.open(page)
+    assert browser.errors == []
+    begin, end = shown_range(browser)
+    assert begin <= 670_012_000 < 670_014_000 <= end, "the switch, and the callbacks around it"
+    assert end - begin <= 40_000
+    spans = "shownExactly(40).flatMap(range => range.lanes[lanes.findIndex(lane => lane.name === 'ODOMETER')])"
+    found = browser.evaluate(f"{spans}.filter(([begin]) => begin >= view.from && begin <= view.to)")
+    assert found
+    assert all(begin <= first <= last <= end for first, last in found)
+    overflow = "[...document.querySelectorAll('#story .scroll')].map(box => box.scrollWidth - box.clientWidth)"
+    for width in (1280, 500):
+        browser.resize(width, 900)
+        assert browser.evaluate(overflow) == [0]
+    acts = "[...document.querySelectorAll('.story .act')].map(act => getComputedStyle(act, '::before').content)"
+    assert browser.evaluate(f"{acts}.some(text => text.includes('ODOMETER.right_ti.2'))"), "a narrow window names tasks"
 
 
 def test_events_are_filtered(opened: Browser, shown: Shown) -> None:
