@@ -35,7 +35,7 @@ PACKAGES = ("cfepy", "rospy_shim", "ros_libraries")
 NOT_IN_SDIST = (".ci/",)
 MUST_HAVE: tuple[str, ...] = ("cfepy/py.typed", "rospy_shim/py.typed", "cfepy/share/missions/capture/startup.scr")
 MUST_HAVE += ("cfepy/share/boards/linux.yaml", "cfepy/share/apps/hk/app.py")
-DEMO = ("run", "capture", "--for", "2", "--quiet")
+DEMO = ("run", "capture", "--for", "2", "--no-console")
 RENDER = "import sys; from readme_renderer import markdown; print(markdown.render(open(sys.argv[1]).read()))"
 """twine looks at the pages of projects that are reStructuredText, and at no others."""
 _VERSION = re.compile(r"\d+\.\d+\.\d+(?:(?:a|b|rc)\d+)?")
@@ -300,7 +300,7 @@ def check_installed(home: Path, file: Path, version: str, digest: str) -> None:
 
 def demo_of(command: Sequence[str], folder: Path, more: Mapping[str, str]) -> str:
     """Return the digest of the demonstration."""
-    return output([*command, *DEMO], folder, more).splitlines()[-1].removeprefix("trace: ")
+    return output([*command, *DEMO], folder, more).splitlines()[-2].removeprefix("trace: ")
 
 
 # -- the end ---------------------------------------------------------------------------------------------------------

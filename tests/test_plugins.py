@@ -62,7 +62,7 @@ def test_add_on_of_another_package_adds_its_command_and_its_table(site: Path, gi
     ranked = give("busiest", "lab", "--top", "2")
     assert (ranked.returncode, ranked.stderr) == (0, "")
     assert [line[:3] for line in ranked.stdout.splitlines()] == ["1. ", "2. "]
-    report = give("run", "lab", "--for", "2", "--quiet").stdout
+    report = give("run", "lab", "--for", "2", "--no-console").stdout
     name = ranked.stdout.splitlines()[0].split()[1].rstrip(":")
     assert report.index("Busiest\n") < report.rindex(name) < report.index("virtual s in")
 
@@ -86,12 +86,12 @@ def test_example_can_be_installed(tmp_path: Path, site: Path, give: Give) -> Non
 def test_invalid_add_on_is_left_out(site: Path, give: Give, text: str, said: str) -> None:
     (site / "odd.py").write_text(text, encoding="utf-8")
     offer(site, "odd", "odd:PLUGIN")
-    done = give("run", "lab", "--for", "1", "--quiet")
+    done = give("run", "lab", "--for", "1", "--no-console")
     assert (done.returncode, done.stderr) == (0, said)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("words", "status"), [(["--help"], 0), (["run", "lab", "--for", "1", "--quiet"], 2)])
+@pytest.mark.parametrize(("words", "status"), [(["--help"], 0), (["run", "lab", "--for", "1", "--no-console"], 2)])
 def test_add_on_that_fails_later_is_named(site: Path, give: Give, words: list[str], status: int) -> None:
     offers = "commands=('odd',), title='Odd', hooks={'report_tables': '.no:tables'}"
     (site / "odd").mkdir()

@@ -8,7 +8,7 @@ from __future__ import annotations
 import argparse
 
 from cfepy.cli import flight_add_ons
-from cfepy.cli.options import add_json, factor_of
+from cfepy.cli.options import add_ci_outputs, add_json, factor_of
 from cfepy.cli.parser import shared_group
 from cfepy.status import UsageError
 
@@ -21,6 +21,7 @@ def add_flight(parser: argparse.ArgumentParser) -> None:
     add_pace(parser)
     flight_add_ons.add_options(parser)
     add_outputs(parser)
+    add_ci_outputs(shared_group(parser, "continuous integration"))
     add_recording(parser)
     _add_check_determinism(parser)
 
@@ -44,7 +45,8 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
         help="record only these, such as /odom or '/arm/*' (default: all)",
     )
     run.add_argument("--trace", metavar="FILE", help="write all records of the run to a file, a line each")
-    run.add_argument("--quiet", action="store_true", help="print only the report, no console and no status line")
+    run.add_argument("--no-console", action="store_true", help="print only the report, no console and no status line")
+    run.add_argument("--quiet", action="store_true", help="print only the problems and the verdict")
 
 
 def add_recording(parser: argparse.ArgumentParser) -> None:

@@ -17,7 +17,7 @@ from cfepy.cli.user_notes import check_writable, writing
 from cfepy.writing.escapes import for_data
 
 STDOUT = "-"
-_MAY_BE_STDOUT = ("json", "csv", "sarif", "yaml", "output", "dot", "svg")
+_MAY_BE_STDOUT = ("json", "csv", "junit", "sarif", "yaml", "output", "dot", "svg")
 
 
 @contextlib.contextmanager
@@ -44,6 +44,23 @@ def check_json(arguments: argparse.Namespace) -> None:
     """
     if arguments.json not in (None, STDOUT):
         check_writable(arguments.json, "--json")
+
+
+def check_ci_outputs(arguments: argparse.Namespace) -> None:
+    """Check before a run that the files for continuous integration can be written; see `cfepy.cli.ci_outputs`.
+
+    Raises:
+        UsageError: one cannot be written.
+    """
+    for name in ("junit", "sarif"):
+        file = getattr(arguments, name)
+        if file not in (None, STDOUT):
+            check_writable(file, f"--{name}")
+
+
+def wants_ci_outputs(arguments: argparse.Namespace) -> bool:
+    """Return whether the command line asks for an output of `cfepy.cli.ci_outputs`, which is loaded only then."""
+    return bool(arguments.github or arguments.junit or arguments.sarif)
 
 
 def write_json(arguments: argparse.Namespace, value: Any, indent: int | None = 2) -> None:

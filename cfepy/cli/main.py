@@ -139,6 +139,7 @@ def _obey(words: Sequence[str]) -> int:
     """Carry out the words. Returns the exit status."""
     if "_ARGCOMPLETE" in os.environ:
         _command(f"{__package__}.shell_completion").complete(parser_for)
+    chosen = argparse.Namespace()
     try:
         if words[:1] == [HELP]:
             return _print_help(words[1:])
@@ -150,6 +151,8 @@ def _obey(words: Sequence[str]) -> int:
         return status
     except UsageError as error:
         print(f"cfepy: {error}", file=sys.stderr)
+        if getattr(chosen, "github", False):
+            _command(f"{__package__}.ci_outputs").annotate(error)
         return BAD_USAGE
     except StallError as error:
         print(f"cfepy: {error}", file=sys.stderr)

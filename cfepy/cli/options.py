@@ -399,6 +399,18 @@ def add_json(parser: Options, what: str) -> None:
     parser.add_argument("--json", metavar="FILE|-", help=text)
 
 
+NO_CI_OUTPUTS = {"junit": None, "sarif": None, "github": False}
+
+
+def add_ci_outputs(parser: Options) -> None:
+    """Add the options for continuous integration; see `cfepy.cli.ci_outputs`."""
+    text = "write the results as JUnit XML, for GitLab, Jenkins and others; - writes to standard output"
+    parser.add_argument("--junit", metavar="FILE|-", help=text)
+    text = "write the findings as SARIF 2.1.0, for code hosts and editors; - writes to standard output"
+    parser.add_argument("--sarif", metavar="FILE|-", help=text)
+    parser.add_argument("--github", action="store_true", help="print the findings as annotations of GitHub, too")
+
+
 def add_output(parser: argparse.ArgumentParser, text: str, default: str | None = None) -> None:
     """Add the option for the file or folder that a command makes.
 

@@ -13,8 +13,9 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
+    from cfepy.pilot.failure_places import SourcePlaces
     from cfepy.pilot.idleness import idle_nodes
-    from cfepy.pilot.mission_check import MissionProblem, check_mission, problem_of
+    from cfepy.pilot.mission_check import MissionProblem, check_mission, problem_of, shown_file
     from cfepy.pilot.never_judged import SentNames, no_such_app
     from cfepy.pilot.peers import boot_of
     from cfepy.pilot.pilot import BootError, Flown, Host, LiveRun, booting, fly, takeoff
@@ -48,6 +49,7 @@ __all__ = [
     "RunPlan",
     "RunProblem",
     "SentNames",
+    "SourcePlaces",
     "TopicResult",
     "boot_of",
     "booting",
@@ -65,6 +67,7 @@ __all__ = [
     "problem_of",
     "problems_of",
     "problems_so_far",
+    "shown_file",
     "takeoff",
 ]
 
@@ -72,7 +75,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".mission_check": ("MissionProblem", "check_mission", "problem_of"),
+            ".mission_check": ("MissionProblem", "check_mission", "problem_of", "shown_file"),
             ".peers": ("boot_of",),
             ".run_loop": (
                 "BOOT_S",
@@ -86,6 +89,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "Failure",
                 "FailureKind",
             ),
+            ".failure_places": ("SourcePlaces",),
             ".idleness": ("idle_nodes",),
             ".unconnected_topics": ("loose_ends",),
             ".never_judged": (

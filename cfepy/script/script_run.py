@@ -77,13 +77,19 @@ class Outcome:
 
     def lines(self) -> Iterator[str]:
         """Yield a line for each step, and the summary."""
-        for each in self.verdicts:
-            detail = f": {each.detail}" if each.detail else ""
-            word = "ok" if each.ok else "FAILED"
-            yield f"{word:<6} {each.at_s:9.3f}  {self.file}:{each.line}: {each.step}{detail}"
+        yield from map(self._line, self.verdicts)
         failed = sum(not verdict.ok for verdict in self.verdicts)
         count = len(self.verdicts)
         yield f"{count} {'step' if count == 1 else 'steps'}, {f'{failed} failed' if failed else 'all ok'}"
+
+    def failed_lines(self) -> Iterator[str]:
+        """Yield a line for each failed step."""
+        yield from (self._line(each) for each in self.verdicts if not each.ok)
+
+    def _line(self, each: StepVerdict) -> str:
+        detail = f": {each.detail}" if each.detail else ""
+        word = "ok" if each.ok else "FAILED"
+        return f"{word:<6} {each.at_s:9.3f}  {self.file}:{each.line}: {each.step}{detail}"
 
     def text(self) -> str:
         """Return all lines, for a message."""

@@ -52,7 +52,9 @@ SHARED = {
     "ROS on this computer": "ROS on this computer",
     "viewers": "Viewers",
     "output": "Output",
+    "continuous integration": "Continuous integration",
     "journal": "Journal",
+    "failures": "Failures of a search",
     "processes": "Processes",
 }
 """The title on the page of each group that commands share."""

@@ -193,6 +193,8 @@ class PlannedTest:
     time_limit_ns: int
     retry: int
     results: Path  # file for the results of the test
+    file: Path  # the launch file that it is in
+    line: int  # its line there
     problem: str = ""  # why it has no node
     compiled: CppNode | None = None  # its node, if it is in C++
     displaces: LaunchRemark | None = None  # the node of the file that it shuts down, because both have one name
@@ -452,18 +454,19 @@ class Planner:
         """Plan a test; it gets the file for its results, and its end ends its run."""
         node, name, limit = test.node, test.test_name, round(test.time_limit * NS_PER_S)
         results = self._results / _results_file(f"{node.package}-{name}")
+        planned = PlannedTest(node.package, name, None, limit, test.retry, results, node.file, node.line)
         try:
             config = self.config(replace(node, required=True), (f"--gtest_output=xml:{results}",))
         except ScriptError as error:
             folders = compiled_folders(self._packages, node.package, node.type) if self._with_compiled else ()
             if folders:
                 program = self._compiled(replace(node, required=True), folders)
-                return PlannedTest(node.package, name, None, limit, test.retry, results, compiled=program)
+                return replace(planned, compiled=program)
             why = str(error)
             text = f"test {name} cannot run here: {why}"
             remarks.append(LaunchRemark(text, node.file, node.line, not error.is_there, before_runs=False))
-            return PlannedTest(node.package, name, None, limit, test.retry, results, why)
-        return PlannedTest(node.package, name, config, limit, test.retry, results)
+            return replace(planned, problem=why)
+        return replace(planned, node=config)
 
     def config(self, node: LaunchNode, more_args: tuple[str, ...] = ()) -> NodeConfig:
         """Make the application of one node; `more_args` follow its own arguments.

@@ -68,7 +68,7 @@ def test_the_saved_script_repeats_the_run(console: Console, tmp_path: Path, caps
     saved = script.read_text(encoding="utf-8")
     assert 'at 1 send SAMPLE_APP_DISPLAY_PARAM ValU32=7 ValStr="two words"\n        expect event' in saved
     assert "send CFE_ES_RESTART RestartType=1" in saved
-    assert main(["run", "lab", "--script", str(script), "--quiet"]) == 0
+    assert main(["run", "lab", "--script", str(script), "--no-console"]) == 0
     again = capsys.readouterr().out
     assert trace_of(again) == trace_of(output)
     assert "FAILED" not in again
@@ -128,7 +128,7 @@ def test_a_journal_has_what_was_typed(
     """Also before time has begun, when no application can receive it yet."""
     journal = tmp_path / "run.cfepy"
     _, output = console("lab", "--record", str(journal), lines=lines)
-    assert main(["replay", str(journal), "--quiet"]) == 0
+    assert main(["replay", str(journal), "--no-console"]) == 0
     assert trace_of(capsys.readouterr().out) == trace_of(output)
     assert main(["replay", str(journal), "--info"]) == 0
     assert "-" not in capsys.readouterr().out.partition("goes to:")[2].splitlines()[0]
@@ -142,9 +142,9 @@ def test_ros_steps_are_in_the_journal_and_in_the_saved_script(
     lines += 'call /enable data=true\nrun 1\nexpect response message == "enabled at 7"\n'
     status, output = console(mission, "--record", journal, "--save-script", script, lines=lines)
     assert status == 0, output
-    assert main(["replay", journal, "--quiet"]) == 0
+    assert main(["replay", journal, "--no-console"]) == 0
     assert trace_of(capsys.readouterr().out) == trace_of(output)
-    assert main(["run", mission, "--script", script, "--quiet"]) == 0
+    assert main(["run", mission, "--script", script, "--no-console"]) == 0
     assert trace_of(capsys.readouterr().out) == trace_of(output)
 
 
@@ -154,7 +154,7 @@ def test_a_paced_session_is_repeated_by_its_script(
     script = str(tmp_path / "session.txt")
     lines = "until app SCH RUNNING\nCFE_ES_NOOP\nexpect event CFE_ES 3\nCFE_SB_NOOP\nrun 0.2\nspeed max\nCFE_TBL_NOOP\n"
     paced = console("sched", "--realtime", "200", "--port", "1234=0", "--save-script", script, lines=lines)[1]
-    main(["run", "sched", "--script", script, "--quiet"])
+    main(["run", "sched", "--script", script, "--no-console"])
     assert trace_of(capsys.readouterr().out) == trace_of(paced)
 
 

@@ -176,7 +176,7 @@ def test_sighup_finishes_bag_and_journal(tmp_path: Path, count: int) -> None:
         process.send_signal(signal.SIGHUP)
     out, err = process.communicate()
     assert process.returncode == 130
-    assert out.splitlines()[-1].startswith("trace: ")
+    assert out.splitlines()[-2].startswith("trace: ")
     assert "Traceback" not in err
     assert_whole(bag, journal)
 

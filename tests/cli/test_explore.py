@@ -23,7 +23,7 @@ def late(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def explore(*words: object) -> int:
-    return main(["explore", *map(str, words), "--tasks", "greenlet", "--quiet"])
+    return main(["explore", *map(str, words), "--tasks", "greenlet"])
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ Capture = pytest.CaptureFixture[str]
 def journal(make_mission: Write, tmp_path: Path, capsys: Capture) -> Path:
     """The journal of a run of 2 virtual seconds."""
     file = tmp_path / "run.cfepy"
-    assert main(["run", str(make_mission("Quiet", "Chatty")), "--for", "2", "--quiet", "--record", str(file)]) == 0
+    assert main(["run", str(make_mission("Quiet", "Chatty")), "--for", "2", "--no-console", "--record", str(file)]) == 0
     capsys.readouterr()
     return file
 
@@ -30,7 +30,7 @@ def test_the_trace_of_a_journal_is_that_of_its_run(
     assert main(["trace", str(journal)]) == 0
     printed = capsys.readouterr().out
     mission, file = str(make_mission("Quiet", "Chatty")), tmp_path / "trace.txt"
-    assert main(["run", mission, "--for", "2", "--quiet", "--trace", str(file)]) == 0
+    assert main(["run", mission, "--for", "2", "--no-console", "--trace", str(file)]) == 0
     assert printed == file.read_text(encoding="utf-8")
     capsys.readouterr()
     assert main(["trace", mission, "--for", "2"]) == 0
@@ -134,7 +134,7 @@ def test_bad_usage_is_told(
 def test_deadlines_that_are_missed_make_a_run_fail(make_mission: Write, tmp_path: Path, capsys: Capture) -> None:
     mission = str(make_mission("Chatty", yaml='deadlines: {topics: {"0x0890": {at_most_every: 1 s}}}'))
     numbers = tmp_path / "numbers.json"
-    assert main(["run", mission, "--for", "2", "--quiet", "--json", str(numbers)]) == 1
+    assert main(["run", mission, "--for", "2", "--no-console", "--json", str(numbers)]) == 1
     out, error = capsys.readouterr()
     assert re.search(r"0x0890 +at_most_every +1 s +\d+ +\d+ +100 ms", out)
     assert "cfepy: 0x0890 missed its deadline at_most_every 1 s" in error

@@ -50,7 +50,7 @@ def test_a_run_with_faults_reports_them(plan: Path, tmp_path: Path, capsys: pyte
 
 def test_every_fault_is_in_the_trace(plan: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "trace.txt"
-    main(["run", "lab", "--for", "10", "--quiet", "--faults", str(plan), "--trace", str(file)])
+    main(["run", "lab", "--for", "10", "--no-console", "--faults", str(plan), "--trace", str(file)])
     lines = [line for line in file.read_text(encoding="utf-8").splitlines() if "cfepy fault" in line]
     assert sum("fault drop-1: drops CFE_TIME_ONEHZ_CMD" in line for line in lines) == 7
     assert sum("fault crash-1: crashes SAMPLE_APP" in line for line in lines) == 1
@@ -58,7 +58,7 @@ def test_every_fault_is_in_the_trace(plan: Path, tmp_path: Path, capsys: pytest.
 
 def test_a_run_without_faults_has_no_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     numbers = tmp_path / "numbers.json"
-    assert main(["run", "lab", "--for", "2", "--quiet", "--json", str(numbers)]) == 0
+    assert main(["run", "lab", "--for", "2", "--no-console", "--json", str(numbers)]) == 0
     assert "Faults" not in capsys.readouterr().out
     assert json.loads(numbers.read_text(encoding="utf-8"))["faults"] == []
 
@@ -76,7 +76,7 @@ def test_bad_plans_are_bad_usage(tmp_path: Path, capsys: pytest.CaptureFixture[s
 def test_an_unknown_application_is_told_before_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "plan.yaml"
     path.write_text("- crash: SAMPLE_AP\n  at: 1\n", encoding="utf-8")
-    assert main(["run", "lab", "--for", "1", "--quiet", "--faults", str(path)]) == 0
+    assert main(["run", "lab", "--for", "1", "--no-console", "--faults", str(path)]) == 0
     assert "unknown application SAMPLE_AP; did you mean SAMPLE_APP?" in capsys.readouterr().err
 
 
@@ -85,7 +85,7 @@ def test_a_command_of_a_script_gets_lost(tmp_path: Path, capsys: pytest.CaptureF
     noop = "send CFE_ES_NOOP\nexpect event CFE_ES 3 within 1\n"
     script.write_text(f"at 2 {noop}after 1 {noop}", encoding="utf-8")
     path.write_text("- {drop: CFE_ES_NOOP, from: host, number: 1}\n", encoding="utf-8")
-    assert main(["run", "lab", "--quiet", "--script", str(script), "--faults", str(path)]) == 1
+    assert main(["run", "lab", "--no-console", "--script", str(script), "--faults", str(path)]) == 1
     out, err = capsys.readouterr()
     assert "drops CFE_ES_NOOP #0 sent by host" in out
     assert "no application" not in err
@@ -128,8 +128,8 @@ def test_the_command_lists_targets_and_makes_plans(capsys: pytest.CaptureFixture
     path.write_text(text, encoding="utf-8")
     traces = []
     for faults in (str(path), "seed:7:high"):
-        main(["run", "lab", "--for", "11", "--quiet", "--faults", faults])
-        traces.append(capsys.readouterr().out.splitlines()[-1])
+        main(["run", "lab", "--for", "11", "--no-console", "--faults", faults])
+        traces.append(capsys.readouterr().out.splitlines()[-2])
     assert traces[0] == traces[1]
 
 
@@ -169,7 +169,7 @@ def test_a_launch_file_with_faults(tmp_path: Path, capsys: pytest.CaptureFixture
 
 def test_a_recorded_run_with_faults_replays(plan: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     journal = tmp_path / "run.cfepy"
-    main(["run", "lab", "--for", "5", "--quiet", "--faults", str(plan), "--record", str(journal)])
-    first = capsys.readouterr().out.splitlines()[-1]
-    main(["replay", str(journal), "--quiet"])
+    main(["run", "lab", "--for", "5", "--no-console", "--faults", str(plan), "--record", str(journal)])
+    first = capsys.readouterr().out.splitlines()[-2]
+    main(["replay", str(journal), "--no-console"])
     assert first in capsys.readouterr().out

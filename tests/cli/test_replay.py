@@ -66,8 +66,8 @@ def test_a_run_is_replayed_with_its_console_and_report(
 
 
 def test_until_ends_earlier(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["run", "capture", "--for", "3", "--quiet", "--record", "a.cfepy"])
-    assert main(["replay", "a.cfepy", "--until", "1.5", "--quiet"]) == 0
+    main(["run", "capture", "--for", "3", "--no-console", "--record", "a.cfepy"])
+    assert main(["replay", "a.cfepy", "--until", "1.5", "--no-console"]) == 0
     said = capsys.readouterr()
     assert "1.500 virtual s" in said.out
     assert "where it was compared for the last time" in said.err
@@ -248,7 +248,21 @@ def test_diff_of_traces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
 
 
 def test_info_runs_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["run", race(tmp_path), "--for", "1", "--quiet", "--seed", "4", "--schedule", "random", "--record", "a.cfepy"])
+    main(
+        [
+            "run",
+            race(tmp_path),
+            "--for",
+            "1",
+            "--no-console",
+            "--seed",
+            "4",
+            "--schedule",
+            "random",
+            "--record",
+            "a.cfepy",
+        ]
+    )
     trace = trace_of(capsys.readouterr().out)
     assert main(["replay", "a.cfepy", "--info"]) == 0
     said = capsys.readouterr().out

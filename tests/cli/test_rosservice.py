@@ -86,7 +86,7 @@ def test_requests_and_answers_have_names_on_the_bus(tmp_path: Path, capsys: Capt
     mission = robot(tmp_path)
     with (mission / "robot.py").open("a") as file:
         file.write("    if i == 3:\n        rospy.ServiceProxy('switch', SetBool)(True)\n        break\n")
-    assert main(["run", str(mission), "--for", "2", "--quiet"]) == 0
+    assert main(["run", str(mission), "--for", "2", "--no-console"]) == 0
     rows = [line.split()[1:5] for line in capsys.readouterr().out.splitlines() if "/switch" in line]
     assert rows == [["/switch", "answer", "1", "1"], ["/switch", "request", "1", "1"]]
 

@@ -26,7 +26,7 @@ def run(folder: Path, *options: str) -> int:
 
 def digest(capsys: pytest.CaptureFixture[str], folder: Path, *options: str) -> str:
     assert run(folder, *options) == 0
-    last = capsys.readouterr().out.splitlines()[-1]
+    last = capsys.readouterr().out.splitlines()[-2]
     assert last.startswith("trace: ")
     return last
 
@@ -36,12 +36,12 @@ def test_a_good_run(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> 
     shown = capsys.readouterr()
     assert "CFE_ES_Main entering OPERATIONAL state" in shown.out
     assert "QUIET" in shown.out
-    assert shown.out.splitlines()[-1].startswith("trace: ")
+    assert shown.out.splitlines()[-2].startswith("trace: ")
     assert shown.err == ""
 
 
-def test_quiet_shows_only_the_report(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
-    run(make_mission("Quiet"), "--quiet")
+def test_no_console_shows_only_the_report(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
+    run(make_mission("Quiet"), "--no-console")
     shown = capsys.readouterr().out
     assert "OPERATIONAL" not in shown
     assert shown.startswith("\nMessages\n")
@@ -59,12 +59,12 @@ def test_quiet_shows_only_the_report(make_mission: Write, capsys: pytest.Capture
 def test_a_run_that_goes_wrong(
     make_mission: Write, capsys: pytest.CaptureFixture[str], entry_point: str, said: str
 ) -> None:
-    assert run(make_mission("Quiet", entry_point), "--quiet") == 1
+    assert run(make_mission("Quiet", entry_point), "--no-console") == 1
     assert f"cfepy: {said}" in capsys.readouterr().err
 
 
 def test_a_processor_reset(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(make_mission("Dies", action=1), "--quiet") == 1
+    assert run(make_mission("Dies", action=1), "--no-console") == 1
     assert "the processor was reset" in capsys.readouterr().err
 
 
@@ -72,7 +72,7 @@ def test_a_bad_line_of_the_startup_script(make_mission: Write, capsys: pytest.Ca
     folder = make_mission("Quiet")
     script = folder / "startup.scr"
     script.write_text(script.read_text(encoding="utf-8").replace("!", "CFE_APP, apps, Quiet;\n!"), encoding="utf-8")
-    assert run(folder, "--quiet") == 1
+    assert run(folder, "--no-console") == 1
     assert f"{script}:2: the entry must have 8 fields, not 3" in capsys.readouterr().err
 
 
@@ -114,9 +114,9 @@ def test_numbers_that_cannot_be_written_do_not_cost_the_report(
 ) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("needs a full device")
-    assert run(make_mission("Quiet"), "--quiet", "--json", "/dev/full") == 2
+    assert run(make_mission("Quiet"), "--no-console", "--json", "/dev/full") == 2
     shown = capsys.readouterr()
-    assert shown.out.splitlines()[-1].startswith("trace: ")
+    assert shown.out.splitlines()[-2].startswith("trace: ")
     assert shown.err == "cfepy: /dev/full: --json: cannot be written: No space left on device\n"
 
 
@@ -132,7 +132,7 @@ def test_an_app_that_raises_keyboard_interrupt_ends_the_run_like_ctrl_c(
 ) -> None:
     folder = make_mission("Quiet")
     (folder / "apps.py").write_text("def Quiet(cfe):\n    raise KeyboardInterrupt\n", encoding="utf-8")
-    assert run(folder, "--quiet") == 130
+    assert run(folder, "--no-console") == 130
     assert "ended by Ctrl-C" in capsys.readouterr().err
 
 
@@ -141,20 +141,20 @@ def test_a_board_on_which_the_core_cannot_boot(
 ) -> None:
     board = tmp_path / "small.yaml"
     board.write_text(SMALL_BOARD, encoding="utf-8")
-    assert run(make_mission("Quiet"), "--board", str(board), "--quiet") == 2
+    assert run(make_mission("Quiet"), "--board", str(board), "--no-console") == 2
     said = capsys.readouterr().err
     assert "cannot boot" in said
     assert "the board is full: CFE_SB" in said
 
 
 def test_too_short_to_boot(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", str(make_mission("Quiet")), "--for", "0.1", "--quiet"]) == 2
+    assert main(["run", str(make_mission("Quiet")), "--for", "0.1", "--no-console"]) == 2
     assert "not OPERATIONAL after 0.1 virtual seconds" in capsys.readouterr().err
 
 
 def test_numbers_as_json(make_mission: Write, tmp_path: Path) -> None:
     file = tmp_path / "numbers.json"
-    run(make_mission("Chatty", "Quiet"), "--quiet", "--json", str(file), "--seed", "7", "--board", "rx64m")
+    run(make_mission("Chatty", "Quiet"), "--no-console", "--json", str(file), "--seed", "7", "--board", "rx64m")
     numbers = json.loads(file.read_text(encoding="utf-8"))
     assert numbers["virtual_s"] == pytest.approx(2, abs=0.001)
     assert numbers["speed"] == pytest.approx(numbers["virtual_s"] / numbers["wall_s"])
@@ -174,7 +174,7 @@ def test_numbers_as_json(make_mission: Write, tmp_path: Path) -> None:
 
 
 def test_names_and_reasons_in_the_report(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
-    run(make_mission("Chatty"), "--quiet")
+    run(make_mission("Chatty"), "--no-console")
     shown = capsys.readouterr().out
     line = next(line for line in shown.splitlines() if "0x0890" in line)
     assert "message limit, 4 not taken yet" in line
@@ -184,14 +184,14 @@ def test_names_and_reasons_in_the_report(make_mission: Write, capsys: pytest.Cap
 def test_a_rate_beyond_the_board_is_marked(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     board = make_mission("Chatty") / "slow.yaml"
     board.write_text("name: slow\nmax_publish_hz: 5\n", encoding="utf-8")
-    run(board.parent, "--quiet", "--board", str(board))
+    run(board.parent, "--no-console", "--board", str(board))
     shown = capsys.readouterr().out
     assert "! more than the 5 Hz that slow is made for" in shown
 
 
 def test_the_trace_file(make_mission: Write, tmp_path: Path) -> None:
     file = tmp_path / "trace.txt"
-    run(make_mission("Chatty"), "--quiet", "--trace", str(file))
+    run(make_mission("Chatty"), "--no-console", "--trace", str(file))
     lines = file.read_text(encoding="utf-8").splitlines()
     assert any(line.endswith("CHATTY send 0x0890 sequence 1 length 20") for line in lines)
     assert any(line.endswith("CHATTY drop at CHATTY") for line in lines)
@@ -208,7 +208,7 @@ def test_one_digest_however_it_is_run(make_mission: Write, tmp_path: Path, capsy
     for options in (
         ("--tasks", "thread"),
         ("--realtime", "50"),
-        ("--quiet",),
+        ("--no-console",),
         ("--trace", str(tmp_path / "trace.txt")),
         ("--seed", "3"),
     ):
@@ -217,11 +217,11 @@ def test_one_digest_however_it_is_run(make_mission: Write, tmp_path: Path, capsy
 
 def test_a_random_schedule_depends_on_the_seed_alone(make_mission: Write, capsys: pytest.CaptureFixture[str]) -> None:
     folder = make_mission("Chatty", "Quiet", "Complains")
-    options = ("--quiet", "--schedule", "random", "--seed")
+    options = ("--no-console", "--schedule", "random", "--seed")
     digests = set()
     for seed in ("1", "1", "2", "3"):
         run(folder, *options, seed)
-        digests.add(capsys.readouterr().out.splitlines()[-1])
+        digests.add(capsys.readouterr().out.splitlines()[-2])
     assert 1 < len(digests) <= 3
 
 
@@ -266,7 +266,7 @@ def test_a_terminal_gets_a_status_line_and_the_same_digest(
     shown = on_terminal("run", str(folder), "--for", "2")
     assert "x real time" in shown
     assert "messages/s" in shown
-    assert shown.rstrip().splitlines()[-1].strip() == digest(capsys, folder)
+    assert shown.rstrip().splitlines()[-2].strip() == digest(capsys, folder)
 
 
 @pytest.mark.parametrize("options", [("--for", "1000000"), ("--realtime",)])
@@ -277,7 +277,7 @@ def test_ctrl_c_ends_a_run_with_its_report(make_mission: Write, options: tuple[s
     process.send_signal(how)
     out, err = process.communicate()
     assert process.returncode == 130
-    assert out.splitlines()[-1].startswith("trace: ")
+    assert out.splitlines()[-2].startswith("trace: ")
     assert "ended by Ctrl-C or SIGTERM after " in err
 
 
@@ -307,7 +307,7 @@ def test_ctrl_c_ends_the_run_whatever_a_task_does(make_mission: Write, body: str
     process.send_signal(signal.SIGINT)
     out, err = process.communicate()
     assert process.returncode == 130
-    assert out.splitlines()[-1].startswith("trace: none" if told else "trace: ")
+    assert out.splitlines()[-2].startswith("trace: none" if told else "trace: ")
     assert told in err
     assert "Traceback" not in err
 

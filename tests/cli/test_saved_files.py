@@ -39,7 +39,7 @@ def mission(tmp_path: Path) -> Path:
 
 def test_what_the_mission_wrote_is_saved(mission: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     target = tmp_path / "made" / "out"
-    assert main(["run", str(mission), "--for", "1", "--quiet", "--save-files", str(target)]) == 0
+    assert main(["run", str(mission), "--for", "1", "--no-console", "--save-files", str(target)]) == 0
     saved = {str(path.relative_to(target)): path.read_bytes() for path in target.rglob("*") if path.is_file()}
     assert saved == {"ram/note.txt": b"hello", "ram/sub/deep.txt": b"", "cf/plan.txt": b"new"}
     assert f"saved to {target}: 3 files" in capsys.readouterr().out
@@ -58,7 +58,7 @@ def test_a_folder_that_cannot_be_made_is_an_error_before_the_run(
 
 def test_a_file_that_cannot_be_written(mission: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "out" / "ram" / "note.txt").mkdir(parents=True)
-    command = ["run", str(mission), "--for", "1", "--quiet", "--save-files", str(tmp_path / "out")]
+    command = ["run", str(mission), "--for", "1", "--no-console", "--save-files", str(tmp_path / "out")]
     assert main(command) == 2
     out, err = capsys.readouterr()
     assert "note.txt" in err

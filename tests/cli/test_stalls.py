@@ -65,7 +65,7 @@ def test_a_run_and_its_replay_end_as_failed(tmp_path: Path, capsys: pytest.Captu
     words = [app(tmp_path), "--for", "2", "--stall", "0.2"]
     assert main(["run", *words, "--record", journal]) == FOUND_PROBLEMS
     said = capsys.readouterr()
-    assert said.out.splitlines()[-1] == "trace: none, since the run was broken off"
+    assert said.out.splitlines()[-2] == "trace: none, since the run was broken off"
     assert said.err.count("task SPIN has not given up the CPU") == 1
     assert "app.py:3 in main: while True:" in said.err
     assert main(["replay", journal]) == FOUND_PROBLEMS

@@ -52,13 +52,13 @@ def digest(text: str) -> str:
 
 
 def test_a_run_that_is_shown_is_the_same_run(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["run", mission, "--for", "1", "--quiet"])
+    main(["run", mission, "--for", "1", "--no-console"])
     alone = digest(capsys.readouterr().out)
-    assert main(["run", mission, "--for", "1", "--quiet", "--foxglove", "0"]) == 0
+    assert main(["run", mission, "--for", "1", "--no-console", "--foxglove", "0"]) == 0
     shown = capsys.readouterr()
     assert digest(shown.out) == alone
     assert re.search(r"Foxglove connects to ws://127\.0\.0\.1:\d+", shown.err)
-    assert main(["run", mission, "--for", "1", "--quiet", "--foxglove", "0", "--rosbridge", "0"]) == 0
+    assert main(["run", mission, "--for", "1", "--no-console", "--foxglove", "0", "--rosbridge", "0"]) == 0
     shown = capsys.readouterr()
     assert digest(shown.out) == alone
     assert re.search(r"rosbridge clients connect to ws://127\.0\.0\.1:\d+", shown.err)
@@ -100,7 +100,9 @@ def test_one_token_is_made_for_all_servers(
     mission: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.delenv("CFEPY_VIEWER_TOKEN", raising=False)
-    assert main(["run", mission, "--for", "1", "--quiet", "--foxglove", "0.0.0.0:0", "--rosbridge", "0.0.0.0:0"]) == 0
+    assert (
+        main(["run", mission, "--for", "1", "--no-console", "--foxglove", "0.0.0.0:0", "--rosbridge", "0.0.0.0:0"]) == 0
+    )
     shown = capsys.readouterr()
     assert len(re.findall(r"viewers require the token \S{24} ", shown.err)) == 1
     assert "token" not in shown.out
@@ -114,7 +116,7 @@ def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
     """It is replayed at the pace of the wall clock, and as fast as possible. The token is in no journal."""
     file, token = tmp_path / "run.cfepy", "a-long-secret"
     length = "4" if pace else "6000"
-    command = ["run", mission, "--for", length, "--quiet", "--rosbridge", "0", "--viewer-token", token]
+    command = ["run", mission, "--for", length, "--no-console", "--rosbridge", "0", "--viewer-token", token]
     with (
         served(monkeypatch, [*command, "--record", str(file), *pace]) as url,
         connect(f"{url}/?token={token}") as client,
@@ -129,7 +131,7 @@ def test_a_journal_of_a_run_with_rosbridge_is_replayed_without_clients(
     out = capsys.readouterr().out
     assert re.search(r"/orders +rosbridge 127\.0\.0\.1 +in +1 +0 ", out)
     assert token.encode() not in file.read_bytes()
-    assert main(["replay", str(file), "--quiet"]) == 0
+    assert main(["replay", str(file), "--no-console"]) == 0
     assert digest(capsys.readouterr().out) == digest(out)
     assert main(["replay", str(file), "--info"]) == 0
     assert token not in capsys.readouterr().out
@@ -150,7 +152,7 @@ def test_a_journal_of_a_run_with_viewers_is_replayed_without_them(
     """It is replayed at the pace of the wall clock, and as fast as possible."""
     file = str(tmp_path / "run.cfepy")
     length = "4" if pace else "6000"
-    command = ["run", mission, "--for", length, "--quiet", "--foxglove", "0", "--record", file, *pace]
+    command = ["run", mission, "--for", length, "--no-console", "--foxglove", "0", "--record", file, *pace]
     with served(monkeypatch, command) as url, FoxgloveClient(url) as client:
         client.subscribe("/chatter", "/cfe/events")
         client.advertise(1, "/orders", "std_msgs/String", "json")
@@ -165,7 +167,7 @@ def test_a_journal_of_a_run_with_viewers_is_replayed_without_them(
         assert any(b"No-op" in each for each in client.of("/cfe/events"))
     out = capsys.readouterr().out
     assert re.search(r"/orders +foxglove +in +\d+ +0 ", out)
-    assert main(["replay", file, "--quiet"]) == 0
+    assert main(["replay", file, "--no-console"]) == 0
     assert digest(capsys.readouterr().out) == digest(out)
 
 
@@ -191,7 +193,7 @@ def test_a_session_of_the_console_serves_viewers_also_while_time_stands_still(
                 client.send(json.dumps({"op": "publish", "topic": "/orders", "msg": {"data": "hi"}}))
             keys.write("quit\n")
     out = capsys.readouterr().out
-    assert main(["replay", file, "--quiet"]) == 0
+    assert main(["replay", file, "--no-console"]) == 0
     assert digest(capsys.readouterr().out) == digest(out)
 
 

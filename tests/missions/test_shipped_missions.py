@@ -188,7 +188,7 @@ def test_application_that_does_not_fit_fails_the_run(tmp_path: Path, capsys: pyt
     folder = Path(with_rate(tmp_path, 100))
     script = (folder / "startup.scr").read_text(encoding="utf-8")
     (folder / "startup.scr").write_text(script.replace("RIGHT, 100, 8192", "RIGHT, 100, 500000"), encoding="utf-8")
-    assert main(["run", str(folder), "--for", "1", "--quiet"]) == 1
+    assert main(["run", str(folder), "--for", "1", "--no-console"]) == 1
     captured = capsys.readouterr()
     assert "NOT STARTED" in captured.out
     assert "RIGHT could not be started" in captured.err

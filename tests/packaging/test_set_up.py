@@ -38,7 +38,7 @@ def test_line_makes_an_environment_with_cfepy(line: str, tmp_path: Path) -> None
     copy = tmp_path / "cfepy"
     shutil.copytree(ROOT, copy, ignore=LEFT)
     environment = {name: value for name, value in os.environ.items() if not name.startswith(("PYTHON", "VIRTUAL_"))}
-    shell = f"{line.replace(PLACE, str(copy))} && .venv/bin/cfepy run capture --for 1 --quiet"
+    shell = f"{line.replace(PLACE, str(copy))} && .venv/bin/cfepy run capture --for 1 --no-console"
     done = subprocess.run(["bash", "-c", shell], cwd=copy, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, f"{shell}\n{done.stdout}\n{done.stderr}"
     assert re.search(r"^trace: \w{32}$", done.stdout, re.MULTILINE)

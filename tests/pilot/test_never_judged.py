@@ -63,7 +63,7 @@ def test_demand_that_was_never_judged_is_reported(tmp_path: Path, demands: str) 
 @pytest.mark.parametrize(
     "command",
     [
-        ["run", "--quiet"],
+        ["run", "--no-console"],
         ["explore", "--seeds", "1", "--jobs", "1", "--quiet"],
         ["graph", "--mids"],
         ["rostopic", "echo", "/energy", "-n", "1"],

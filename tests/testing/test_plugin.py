@@ -142,8 +142,8 @@ def test_without_actions_equals_a_run_of_the_command_line(
     commands = re.findall(r"to reproduce: cfepy (run .*)", result.stdout.str())
     assert commands == ["run --for 1.100001 --seed 5 --schedule random:2 talk"]
     monkeypatch.chdir(missions)
-    assert main([*commands[0].replace("1.100001", "1.5").split(), "--quiet"]) == 0
-    assert capsys.readouterr().out.split()[-1] == (missions / "trace").read_text(encoding="utf-8")
+    assert main([*commands[0].replace("1.100001", "1.5").split(), "--no-console"]) == 0
+    assert capsys.readouterr().out.splitlines()[-2].split()[-1] == (missions / "trace").read_text(encoding="utf-8")
 
 
 def test_missions_are_closed_and_threads_ended(suite: Suite) -> None:

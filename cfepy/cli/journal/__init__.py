@@ -9,7 +9,7 @@ import argparse
 from collections.abc import Callable
 
 from cfepy.cli.flight_options import add_outputs
-from cfepy.cli.options import TASK_KINDS, add_from_disk, add_until, whole_number_of
+from cfepy.cli.options import NO_CI_OUTPUTS, TASK_KINDS, add_from_disk, add_until, whole_number_of
 from cfepy.plugins import Hook
 
 STOPS: Hook[Callable[[argparse.ArgumentParser], None]] = Hook("replay_options")
@@ -40,7 +40,7 @@ def _add_replay(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     replay.add_argument("journal", metavar="FILE", help="the journal")
     replay.add_argument("--info", action="store_true", help="only show the contents of the journal")
     add_until(replay, "the replay")
-    replay.set_defaults(**NO_STOPS)
+    replay.set_defaults(**NO_STOPS, **NO_CI_OUTPUTS)
     for add_stops in STOPS.all():
         add_stops(replay)
     add_from_disk(replay)

@@ -169,8 +169,8 @@ def _looks_into(arguments: argparse.Namespace) -> bool:
 def _view(command: str, arguments: argparse.Namespace) -> View:
     """Return the view of the run, as the recorded command shows it."""
     if command == NODE:
-        return NodeView(arguments.quiet)
-    return NodesView(arguments.quiet) if command == LAUNCH and not arguments.console else View(arguments.quiet)
+        return NodeView(arguments)
+    return NodesView(arguments) if command == LAUNCH and not arguments.console else View(arguments)
 
 
 def _tell(replay: Replay, stream: TextIO) -> None:

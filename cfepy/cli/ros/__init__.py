@@ -13,6 +13,7 @@ from cfepy.cli.options import (
     MISSION_HELP,
     STATUS_HELP,
     add_action,
+    add_ci_outputs,
     add_count,
     add_json,
     add_mission,
@@ -22,7 +23,7 @@ from cfepy.cli.options import (
     factor_of,
     seconds_of,
 )
-from cfepy.cli.parser import hand_options_to_nodes
+from cfepy.cli.parser import hand_options_to_nodes, shared_group
 
 _LAUNCH_WORDS = "a launch file, or a package and the name of a launch file in it; then its arguments, as NAME:=VALUE"
 _NODE_WORDS = "a script, or a package and the name of a node in it; then the node's arguments and options"
@@ -90,13 +91,14 @@ def _add_rostest(commands: _Actions[argparse.ArgumentParser]) -> None:
     test = commands.add_parser(
         "rostest",
         help="run the tests of a launch file",
-        examples=("cfepy rostest my_package arm.test", "cfepy rostest arm.test --results results.xml"),
+        examples=("cfepy rostest my_package arm.test", "cfepy rostest arm.test --junit results.xml"),
         description="Run each <test> of a launch file with the file's nodes, in virtual time, and report.",
         epilog=_TEST_STATUS,
     )
     add_mission(test, "words", metavar="WORD", nargs="+", help=_LAUNCH_WORDS)
     test.add_argument("--text", "-t", action="store_true", help="show the output of nodes and tests")
-    test.add_argument("--results", metavar="FILE", help="write the result of every test to a file, as JUnit XML")
+    add_ci_outputs(shared_group(test, "continuous integration"))
+    test.add_argument("--results", metavar="FILE", dest="junit", help="another name of --junit")
     add_run_options(test, without=["seconds"])  # each test has its own time limit
     test.set_defaults(module="cfepy.cli.ros.rostest")
 

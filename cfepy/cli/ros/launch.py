@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
         file, args = launch_file(launch_words(arguments))
         _show(launch_plan_of(file, args, dict(os.environ), cwd=Path.cwd(), with_compiled=True), arguments)
         return ENDED_WELL
-    view = View(arguments.quiet) if arguments.console else NodesView(arguments.quiet)
+    view = View(arguments) if arguments.console else NodesView(arguments)
     return fly_and_tell(arguments, plan_of(arguments, launch_words(arguments), LAUNCH), view)
 
 

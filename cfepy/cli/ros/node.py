@@ -11,6 +11,7 @@ from cfepy.cli.display import Display, SilentDisplay
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of
 from cfepy.cli.run.outputs import Outputs
+from cfepy.cli.run.report import failed_steps
 from cfepy.cli.run.run import View, fly_and_tell
 from cfepy.cli.user_notes import tell
 from cfepy.mission import Mission
@@ -59,14 +60,17 @@ class NodeView(View):
 
     def display(self, seconds: float) -> Display:
         """Make the display of the node's output."""
-        return SilentDisplay() if self.quiet else NodeDisplay(sys.stdout)
+        return SilentDisplay() if self.hides_console else NodeDisplay(sys.stdout)
 
     def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
         """Print problems other than the node's own. Returns the exit status of the node or of the run's script."""
-        outputs.save_files(flown)
-        tell(flown.results.never_happened)
-        if flown.outcome is not None:
-            print(flown.outcome.text())
+        outputs.save_files(flown, self.quiet)
+        if self.quiet:
+            print("".join(f"{line}\n" for line in failed_steps(flown)), end="")
+        else:
+            tell(flown.results.never_happened)
+            if flown.outcome is not None:
+                print(flown.outcome.text())
         return _status(flown, longer)
 
 
@@ -79,7 +83,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such node, or the options do not allow the run.
     """
-    return fly_and_tell(arguments, plan_of(arguments, arguments.words, NODE), NodeView(arguments.quiet))
+    return fly_and_tell(arguments, plan_of(arguments, arguments.words, NODE), NodeView(arguments))
 
 
 def _status(flown: Flown, longer: str) -> int:

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 import argparse
 import os
+import re
 import sys
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from xml.etree import ElementTree
 
+from cfepy.cli.ci_outputs import write_ci_outputs
 from cfepy.cli.display import Display, PlainDisplay, SilentDisplay
+from cfepy.cli.json_output import check_ci_outputs, wants_ci_outputs
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import launch_words
 from cfepy.cli.options import plan_of as run_plan_of
 from cfepy.cli.ros.view import NodesDisplay
 from cfepy.cli.run.outputs import SavedRunFiles
-from cfepy.cli.user_notes import tell, writing
+from cfepy.cli.user_notes import tell
 from cfepy.cli.watched_host import Interrupts, WatchedHost
+from cfepy.interpreter.own_code import is_library, is_shown
 from cfepy.mission import TEST_RESULTS, BuiltProgram, CppNodesConfig, NodeBuilder, built_programs, launch_file, spec_of
 from cfepy.nodes import CppNode, NodeConfig
 from cfepy.pilot import LAUNCH, Flown, builder, fly, is_reported
@@ -27,30 +31,15 @@ from cfepy.reading.input_limits import XML_BYTES
 from cfepy.reading.plain_xml import XmlError, plain_xml
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
-from cfepy.writing.markup import printable
+from cfepy.writing.ci_findings import CiFinding, FindingPlace
+from cfepy.writing.junit import ERROR, FAILURE, Case, Problem, Suite
 from rospy_shim.roslaunch.launch_plan import LaunchPlan, PlannedTest, plan_of
 
-FAILURE, ERROR = "failure", "error"
 BOARD = "workstation"  # calls of nodes take time on it, as required by tests of nodes that never rest
 LAST_LINES = 25  # of the output of a test that leaves no results
-
-
-@dataclass(frozen=True, slots=True)
-class Problem:
-    """A reason why a test did not pass: `kind` is FAILURE or ERROR, `text` its message."""
-
-    kind: str
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Case:
-    """One test; `seconds` is virtual time."""
-
-    suite: str
-    name: str
-    seconds: float = 0.0
-    problems: tuple[Problem, ...] = ()
+MOST_PLACES = 2
+_KINDS = {FAILURE: "a test failed", ERROR: "a test could not run to its end"}
+_FRAME = re.compile(r'^\s*File "(?P<file>.+)", line (?P<line>\d+)', re.MULTILINE)
 
 
 @dataclass(slots=True)
@@ -81,19 +70,25 @@ class TestResults:
         counts = [f" * TESTS: {self.tests}", f" * ERRORS: {self.errors}", f" * FAILURES: {self.failures}"]
         return "\n".join([f"[ROSTEST]{'-' * 71}", "", *lines, "", "SUMMARY", f" * RESULT: {verdict}", *counts])
 
-    def xml(self, name: str) -> bytes:
+    def suite(self, name: str, properties: Mapping[str, str]) -> Suite:
         """Return everything as one JUnit suite called `name`."""
-        counts = {"tests": str(self.tests), "errors": str(self.errors), "failures": str(self.failures)}
-        suite = ElementTree.Element("testsuite", {"name": printable(name), **counts})
+        counts = {"tests": self.tests, "failures": self.failures, "errors": self.errors, "skipped": 0}
+        return Suite(name, self.cases, properties, counts)
+
+    def findings(self) -> Iterator[CiFinding]:
+        """Yield a finding for each problem."""
         for case in self.cases:
-            seconds = f"{case.seconds:.3f}"
-            tag = ElementTree.SubElement(
-                suite, "testcase", classname=printable(case.suite), name=printable(case.name), time=seconds
-            )
             for problem in case.problems:
-                ElementTree.SubElement(tag, problem.kind, message=printable(problem.text))
-        text: bytes = ElementTree.tostring(suite, encoding="utf-8", xml_declaration=True)
-        return text
+                places = (*_lines_of(problem.detail or problem.text), *([] if case.place is None else [case.place]))
+                text = f"{case.suite}.{case.name}: {problem.text}"
+                yield CiFinding(problem.kind, text, tuple(dict.fromkeys(places))[:MOST_PLACES])
+
+
+def _lines_of(traceback: str) -> Iterator[FindingPlace]:
+    """Yield the line of a traceback that is nearest to the error, and not of a library."""
+    found = [FindingPlace(Path(each["file"]), int(each["line"])) for each in _FRAME.finditer(traceback)]
+    own = [each for each in found if is_shown(str(each.file)) and not is_library(str(each.file))]
+    yield from own[-1:]
 
 
 def broken(suite: str, name: str, text: str, kind: str = ERROR) -> TestResults:
@@ -132,13 +127,14 @@ def read_results(file: Path, suite: str) -> TestResults:
 
 def _cases(tag: ElementTree.Element, suite: str) -> Iterable[Case]:
     for each in tag.findall("testcase"):
-        problems = [Problem(kind, _said(found)) for kind in (ERROR, FAILURE) for found in each.findall(kind)]
+        problems = [_problem(kind, found) for kind in (ERROR, FAILURE) for found in each.findall(kind)]
         name = f"{each.get('classname', '')}/{each.get('name', '')}".lstrip("/")
         yield Case(suite, name, float(each.get("time") or 0), tuple(problems))
 
 
-def _said(tag: ElementTree.Element) -> str:
-    return tag.get("message") or (tag.text or "").strip()
+def _problem(kind: str, tag: ElementTree.Element) -> Problem:
+    text = (tag.text or "").strip()
+    return Problem(kind, tag.get("message") or text, tag.get("type", ""), text if tag.get("message") else "")
 
 
 def _case_lines(case: Case) -> Iterable[str]:
@@ -159,6 +155,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such file, it has an error, or it has no test.
     """
+    check_ci_outputs(arguments)
     file, args = launch_file(launch_words(arguments))
     with tempfile.TemporaryDirectory() as folder, Interrupts() as interrupts:
         environ, results = dict(os.environ), Path(folder)
@@ -171,14 +168,21 @@ def run(arguments: argparse.Namespace) -> int:
         tests = TestResults()
         for test in plan.tests:
             if not interrupts.asked:
-                tests.add(_Runner(file, plan, built, build, arguments, interrupts).run(test))
+                tests.add(_placed(_Runner(file, plan, built, build, arguments, interrupts).run(test), test))
     print(tests.text())
-    if arguments.results is not None:
-        with writing(arguments.results, "--results"):
-            Path(arguments.results).write_bytes(tests.xml(file.stem))
+    if wants_ci_outputs(arguments):
+        properties = {"seed": str(arguments.seed), "board": arguments.board or BOARD}
+        suite = tests.suite(file.stem, properties)
+        write_ci_outputs(arguments, "cfepy rostest", suite, list(tests.findings()), _KINDS)
     if interrupts.asked:
         return INTERRUPTED
     return ENDED_WELL if tests.passed else FOUND_PROBLEMS
+
+
+def _placed(results: TestResults, test: PlannedTest) -> TestResults:
+    """Add the line of its <test> to each result of a test."""
+    results.cases = [replace(case, place=FindingPlace(test.file.absolute(), test.line)) for case in results.cases]
+    return results
 
 
 class _Runner:

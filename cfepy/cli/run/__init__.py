@@ -11,12 +11,14 @@ from cfepy.cli.flight_options import add_flight
 from cfepy.cli.options import (
     RUN_OPTIONS,
     STATUS_HELP,
+    add_ci_outputs,
     add_json,
     add_mission,
     add_mission_or_node,
     add_run_options,
     whole_number_of,
 )
+from cfepy.cli.parser import shared_group
 
 INTENSITIES = ("low", "medium", "high")
 
@@ -63,6 +65,7 @@ def _add_check(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         help="check a fault plan against the mission, too, which flies for 3 virtual seconds for that",
     )
     add_json(check, "the mistakes and notes")
+    add_ci_outputs(shared_group(check, "continuous integration"))
     check.set_defaults(module="cfepy.cli.run.check")
 
 

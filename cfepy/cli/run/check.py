@@ -8,11 +8,17 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.json_output import check_ci_outputs, check_json, wants_ci_outputs, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.mission import read_mission
-from cfepy.pilot import MissionProblem, check_mission, problem_of
+from cfepy.pilot import MissionProblem, check_mission, problem_of, shown_file
 from cfepy.status import UsageError
+
+_MISTAKE, _WARNING = "mistake", "warning"
+_KINDS = {
+    _MISTAKE: "the mission cannot run as it is",
+    _WARNING: "the mission runs, but probably not as its author intended",
+}
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -25,6 +31,7 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is no such mission, or the JSON cannot be written.
     """
     check_json(arguments)
+    check_ci_outputs(arguments)
     findings = check_mission(arguments.mission, arguments.board, dict(arguments.launch_args), arguments.cpp_nodes)
     if arguments.faults is not None:
         findings += _check_faults(arguments, flies=all(finding.is_warning for finding in findings))
@@ -38,6 +45,8 @@ def run(arguments: argparse.Namespace) -> int:
     counts = [_counted(len(errors), "problem"), _counted(len(warnings), "warning")]
     print(f"{', '.join(filter(None, counts)) or 'nothing'} found")
     write_json(arguments, _as_json(errors, warnings))
+    if wants_ci_outputs(arguments):
+        _write_ci_outputs(arguments, [*errors, *warnings])
     return FOUND_PROBLEMS if errors else ENDED_WELL
 
 
@@ -57,6 +66,25 @@ def _as_json(errors: list[MissionProblem], warnings: list[MissionProblem]) -> di
         for each in (*errors, *warnings)
     ]
     return {"problems": len(errors), "warnings": len(warnings), "found": found}
+
+
+def _write_ci_outputs(arguments: argparse.Namespace, problems: list[MissionProblem]) -> None:
+    """Write a finding for each problem, and a failed test case for each error."""
+    from cfepy.cli.ci_outputs import write_ci_outputs
+    from cfepy.writing.ci_findings import ERROR, WARNING, CiFinding, FindingPlace
+    from cfepy.writing.junit import FAILURE, Case, Problem, Suite
+
+    findings = []
+    for each in problems:
+        rule, level = (_WARNING, WARNING) if each.is_warning else (_MISTAKE, ERROR)
+        findings.append(CiFinding(rule, each.message, (FindingPlace(each.file.absolute(), each.line),), level))
+    cases = [
+        Case(shown_file(place.file), text, problems=(Problem(FAILURE, text, rule),), place=place)
+        for rule, text, (place,), level in findings
+        if level == ERROR
+    ]
+    suite = Suite(f"cfepy check {arguments.mission}", cases or [Case("check", "no mistakes")])
+    write_ci_outputs(arguments, "cfepy check", suite, findings, _KINDS)
 
 
 def _check_faults(arguments: argparse.Namespace, flies: bool) -> list[MissionProblem]:

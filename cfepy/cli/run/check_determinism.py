@@ -38,7 +38,7 @@ _TASKS = (
     "the difference depends on --tasks; runs on threads and greenlets must not differ, "
     "so this is an error in cfepy: please report it"
 )
-_NOT_TOGETHER = ("realtime", "json", "save_files", "trace", "record", "bag")
+_NOT_TOGETHER = ("realtime", "json", "save_files", "trace", "record", "bag", "junit", "sarif")
 
 
 @dataclass(frozen=True, slots=True)

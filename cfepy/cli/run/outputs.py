@@ -15,7 +15,8 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.attachment import Attachment, Recorder
-from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.json_output import check_ci_outputs, check_json, wants_ci_outputs, write_json
+from cfepy.cli.run.report import verdict_of
 from cfepy.cli.user_notes import writing
 from cfepy.mission import Mission
 from cfepy.pilot import Flown, RunPlan
@@ -135,7 +136,9 @@ class Outputs:
         self.trace: Trace | None = None
         self._open = contextlib.ExitStack()
         self._arguments = arguments
+        self._plan = plan
         check_json(arguments)
+        check_ci_outputs(arguments)
         self._folder = None if arguments.save_files is None else _saving_to(arguments.save_files)
         self._run_files = None if self._folder is None else SavedRunFiles(self._folder)
         self._trace_file = TraceFile(arguments.trace) if arguments.trace else None
@@ -162,19 +165,32 @@ class Outputs:
     def __exit__(self, *error: Any) -> None:
         self._open.__exit__(*error)
 
-    def write_numbers(self, flown: Flown) -> UsageError | None:
-        """Write the numbers. Returns the error instead of raising it, so that the report of a long run is not lost."""
+    def write_findings(self, flown: Flown) -> UsageError | None:
+        """Write the numbers, and the outputs for continuous integration.
+
+        Returns:
+            The error instead of raising it, so that the report of a long run is not lost.
+        """
         numbers = flown.results.to_dict()
+        numbers["verdict"] = verdict_of(flown)
         if flown.outcome is not None:
             numbers["script"] = flown.outcome.to_dict()
         try:
             write_json(self._arguments, numbers)
+            if wants_ci_outputs(self._arguments):
+                from cfepy.cli.run.run_cases import write_run
+
+                write_run(self._arguments, self._plan, flown)
         except UsageError as error:
             return error
         return None
 
-    def save_files(self, flown: Flown) -> None:
+    def save_files(self, flown: Flown, quiet: bool = False) -> None:
         """Write the files that the mission wrote, and print their place.
+
+        Args:
+            flown: the run.
+            quiet: do not print it.
 
         Raises:
             UsageError: one cannot be written.
@@ -188,7 +204,8 @@ class Outputs:
         for name, data in written.items():
             _write(self._folder, name, data)
         count = len(written) + saved.count
-        print(f"saved to {self._folder}: {count} {'file' if count == 1 else 'files'}")
+        if not quiet:
+            print(f"saved to {self._folder}: {count} {'file' if count == 1 else 'files'}")
 
 
 def _saving_to(folder: str) -> Path:

@@ -1,4 +1,6 @@
-"""The report at the end of a run: the numbers of `cfepy.pilot.results` as text for a person."""
+"""The report at the end of a run: the numbers of `cfepy.pilot.results` as text for a person, and the verdict in one
+line for programs.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +8,21 @@ from collections.abc import Callable, Iterable
 from typing import Any, TextIO
 
 from cfepy.cli.text_table import Table, show_paragraph, show_tables
-from cfepy.pilot import Results
+from cfepy.pilot import FailureKind, Flown, Results, RunProblem
 from cfepy.plugins import Hook
 from cfepy.units import NS_PER_S, time_text
+
+PASSED, FAILED, INCONCLUSIVE, INTERRUPTED = "passed", "failed", "inconclusive", "interrupted"
+_COUNTED = {
+    "steps": (FailureKind.EXPECTATION,),
+    "invariants": (FailureKind.INVARIANT,),
+    "deadlines": (FailureKind.DEADLINE,),
+    "crashes": (FailureKind.DIED, FailureKind.RAISED, FailureKind.ENDED, FailureKind.RESET, FailureKind.OVERWRITE),
+    "hangs": (FailureKind.DEADLOCK, FailureKind.STUCK, FailureKind.STALLED),
+    "races": (FailureKind.RACE,),
+    "events": (FailureKind.EVENT,),
+}
+_OTHERS = "others"
 
 REPORT_TABLES: Hook[Callable[[Results], Iterable[Table]]] = Hook("report_tables")
 """Functions that make more tables for the end of a report."""
@@ -21,6 +35,43 @@ def load_add_ons() -> None:
         UsageError: an add-on of another package cannot be imported.
     """
     list(REPORT_TABLES.all())
+
+
+def outcome_of(flown: Flown) -> str:
+    """Return the outcome of a run: PASSED, FAILED, INCONCLUSIVE or INTERRUPTED. Problems decide it, if any."""
+    if flown.interrupted:
+        return INTERRUPTED
+    if flown.results.problems:
+        return FAILED
+    is_flown = flown.results.booted_s is not None or flown.mission.over or flown.outcome is not None
+    return PASSED if is_flown else INCONCLUSIVE
+
+
+def verdict_of(flown: Flown) -> dict[str, Any]:
+    """Return the outcome of a run, and the numbers of its problems by kind."""
+    counts = dict.fromkeys((*_COUNTED, _OTHERS), 0)
+    for problem in flown.problems:
+        counts[_kind_of(problem)] += 1
+    return {"outcome": outcome_of(flown), **counts}
+
+
+def _kind_of(problem: RunProblem) -> str:
+    if problem.is_step:
+        return "steps"
+    kinds = {each.kind for each in problem.failures}
+    return next((name for name, counted in _COUNTED.items() if kinds.intersection(counted)), _OTHERS)
+
+
+def verdict_line(flown: Flown) -> str:
+    """Return the verdict in one line, always of the same form."""
+    verdict = verdict_of(flown)
+    outcome = verdict.pop("outcome")
+    return f"verdict: {outcome}; {', '.join(f'{name} {count}' for name, count in verdict.items())}"
+
+
+def failed_steps(flown: Flown) -> list[str]:
+    """Return the lines of the script's failed steps."""
+    return [] if flown.outcome is None else [*flown.outcome.failed_lines()]
 
 
 def show(results: Results, stream: TextIO) -> None:

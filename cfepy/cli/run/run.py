@@ -22,28 +22,38 @@ if TYPE_CHECKING:
     from cfepy.journal import Replay
 
 
+_STATUSES = {
+    report.PASSED: ENDED_WELL,
+    report.FAILED: FOUND_PROBLEMS,
+    report.INCONCLUSIVE: BAD_USAGE,
+    report.INTERRUPTED: INTERRUPTED,
+}
+
+
 class View:
     """The view of a run: the flight computer's console, and a full report.
 
     Args:
-        quiet: show nothing while the mission runs.
+        arguments: the command line with the options of `add_outputs`.
     """
 
     longer = "run it for longer (--for)"
 
-    def __init__(self, quiet: bool = False) -> None:
-        self.quiet = quiet
+    def __init__(self, arguments: argparse.Namespace) -> None:
+        self.arguments = arguments
+        self.quiet: bool = arguments.quiet
+        self.hides_console: bool = arguments.quiet or arguments.no_console
 
     def display(self, seconds: float) -> Display:
         """Make the display of the console during a run of so many virtual seconds."""
-        return make_display(self.quiet, seconds)
+        return make_display(self.hides_console, seconds)
 
     def report(self, flown: Flown) -> None:
         """Print the results of the run."""
         report.show(flown.results, sys.stdout)
 
     def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
-        """Print the report and all messages after a run.
+        """Print the report and all messages after a run, or only the problems and the verdict.
 
         Args:
             flown: the run.
@@ -53,12 +63,19 @@ class View:
         Returns:
             The exit status.
         """
-        self.report(flown)
-        if flown.outcome is not None:
-            print(f"\n{flown.outcome.text()}")
-        _explain(flown, longer)
-        outputs.save_files(flown)
-        print(f"trace: {flown.trace or 'none, since the run was broken off'}", flush=True)
+        if self.quiet:
+            print("".join(f"{line}\n" for line in report.failed_steps(flown)), end="")
+            tell(told_problems(flown))
+            outputs.save_files(flown, quiet=True)
+        else:
+            self.report(flown)
+            if flown.outcome is not None:
+                print(f"\n{flown.outcome.text()}")
+            _explain(flown)
+            outputs.save_files(flown)
+            print(f"trace: {flown.trace or 'none, since the run was broken off'}")
+        _explain_end(flown, longer)
+        print(report.verdict_line(flown), flush=True)
         return status_of(flown)
 
 
@@ -71,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: the options do not allow the run.
     """
-    return fly_and_tell(arguments, plan_of_mission(arguments), View(arguments.quiet))
+    return fly_and_tell(arguments, plan_of_mission(arguments), View(arguments))
 
 
 def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> int:
@@ -147,7 +164,7 @@ def fly_again(arguments: argparse.Namespace, replay: Replay, view: View) -> int:
 
 
 def _tell(flown: Flown, outputs: Outputs, view: View, longer: str) -> int:
-    unwritten = outputs.write_numbers(flown)
+    unwritten = outputs.write_findings(flown)
     status = view.end(flown, outputs, longer)
     if unwritten is not None:
         raise unwritten
@@ -158,12 +175,17 @@ def _nothing() -> None:
     """Do nothing between two steps of a run that is not recorded."""
 
 
-def _explain(flown: Flown, longer: str) -> None:
-    results, mission = flown.results, flown.mission
+def _explain(flown: Flown) -> None:
+    results = flown.results
     tell((*told_problems(flown), *results.never_happened, *results.loose_ends))
     if results.script_problems:
-        script = mission.spec.script
+        script = flown.mission.spec.script
         tell([f'the console output shows the reason; "cfepy check {script}" checks the mission without running it'])
+
+
+def _explain_end(flown: Flown, longer: str) -> None:
+    """Report why a run ended before its time, or was too short."""
+    results, mission = flown.results, flown.mission
     if flown.interrupted:
         tell([f"ended by Ctrl-C or SIGTERM after {results.virtual_s:g} virtual seconds"])
     elif results.booted_s is None and not mission.over and flown.stall is None:
@@ -177,9 +199,4 @@ def told_problems(flown: Flown) -> list[str]:
 
 def status_of(flown: Flown) -> int:
     """Return the exit status of a command that flew a mission; problems decide it, if there are any."""
-    if flown.interrupted:
-        return INTERRUPTED
-    if flown.results.problems:
-        return FOUND_PROBLEMS
-    is_flown = flown.results.booted_s is not None or flown.mission.over or flown.outcome is not None
-    return ENDED_WELL if is_flown else BAD_USAGE
+    return _STATUSES[report.outcome_of(flown)]

@@ -183,12 +183,12 @@ class DebugView(View):
     """
 
     def __init__(self, view: View, journey: Journey | None) -> None:
-        super().__init__(view.quiet)
+        super().__init__(view.arguments)
         self._view = view
         self._journey = journey
 
     def display(self, seconds: float) -> Display:
-        return SilentDisplay() if self.quiet else _LateDisplay(sys.stdout, self._journey)
+        return SilentDisplay() if self.hides_console else _LateDisplay(sys.stdout, self._journey)
 
     def report(self, flown: Flown) -> None:
         self._view.report(flown)

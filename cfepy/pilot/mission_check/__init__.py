@@ -39,7 +39,7 @@ from cfepy.pilot.mission_check.mission_sections import (
     check_nodes_said,
     check_packets,
 )
-from cfepy.pilot.mission_check.problem import MissionProblem, problem_of
+from cfepy.pilot.mission_check.problem import MissionProblem, problem_of, shown_file
 from cfepy.pilot.mission_check.ros_files import NodeScript, check_definitions_of, check_launch, check_nodes
 from cfepy.pilot.mission_check.startup import app_sources, check_startup
 from cfepy.plugins import Hook
@@ -54,7 +54,7 @@ CHECK_PROFILES: Hook[Callable[[Path, list[StartupEntry], MissionSections], Itera
 """Checks all code of a mission together: the startup script, its entries, the mission file."""
 CHECK_SECTIONS: Hook[Callable[[MissionSections], Iterable[MissionProblem]]] = Hook("check_sections")
 """Checks the sections of a mission file."""
-__all__ = ["MissionProblem", "check_mission", "problem_of"]
+__all__ = ["MissionProblem", "check_mission", "problem_of", "shown_file"]
 
 
 def check_mission(

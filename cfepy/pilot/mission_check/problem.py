@@ -27,14 +27,19 @@ class MissionProblem(NamedTuple):
     is_warning: bool = False
     package: str = ""
 
+    @property
+    def message(self) -> str:
+        """The mistake and the remedy, with paths relative to the working directory."""
+        return self.text.replace(f"{Path.cwd()}{os.sep}", "")
+
     def __str__(self) -> str:
         """Return the problem as a line, with its file relative to the working directory."""
-        place = visible_line(_shown(self.file))
-        text = ("warning: " if self.is_warning else "") + self.text.replace(f"{Path.cwd()}{os.sep}", "")
+        place = visible_line(shown_file(self.file))
+        text = ("warning: " if self.is_warning else "") + self.message
         return f"{place}:{self.line}: {visible_line(text)}" if self.line else f"{place}: {visible_line(text)}"
 
 
-def _shown(path: Path) -> str:
+def shown_file(path: Path) -> str:
     """Return a path in its shortest form relative to the working directory."""
     try:
         return os.path.relpath(path) if path.is_relative_to(Path.cwd()) else str(path)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from cfepy.cli.csv_cells import add_quote_formulas
 from cfepy.cli.options import (
+    add_ci_outputs,
     add_json,
     add_mission_or_node,
     add_run_options,
@@ -94,20 +95,21 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
 
 def _add_failures(explore: argparse.ArgumentParser) -> None:
     """Add the options that define a failure."""
-    explore.add_argument(
+    failures = shared_group(explore, "failures")
+    failures.add_argument(
         "--events",
         choices=EVENTS,
         default="error",
         metavar="TYPE",
         help="failing events: error (and above), critical, none",
     )
-    explore.add_argument(
+    failures.add_argument(
         "--starved", type=seconds_of, metavar="TIME", help="fail if a ready task does not run for so long"
     )
-    explore.add_argument(
+    failures.add_argument(
         "--livelock", type=seconds_of, metavar="TIME", help="fail if an app runs so long without a message"
     )
-    explore.add_argument("--no-stuck", action="store_true", help="do not fail if a task waits for ever")
+    failures.add_argument("--no-stuck", action="store_true", help="do not fail if a task waits for ever")
 
 
 def _add_crew(parser: argparse.ArgumentParser) -> None:
@@ -129,10 +131,11 @@ def _add_outputs(explore: argparse.ArgumentParser) -> None:
     explore.add_argument("--results", metavar="FILE", help="write all results, and continue from older ones")
     explore.add_argument("--replay-all", metavar="FILE", help="only repeat the failures in a results file")
     add_json(explore, "the findings")
+    add_ci_outputs(shared_group(explore, "continuous integration"))
     explore.add_argument(
         "--shrink", type=_number_of, metavar="N", help="most runs to shrink a failure (default: 300 to 800)"
     )
-    explore.add_argument("--quiet", action="store_true", help="show no progress")
+    explore.add_argument("--quiet", action="store_true", help="print only the failures and the summary")
 
 
 def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, TextIO
 
-from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.json_output import check_ci_outputs, check_json, wants_ci_outputs, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.user_notes import tell
@@ -28,8 +28,14 @@ RUNS_THAT_ARE_COMPARED = 2
 INDENT = 2  # of the lines about a failure
 
 
-def show(report: Report, stream: TextIO) -> None:
-    """Print a report."""
+def show(report: Report, stream: TextIO, quiet: bool = False) -> None:
+    """Print a report.
+
+    Args:
+        report: the report.
+        stream: the output.
+        quiet: print only the failures and the summary.
+    """
     for number, told in enumerate(report.findings, 1):
         seen = "failure" if told.repeats else "seen once and not again: failure"
         print(f"{seen} {number}: {told.finding.failure.title}", file=stream)
@@ -44,6 +50,8 @@ def show(report: Report, stream: TextIO) -> None:
         print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
         print(trouble.trouble, file=stream)
     print(summary(report), file=stream)
+    if quiet:
+        return
     for note in report.notes:
         print(f"  {note}", file=stream)
     if report.is_steady and (not report.findings or report.breadth.seen is not None):
@@ -160,8 +168,13 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.mission is None:
         raise UsageError("missing mission to explore", field="MISSION")
     check_json(arguments)
-    report = _expedition(arguments).run(tell)
-    show(report, sys.stdout)
+    check_ci_outputs(arguments)
+    report = _expedition(arguments).run((lambda notes: None) if arguments.quiet else tell)
+    if wants_ci_outputs(arguments):
+        from cfepy.extra.exploration.commands.explored_cases import write_report
+
+        write_report(arguments, report, lambda told: _about(report, told, WIDTH))
+    show(report, sys.stdout, arguments.quiet)
     write_json(arguments, report.to_dict())
     if report.unsteady is not None and not report.tally.interrupted:
         _show_leak(report.trial.plan, report.unsteady)

@@ -6,7 +6,7 @@ import argparse
 from collections import Counter
 from collections.abc import Iterator
 
-from cfepy.cli.json_output import check_json, write_json
+from cfepy.cli.json_output import check_ci_outputs, check_json, wants_ci_outputs, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import refuse_run_options
 from cfepy.extra.exploration import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
@@ -26,10 +26,16 @@ def run(arguments: argparse.Namespace) -> int:
         arguments, "cannot be combined with --replay-all, because the results file sets it; leave it out"
     )
     check_json(arguments)
+    check_ci_outputs(arguments)
     found = []
     for each in replay_all(path, arguments.mission, arguments.jobs, arguments.longest):
         found.append(each)
-        print("\n".join(_lines(each)), flush=True)
+        if not arguments.quiet or each.state == STILL_THERE or each.verdict.trouble:
+            print("\n".join(_lines(each)), flush=True)
+    if wants_ci_outputs(arguments):
+        from cfepy.extra.exploration.commands.explored_cases import write_replayed
+
+        write_replayed(arguments, found)
     print(_summary(found))
     write_json(arguments, {"failures": [each.to_dict() for each in found]})
     is_wrong = any(each.state == STILL_THERE or each.verdict.trouble for each in found)
