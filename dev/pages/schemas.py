@@ -18,7 +18,7 @@ from typing import Any
 from cfepy.config.platform import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, PlatformConfig
 from cfepy.config.versions import RELEASES
 from cfepy.faults import fault_plan, kinds
-from cfepy.mission import cpp_nodes, limits, mission_file, parameter_files
+from cfepy.mission import cpp_nodes, drawn_parameters, limits, mission_file, parameter_files
 from cfepy.monitors import deadlines, invariants, selected_results
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.psp import profile
@@ -45,6 +45,7 @@ TIME: Schema = {
     "examples": [0.5, "20 ms"],
 }
 TIME_WITH_UNIT: Schema = {"type": "string", "pattern": f"^{deadlines.TIME.pattern}$", "examples": ["2 ms", "50 Hz"]}
+DATE: Schema = {"type": "string", "pattern": r"^\d{4}-\d\d-\d\d", "examples": ["2026-05-01T12:00:00Z"]}
 SECONDS: Schema = {"type": "number", "minimum": 0, "maximum": fault_plan.LONGEST_S}
 DURATION: Schema = {"type": "number", "exclusiveMinimum": 0, "maximum": fault_plan.LONGEST_S}
 POSITIVE: Schema = {"type": "integer", "minimum": 1}
@@ -156,6 +157,7 @@ def mission_schema() -> Schema:
         "name": TEXT,
         "board": TEXT,
         "cfe_version": one_of(RELEASES),
+        "epoch": DATE,
         "compiled": record(mission_file.COMPILED_FIELDS, dict.fromkeys(mission_file.COMPILED_FIELDS, FLAG)),
         "cpp_nodes": _cpp_nodes(),
         "limits": record((limits.NODES, *profile.LIMIT_NAMES), {"nodes": integer(1, limits.MOST_NODES), **_limits()}),
@@ -247,7 +249,13 @@ def _bridge() -> Schema:
 
 
 def _sweep() -> Schema:
-    return record(mission_file.SWEEP_FIELDS, {"rate": _list(TEXT), "topics": _list(GLOBAL_NAME)})
+    drawn: Schema = {
+        "type": "string",
+        "pattern": f"^({'|'.join(drawn_parameters.KINDS)}):",
+        "examples": ["normal:90,5"],
+    }
+    shapes = {"rate": _list(TEXT), "topics": _list(GLOBAL_NAME), "draw": named(drawn)}
+    return record(mission_file.SWEEP_FIELDS, shapes)
 
 
 def _invariant() -> Schema:
