@@ -65,7 +65,7 @@ def test_drawn_runs_are_the_same_from_any_number_of_processes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    draws = ["--runs", "6", "--draw", "/left/rate=uniform:60,180", "--draw", "/left/report_period=choice:1,2"]
+    draws = ["--draws", "6", "--draw", "/left/rate=uniform:60,180", "--draw", "/left/report_period=choice:1,2"]
     measures = ["--measure", "/left_to_right", "--measure", "last:/left_to_right.data"]
     outs = []
     for jobs in ("1", "2"):
@@ -96,8 +96,8 @@ def test_drawn_runs_are_the_same_from_any_number_of_processes(
         (["--draw", "/left/rate=normal:1,1", "--draw", "/left/rate=normal:1,2"], "--draw: /left/rate is given twice"),
         (["--draw", "/left/rate=normal:1,1", "--set", "/left/rate=5"], "--draw: /left/rate is already set by --set"),
         (["--draw", "/left/rate=normal:1,1", "--rate", "50"], "--draw: /left/rate is already set by --rate"),
-        (["--draw-seed", "1"], "--draw-seed: requires --draw or --runs"),
-        (["--runs", "100001"], "more than 100,000 points"),
+        (["--draw-seed", "1"], "--draw-seed: requires --draw or --draws"),
+        (["--draws", "100001"], "more than 100,000 points"),
         (["--measure", "most:/left_to_right.data"], "--measure: unknown measure 'most'"),
     ],
 )

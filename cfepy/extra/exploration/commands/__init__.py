@@ -147,7 +147,7 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         "decade; 10..50:10 are 10, 20, 30, 40 and 50.",
         examples=(
             "cfepy sweep capture --rate 10..1000 --board rx64m",
-            "cfepy sweep capture --runs 200 --draw /arm/rate=normal:1000,20 --csv sweep.csv",
+            "cfepy sweep capture --draws 200 --draw /arm/rate=normal:1000,20 --csv sweep.csv",
         ),
         epilog="exit status: 0 well, whatever was found; 1 an error in cfepy itself; 2 bad usage, or a mission that "
         "cannot be read; 130 ended by Ctrl-C, after a report",
@@ -183,7 +183,7 @@ def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) ->
         metavar="/PARAM=KIND",
         help="draw it in each run: normal:10,0.5 or uniform:1,2 or integers:1..6 or choice:a,b (the guide has all)",
     )
-    sweep.add_argument("--runs", type=_count_of, metavar="N", help="number of drawn runs (default: 100)")
+    sweep.add_argument("--draws", type=_count_of, metavar="N", help="number of drawn runs (default: 100)")
     sweep.add_argument("--draw-seed", type=_number_of, metavar="N", help="seed of the drawn values (default: 0)")
     sweep.add_argument(
         "--measure",

@@ -255,12 +255,12 @@ def _draws_asked(arguments: argparse.Namespace, spec: MissionSpec) -> list[Drawn
         if name in said:
             raise UsageError(f"{name} is given twice; leave one of them out", field="--draw")
         said[name] = distribution
-    if not said and arguments.runs is None:
+    if not said and arguments.draws is None:
         if arguments.draw_seed is not None:
-            raise UsageError("requires --draw or --runs", field="--draw-seed")
+            raise UsageError("requires --draw or --draws", field="--draw-seed")
         return []
     distributions: Mapping[str, ParameterDistribution] = {**spec.sweep.draw, **said}
-    return draws_of(distributions, arguments.runs or DEFAULT_RUNS, arguments.draw_seed or 0)
+    return draws_of(distributions, arguments.draws or DEFAULT_RUNS, arguments.draw_seed or 0)
 
 
 def _show_draws(rows: Sequence[SweepRow], plan: RunPlan) -> list[Group]:
