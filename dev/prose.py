@@ -19,7 +19,10 @@ from typing import NamedTuple
 from dev.house.tree import ROOT
 
 TABLE = ROOT / "tests/prose.tsv"
-FOLDERS = ("cfepy", "rospy_shim", "ros_libraries", "apps", "dev", "benchmarks", "tests", "docs", "missions", "examples")
+FOLDERS = (
+    *("cfepy", "rospy_shim", "ros_libraries", "apps", "dev", "benchmarks", "tests", "docs"),
+    *("missions", "ros_packages", "examples"),
+)
 RIDDLES = {
     "what": r"\bwhat\b",
     "told, said": r"\b(?:is|are|was|were|be|been|being) (?:told|said)\b|\b(?:tells|says)\b",

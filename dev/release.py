@@ -31,10 +31,12 @@ CHANGES = "CHANGELOG.md"
 LIBRARIES = "ros_libraries"  # which have the versions of the real ones
 SHARE = {"apps": "cfepy/share/apps", "boards": "cfepy/share/boards"}
 SHARE |= {"missions": "cfepy/share/missions", "roscfe": "cfepy/share/roscfe"}
+SHARE |= {"ros_packages": "cfepy/share/ros_packages"}
 PACKAGES = ("cfepy", "rospy_shim", "ros_libraries")
 NOT_IN_SDIST = (".ci/",)
 MUST_HAVE: tuple[str, ...] = ("cfepy/py.typed", "rospy_shim/py.typed", "cfepy/share/missions/capture/startup.scr")
 MUST_HAVE += ("cfepy/share/boards/linux.yaml", "cfepy/share/apps/hk/app.py")
+MUST_HAVE += ("cfepy/share/ros_packages/cfepy_plant/package.xml",)
 DEMO = ("run", "capture", "--for", "2", "--no-console")
 RENDER = "import sys; from readme_renderer import markdown; print(markdown.render(open(sys.argv[1]).read()))"
 """twine looks at the pages of projects that are reStructuredText, and at no others."""

@@ -1,7 +1,8 @@
 """Hooks of mkdocs (`mkdocs.yml`): add the pages outside of docs/ to the site, and adapt their links.
 
 The links in the repository are for readers of its files. On the site, README, CONTRIBUTING and CHANGELOG are in
-project/, texts of missions and examples in folders of their own. A link to a file that is not a page becomes its text.
+project/, texts of missions, ROS packages and examples in folders of their own. A link to a file that is not a page
+becomes its text.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).parents[1]
+FOLDERS = ("missions", "ros_packages", "examples")
 PROJECT = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 _FENCE = re.compile(r"(^```.*?^```)", re.MULTILINE | re.DOTALL)
@@ -21,7 +23,7 @@ _FENCE = re.compile(r"(^```.*?^```)", re.MULTILINE | re.DOTALL)
 def pages() -> dict[str, str]:
     """By path in the repository, the paths on the site of the pages that are not in docs/."""
     found = {name: f"project/{name}" for name in PROJECT}
-    texts = (*ROOT.glob("missions/*/README.md"), *ROOT.glob("examples/*/README.md"))
+    texts = [text for folder in FOLDERS for text in ROOT.glob(f"{folder}/*/README.md")]
     return found | {each: each for each in (path.relative_to(ROOT).as_posix() for path in texts)}
 
 

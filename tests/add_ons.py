@@ -55,6 +55,7 @@ NEEDS = {
     "fuzz": "c convert debugger exploration reports ros_host viewers",
     "ground/test_play.py": "ros_libraries",
     "interpreter/test_faces.py": "c reports",
+    "missions/test_rover.py": "ros_libraries",
     "mission/test_cpp_nodes.py": "c convert",
     "mission/test_determinism_nodes.py": "ros_libraries",
     "mission/test_leftovers.py": "exploration",

@@ -1,4 +1,4 @@
-"""Paths of the files included in cfepy (boards, missions, apps) and of cfepy itself.
+"""Paths of the files included in cfepy (boards, missions, apps, ROS packages) and of cfepy itself.
 
 In a source checkout they are next to the package, in an installed wheel under cfepy/share.
 """
@@ -16,7 +16,7 @@ def shipped(kind: str) -> Path:
     """Return the directory of one kind of shipped files.
 
     Args:
-        kind: "apps", "boards", "missions" or "roscfe", the interface library for nodes in C++.
+        kind: "apps", "boards", "missions", "ros_packages", or "roscfe", the interface library for nodes in C++.
 
     Raises:
         UsageError: if this installation does not have the directory.

@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 ROOT = Path(__file__).parents[2]
-PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("missions/*/*.md")])
+PLACES = ("*.md", "docs/**/*.md", "missions/*/*.md", "ros_packages/*/*.md")
+PAGES = sorted(page for place in PLACES for page in ROOT.glob(place))
 SHELLS = {"sh", "bash", "shell", "console"}
 PROGRAMS = {
     *("cfepy", "pip", "pipx", "pytest", "python", "python3", "ruff", "mypy", "mkdocs", "dask"),

@@ -31,6 +31,8 @@ SHIPPED = [
     "cfepy/share/missions/capture/startup.scr",
     "cfepy/share/missions/rx64m_pubsub/mission.yaml",
     "ros_libraries/tf/transformations/__init__.py",
+    "cfepy/share/ros_packages/cfepy_plant/nodes/laser.py",
+    "cfepy/share/ros_packages/cfepy_plant/maps/room.pgm",
     "ros_libraries/tf2_ros/__init__.py",
     "rospy_shim/types/msgs/definitions/std_msgs.msgs",
 ]

@@ -15,6 +15,7 @@ from pathlib import Path
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import PYTHON_BYTES, XML_BYTES
+from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 
 _MANIFESTS = ("package.xml", "manifest.xml")
@@ -30,7 +31,7 @@ class Packages:
     """The packages that a program can see, each by its first place.
 
     They are searched at first use: near the program, then along ROS_PACKAGE_PATH, then in the share folders of
-    CMAKE_PREFIX_PATH.
+    CMAKE_PREFIX_PATH. Last come the packages included in cfepy.
 
     Args:
         script: the program's file; None leaves out packages near it.
@@ -86,6 +87,7 @@ class Packages:
             yield from crawl(root)
         for prefix in self._listed("CMAKE_PREFIX_PATH"):
             yield from filter(is_package, _subfolders(prefix / "share"))
+        yield from crawl(shipped("ros_packages"))
 
     def _listed(self, variable: str) -> list[Path]:
         return [Path(self._resolve(each)) for each in self._environ.get(variable, "").split(os.pathsep) if each]
