@@ -132,6 +132,7 @@ OWN = (
             "telemetry_package": ".message_package:telemetry_package",
         },
     ),
+    _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
     _own("viewers", hooks={"flight_options": ".viewer_options:Viewers"}),
 )
 """The add-ons in `cfepy.extra`, whether or not they are installed."""

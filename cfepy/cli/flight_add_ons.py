@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from cfepy.plugins import Hook
 
 if TYPE_CHECKING:
     from cfepy.attachment import Attachment
+    from cfepy.cli.text_table import Table
     from cfepy.io import Guest
     from cfepy.mission import Mission
+    from cfepy.pilot import Flown
 
 Tell = Callable[[str], object]
 
@@ -70,6 +72,14 @@ class FlightAddOn:
     def close(self) -> None:
         """Close everything at the end of the flight. You may call it twice."""
 
+    def tables(self, flown: Flown) -> Iterable[Table]:
+        """Return tables for the end of the report, after `close`.
+
+        Raises:
+            UsageError: a file of the add-on cannot be written.
+        """
+        return ()
+
 
 FLIGHT_ADD_ONS: Hook[type[FlightAddOn]] = Hook("flight_options")
 
@@ -109,6 +119,10 @@ class FlightAddOns(contextlib.ExitStack):
         for part in self._parts:
             yield from part.connect(mission, tell)
         yield from self.guests
+
+    def tables(self, flown: Flown) -> list[Table]:
+        """Return the tables of all add-ons for the end of the report, after the flight."""
+        return [table for part in self._parts for table in part.tables(flown)]
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

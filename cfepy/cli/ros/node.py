@@ -13,6 +13,7 @@ from cfepy.cli.options import plan_of
 from cfepy.cli.run.outputs import Outputs
 from cfepy.cli.run.report import failed_steps
 from cfepy.cli.run.run import View, fly_and_tell
+from cfepy.cli.text_table import show_tables
 from cfepy.cli.user_notes import tell
 from cfepy.mission import Mission
 from cfepy.pilot import ENDED, NODE, FailureKind, Flown
@@ -66,8 +67,10 @@ class NodeView(View):
         """Print problems other than the node's own. Returns the exit status of the node or of the run's script."""
         outputs.save_files(flown, self.quiet)
         if self.quiet:
-            print("".join(f"{line}\n" for line in failed_steps(flown)), end="")
+            print("".join(f"{line}
+" for line in failed_steps(flown)), end="")
         else:
+            show_tables(self.tables, sys.stdout)
             tell(flown.results.never_happened)
             if flown.outcome is not None:
                 print(flown.outcome.text())

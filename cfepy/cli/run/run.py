@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from cfepy.cli.display import Display, make_display
@@ -13,6 +14,7 @@ from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.run import report
 from cfepy.cli.run.outputs import Outputs, recording
+from cfepy.cli.text_table import Table, show_tables
 from cfepy.cli.user_notes import note, tell
 from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.pilot import Flown, RunPlan, fly
@@ -35,6 +37,9 @@ class View:
 
     Args:
         arguments: the command line with the options of `add_outputs`.
+
+    Attributes:
+        tables: tables of add-ons for the end of the report.
     """
 
     longer = "run it for longer (--for)"
@@ -43,6 +48,7 @@ class View:
         self.arguments = arguments
         self.quiet: bool = arguments.quiet
         self.hides_console: bool = arguments.quiet or arguments.no_console
+        self.tables: Sequence[Table] = ()
 
     def display(self, seconds: float) -> Display:
         """Make the display of the console during a run of so many virtual seconds."""
@@ -69,6 +75,7 @@ class View:
             outputs.save_files(flown, quiet=True)
         else:
             self.report(flown)
+            show_tables(self.tables, sys.stdout)
             if flown.outcome is not None:
                 print(f"\n{flown.outcome.text()}")
             _explain(flown)
@@ -135,6 +142,7 @@ def fly_and_tell(arguments: argparse.Namespace, plan: RunPlan, view: View) -> in
             )
             if journal is not None:
                 journal.end(flown)
+            view.tables = add_ons.tables(flown)
     return _tell(flown, outputs, view, view.longer)
 
 

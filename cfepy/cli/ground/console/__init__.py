@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -23,6 +24,7 @@ from cfepy.cli.ground.console.session import REPLY, ConsoleSession
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.run.run import told_problems
+from cfepy.cli.text_table import show_tables
 from cfepy.cli.user_notes import check_writable, note, tell
 from cfepy.cli.watched_host import Interrupts
 from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
@@ -111,13 +113,17 @@ class Opening:
                 if arguments.script is not None:
                     session.load(arguments.script)
                 yield session
-                self.ended = self._land(session, craft, plan)
+                self.ended = self._land(session, craft, plan, add_ons)
 
-    def _land(self, session: ConsoleSession, craft: FlownCraft, plan: RunPlan) -> Ended:
+    def _land(
+        self, session: ConsoleSession, craft: FlownCraft, plan: RunPlan, add_ons: flight_add_ons.FlightAddOns
+    ) -> Ended:
         end_ns = craft.stands_ns
         session.end()
         flown = craft.land()
-        lines = []
+        tables = io.StringIO()
+        show_tables(add_ons.tables(flown), tables)
+        lines = tables.getvalue().splitlines()
         if self._arguments.save_script is not None:
             lines.append(f"again: {self._save(session, plan, end_ns)}")
         lines.append(f"trace: {flown.trace}")
