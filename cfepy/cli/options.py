@@ -433,6 +433,11 @@ def add_drawing(parser: argparse.ArgumentParser, kind: str, text: str) -> None:
     parser.add_argument(f"--{kind}", metavar="FILE|-", help=f"{text} to a file, or with - to standard output")
 
 
+def add_raw(parser: argparse.ArgumentParser) -> None:
+    """Add the option that shows measurements of packets as raw numbers."""
+    parser.add_argument("--raw", action="store_true", help="raw numbers instead of values with units and limits")
+
+
 def add_count(parser: argparse.ArgumentParser, what: str) -> None:
     """Add the option for the number of messages or packets after which a command ends."""
     parser.add_argument("-n", "--count", type=count_of, metavar="N", help=f"end after so many {what}")

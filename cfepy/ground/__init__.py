@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from cfepy.ground.traffic_graph.drawing import graph_svg
     from cfepy.ground.traffic_graph.graph_texts import graph_dot, graph_text
     from cfepy.ground.traffic_graph.model import MissionGraph, graph_of
-    from cfepy.ground.values import flat, int_of, line_of, number_of, packet_of, text_of, unknown_field
+    from cfepy.ground.values import flat, int_of, line_of, measured_fields, number_of, packet_of, text_of, unknown_field
 
 __all__ = [
     "APPLICATIONS",
@@ -113,6 +113,7 @@ __all__ = [
     "lock_text",
     "locked",
     "log_schema",
+    "measured_fields",
     "message_from_json",
     "names_in",
     "names_of",
@@ -247,6 +248,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ),
             ".values": (
                 "flat",
+                "measured_fields",
                 "int_of",
                 "line_of",
                 "number_of",

@@ -19,7 +19,7 @@ from cfepy import msg, tbl
 from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
 from cfepy.ground.mission_names import CORE_PACKETS
 from cfepy.ground.topics import Topic
-from cfepy.ground.values import int_of, line_of, texts_of
+from cfepy.ground.values import flat, int_of, line_of, measured_fields, texts_of, violations_of
 from cfepy.mission import NODE_SYMBOL, MissionSpec, read_mission
 from cfepy.mission import app_sources as sources
 from cfepy.mission.python_code import ModuleNames, execute, find_declarations
@@ -55,13 +55,31 @@ class Decoded(NamedTuple):
     problem: str = ""
     layout: Layout | None = None
 
-    def line(self) -> str:
-        """Return its values on one line, with the names of enumeration values."""
-        return line_of(self.values, self.layout)
+    def line(self, raw: bool = False) -> str:
+        """Return its values on one line, with the names of enumeration values, and with engineering values and marks
+        for violated limits unless `raw`.
+        """
+        return line_of(self.values, self.layout, raw)
 
-    def texts(self) -> dict[str, str]:
+    def texts(self, raw: bool = False) -> dict[str, str]:
         """As `line`, by path."""
-        return texts_of(self.values, self.layout)
+        return texts_of(self.values, self.layout, raw)
+
+    @property
+    def violations(self) -> dict[str, str]:
+        """The limits that its fields violate, by path; see `cfepy.msg.Measurement`."""
+        return violations_of(self.values, self.layout)
+
+    @property
+    def measurements(self) -> dict[str, dict[str, Any]]:
+        """The engineering values of its fields, by path: value, unit and violated limit."""
+        measured = {} if self.layout is None else measured_fields(self.layout)
+        numbers = flat(self.values) if measured else {}
+        found = {path: (each, each.value(numbers[path])) for path, each in measured.items() if path in numbers}
+        return {
+            path: {"value": value, "unit": each.unit, "violated": each.violated(value)}
+            for path, (each, value) in found.items()
+        }
 
 
 @dataclass(slots=True)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import base64
 import json
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.attachment import Attachment
@@ -22,9 +22,9 @@ from cfepy.ground.dictionary import Dictionary, dictionary_of
 from cfepy.ground.fields import MessageDecoder, array_of, columns_of, names_in, path_of, steps_of, unit_at, values_at
 from cfepy.ground.on_demand import DecodingList
 from cfepy.ground.topics import topics_of
-from cfepy.ground.values import unknown_field
+from cfepy.ground.values import measured_fields, unknown_field
 from cfepy.mission import Mission, PacketWatch, Seen, TopicMessage, TopicWatch, matches
-from cfepy.msg import TLM_HEADER_SIZE, Command, Telemetry, get_fcn_code, get_header_size, get_msg_time
+from cfepy.msg import TLM_HEADER_SIZE, Command, Measurement, Telemetry, get_fcn_code, get_header_size, get_msg_time
 from cfepy.reading.suggestions import expected
 from cfepy.sb import SoftwareBus
 from cfepy.status import CfeError, UsageError
@@ -59,10 +59,12 @@ class Series:
         most: maximum number of messages kept, fewer if they are large; None for all. Beyond it, every second one is
             dropped.
         every: one of this number of messages is kept.
+        measured: the measurements of a packet, by the path of the field.
     """
 
     def __init__(self, name: str, type: str, read: Callable[[Any], Any], stamp: Callable[[Any], int | None]) -> None:
         self.name, self.type = name, type
+        self.measured: Mapping[str, Measurement] = {}
         self.every = 1
         self.most: int | None = None
         self._added = self._bytes = 0
@@ -186,7 +188,10 @@ class Series:
         return {name: column for path, values in found for name, column in columns_of(values, path)}
 
     def unit(self, field: str) -> str:
-        """Return the unit of a field defined by its message type; "" if it is not known, as for cFE's packets."""
+        """Return the unit of a field, defined by its message type or its measurement; "" if it is not known."""
+        measurement = self.measured.get(field) or self.measured.get(f"{field}[0]")
+        if measurement is not None:
+            return measurement.unit
         return unit_at(self.messages[0], steps_of(field)) if len(self) else ""
 
     def to_pandas(self, *fields: str) -> Any:
@@ -201,6 +206,20 @@ class Series:
         except ImportError:
             raise UsageError("tables require the library pandas: pip install pandas") from None
         return DataFrame(self.columns(*fields), index=Index(self.times, name="time"))
+
+    def engineering(self, path: str, column: NDArray[Any]) -> NDArray[Any]:
+        """Return the engineering values of a field's raw numbers; the same numbers if the field is not calibrated.
+
+        Args:
+            path: the field, as named by `columns`.
+            column: its raw numbers.
+        """
+        measurement = self.measured.get(path)
+        if measurement is None or not measurement.is_calibrated:
+            return column
+        import numpy
+
+        return numpy.array([measurement.value(raw) for raw in column.tolist()])
 
     def _values(self, field: str) -> tuple[str, list[Any]]:
         """Return the path of a field in display form, and its value in each message."""
@@ -506,7 +525,13 @@ def packet_series(name: str, is_command: bool, dictionary: Dictionary, sent: lis
         sent: the packets, to which others add; None for an empty series of its own.
     """
     kind, stamp = ("command", _no_stamp) if is_command else ("telemetry", _spacecraft_time)
-    return Series.over(name, kind, lambda seen: dictionary.fields_of(seen.packet), stamp, [] if sent is None else sent)
+    series = Series.over(
+        name, kind, lambda seen: dictionary.fields_of(seen.packet), stamp, [] if sent is None else sent
+    )
+    packet = dictionary.telemetry.get(name)
+    if isinstance(packet, Telemetry) and not packet.variants:
+        series.measured = measured_fields(packet.payload)
+    return series
 
 
 def _spacecraft_time(seen: Seen) -> int:

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache, partial
 from typing import Any
 
-from cfepy.msg import Cell, Command, Layout, ValueNames, command
+from cfepy.msg import Cell, Command, Layout, Measurement, ValueNames, command
 from cfepy.reading.mistakes import each_of
 from cfepy.reading.suggestions import expected, known_as
 from cfepy.status import UsageError
@@ -161,20 +161,48 @@ def flat(values: Any, path: str = "") -> dict[str, Any]:
     return {name: leaf for each, value in inner for name, leaf in flat(value, each).items()}
 
 
-def line_of(values: Mapping[str, Any], layout: Layout | None = None) -> str:
+def line_of(values: Mapping[str, Any], layout: Layout | None = None, raw: bool = False) -> str:
     """Return values on one line: `Count=3 PacketID.AppName=HK Masks=1,2,3`, without structs of zeros that end an array.
 
     Args:
         values: nested values.
-        layout: their layout, for the names of values; None shows numbers.
+        layout: their layout, for the names of values and for measurements; None shows numbers.
+        raw: whether measurements are shown as their raw numbers.
     """
-    return " ".join(f"{path}={text}" for path, text in texts_of(values, layout).items())
+    return " ".join(f"{path}={text}" for path, text in texts_of(values, layout, raw).items())
 
 
-def texts_of(values: Mapping[str, Any], layout: Layout | None = None) -> dict[str, str]:
+def texts_of(values: Mapping[str, Any], layout: Layout | None = None, raw: bool = False) -> dict[str, str]:
     """As `line_of`, the texts by path."""
     names = {} if layout is None else named_fields(layout)
-    return {path: names[path].text(int(text)) if path in names else text for path, text in shown(values)}
+    texts = {path: names[path].text(int(text)) if path in names else text for path, text in shown(values)}
+    measured = {} if layout is None or raw else measured_fields(layout)
+    if measured:
+        numbers = flat(values)
+        for path in texts:
+            items = [path] if path in measured else [each for each in measured if each.rpartition("[")[0] == path]
+            if items:
+                texts[path] = ",".join(measured[each].text(numbers[each]) for each in items)
+    return texts
+
+
+@lru_cache(maxsize=256)
+def measured_fields(layout: Layout) -> Mapping[str, Measurement]:
+    """Return the fields of a layout that measure something, by path."""
+    return {cell.path: cell.measurement for cell in layout.cells() if cell.measurement is not None}
+
+
+def violations_of(values: Mapping[str, Any], layout: Layout | None) -> dict[str, str]:
+    """Return the limits, `RED` or `YELLOW`, that fields violate, by path.
+
+    Args:
+        values: nested values.
+        layout: their layout; None for none.
+    """
+    measured = {} if layout is None else measured_fields(layout)
+    numbers = flat(values) if measured else {}
+    found = {path: each.violated(each.value(numbers[path])) for path, each in measured.items() if path in numbers}
+    return {path: name for path, name in found.items() if name}
 
 
 @lru_cache(maxsize=256)

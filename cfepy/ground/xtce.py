@@ -22,7 +22,7 @@ from cfepy import __version__
 from cfepy.ground.dictionary import Dictionary
 from cfepy.ground.topics import Topic, library_of
 from cfepy.mission import UNIX_AT_CFE_EPOCH
-from cfepy.msg import TLM_HEADER_SIZE, Cell, Command, Layout, Telemetry, ValueNames
+from cfepy.msg import RED, TLM_HEADER_SIZE, YELLOW, Cell, Command, Layout, Measurement, Telemetry, ValueNames
 from cfepy.writing.markup import printable
 
 LITTLE = "leastSignificantByteFirst"
@@ -92,6 +92,7 @@ class TypeSet:
         self._what = what
         self._set = add(parent, f"{what}TypeSet")
         self._known: set[str] = set()
+        self._measured: dict[tuple[Measurement, bool], int] = {}
 
     def number(self, kind: str, big_endian: bool = False) -> str:
         """Add a number or bool in C's representation, such as "u16", "i8", "f64"; returns the name of the type.
@@ -132,7 +133,31 @@ class TypeSet:
         """
         if cell.names is not None:
             return self.named(cell.type, cell.names)
+        if cell.measurement is not None and self._what == "Parameter":
+            return self.measured(cell.type, cell.measurement, on_the_wire)
         return self.text(cell.size) if cell.type.startswith("char") else self.number(cell.type, on_the_wire)
+
+    def measured(self, kind: str, measurement: Measurement, big_endian: bool) -> str:
+        """Add a number with a unit, a calibration and limits; a calibrated integer is a float on the ground."""
+        name = f"measured{self._measured.setdefault((measurement, big_endian), len(self._measured) + 1)}"
+        if not self._is_new(name):
+            return name
+        bits, is_float = kind[1:], kind[0] == "f"
+        if is_float or measurement.is_calibrated:
+            found = add(self._set, f"Float{self._what}Type", name=name, sizeInBits=bits if is_float else "64")
+        else:
+            signed = str(kind[0] == "i").lower()
+            found = add(self._set, f"Integer{self._what}Type", name=name, signed=signed, sizeInBits=bits)
+        if measurement.unit:
+            add(add(found, "UnitSet"), "Unit").text = printable(measurement.unit)
+        encoding = "IEEE754_1985" if is_float else "unsigned" if kind[0] == "u" else "twosComplement"
+        tag, order = ("Float" if is_float else "Integer"), "" if big_endian and kind[0] == "u" else LITTLE
+        data = add(found, f"{tag}DataEncoding", sizeInBits=bits, encoding=encoding, byteOrder=order)
+        if measurement.is_calibrated:
+            _add_calibrator(add(data, "DefaultCalibrator"), measurement)
+        if measurement.has_limits:
+            _add_alarm(found, measurement)
+        return name
 
     def bits(self, count: int) -> str:
         """Return an unsigned number of the packet header, big-endian."""
@@ -209,6 +234,32 @@ class TypeSet:
             found = add(self._set, f"Float{self._what}Type", name=name, sizeInBits=str(bits))
             add(found, "FloatDataEncoding", sizeInBits=str(bits), encoding="IEEE754_1985", byteOrder=LITTLE)
         return name
+
+
+def _add_calibrator(parent: Element, measurement: Measurement) -> None:
+    """Add the calibration of a measurement; its lines continue beyond the outer points."""
+    if measurement.polynomial:
+        polynomial = add(parent, "PolynomialCalibrator")
+        for exponent, coefficient in enumerate(measurement.polynomial):
+            add(polynomial, "Term", coefficient=repr(float(coefficient)), exponent=str(exponent))
+        return
+    spline = add(parent, "SplineCalibrator", order="1", extrapolate="true")
+    for raw, value in measurement.points:
+        add(spline, "SplinePoint", raw=repr(float(raw)), calibrated=repr(float(value)))
+
+
+def _add_alarm(parent: Element, measurement: Measurement) -> None:
+    """Add the limits of a measurement: yellow is XTCE's warning, red is its critical range; good values are inside."""
+    ranges = add(add(parent, "DefaultAlarm"), "StaticAlarmRanges")
+    for tag, name in (("WarningRange", YELLOW), ("CriticalRange", RED)):
+        low, high = measurement.limits(name)
+        if (low, high) != (None, None):
+            texts = {
+                end: repr(float(value))
+                for end, value in (("minInclusive", low), ("maxInclusive", high))
+                if value is not None
+            }
+            add(ranges, tag, **texts)
 
 
 def _dynamic(size: Element, count: str, slope: int, intercept: int) -> None:

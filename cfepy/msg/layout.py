@@ -5,7 +5,9 @@ including nested structs and arrays. Packing lines up the values for it, and unp
 
 A field's type is one of u8 i8 u16 i16 u32 i32 u64 i64 f32 f64 bool, `char[N]` (text of at most N bytes), another
 Layout, or an array of these: "u16[4]", "u8[2][3]", "char[4][20]" (4 texts of 20), `(Layout, 32)`. An integer with named
-values is `ValueNames("u8", SHORT=0, LONG=1)`. Packing also accepts the names; unpacking gives the number.
+values is `ValueNames("u8", SHORT=0, LONG=1)`. Packing also accepts the names; unpacking gives the number. A number that
+measures something is `Measurement("u16", "degC", polynomial=(-40, 0.5), red=(-20, 70))`. Packing and unpacking have its
+raw number; ground tools show the value with its unit, and mark it if it is outside its limits.
 
 Two types that all services use are here too. One is a spacecraft time (`SYS_TIME`). The other is text in a field of
 fixed size (CFE_SB_MessageStringSet, CFE_SB_MessageStringGet): it is padded with NULs, and has no NUL if it fills its
@@ -17,6 +19,7 @@ from __future__ import annotations
 import re
 import struct
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 from cfepy.msg.header import Packet
@@ -87,6 +90,110 @@ class ValueNames:
         return ", ".join(f"{name} ({value})" for name, value in self.values.items())
 
 
+RED, YELLOW = "red", "yellow"
+"""The limits of a measurement."""
+
+Limits = tuple[float | None, float | None]
+"""The lowest and the highest good value; None for no limit on that side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """A number that measures something: a raw number in the packet, and its engineering value on the ground.
+
+    Args:
+        type: type of the raw number, such as "u16".
+        unit: unit of the value, such as "V".
+        polynomial: calibration by the coefficients for the powers 0, 1, 2 and so on of the raw number.
+        points: calibration by (raw, value) pairs, with rising raw numbers and straight lines between them.
+        yellow: limits for a warning.
+        red: limits for an alarm.
+
+    Raises:
+        UsageError: if they do not fit together.
+
+    >>> voltage = Measurement("u8", "V", polynomial=(0.0, 0.2), yellow=(24, None), red=(22, None))
+    >>> [voltage.text(raw) for raw in (130, 115, 100)]
+    ['26V', '23V[yellow<24]', '20V[red<22]']
+    """
+
+    type: str
+    unit: str = ""
+    polynomial: tuple[float, ...] = ()
+    points: tuple[tuple[float, float], ...] = ()
+    yellow: Limits | None = None
+    red: Limits | None = None
+
+    def __post_init__(self) -> None:
+        if self.type not in _SCALARS or self.type == "bool":
+            raise UsageError(f"invalid type {self.type!r} of a measurement; expected a number, such as u16 or f32")
+        if self.polynomial and self.points:
+            raise UsageError("polynomial cannot be combined with points; give one calibration")
+        raws = [raw for raw, _ in self.points]
+        if self.points and (len(raws) < 2 or sorted(set(raws)) != raws):
+            raise UsageError("points must be at least two, with rising raw numbers")
+        for name in (YELLOW, RED):
+            low, high = self.limits(name)
+            if low is not None and high is not None and low > high:
+                raise UsageError(f"{name} must be (LOWEST, HIGHEST), not {(low, high)}")
+        (low, high), (inner_low, inner_high) = self.limits(RED), self.limits(YELLOW)
+        is_low_inside = low is not None and inner_low is not None and low > inner_low
+        if is_low_inside or (high is not None and inner_high is not None and high < inner_high):
+            raise UsageError("the red limits must include the yellow ones")
+
+    @property
+    def is_calibrated(self) -> bool:
+        """Whether the value is another one than the raw number."""
+        return bool(self.polynomial or self.points)
+
+    @property
+    def has_limits(self) -> bool:
+        """Whether a value can violate a limit."""
+        return any(limit is not None for name in (RED, YELLOW) for limit in self.limits(name))
+
+    def limits(self, name: str) -> Limits:
+        """Return the limits of a name, `RED` or `YELLOW`."""
+        return (self.red if name == RED else self.yellow) or (None, None)
+
+    def value(self, raw: float) -> float:
+        """Return the engineering value of a raw number; beyond the outer points, their lines continue."""
+        if self.polynomial:
+            total = 0.0
+            for coefficient in reversed(self.polynomial):
+                total = total * raw + coefficient
+            return total
+        if not self.points:
+            return raw
+        at = next((at for at, (end, _) in enumerate(self.points[1:-1], 1) if raw < end), len(self.points) - 1)
+        (first, low), (last, high) = self.points[at - 1 : at + 1]
+        return low + (raw - first) * (high - low) / (last - first)
+
+    def violated(self, value: float) -> str:
+        """Return the limit that a value violates, `RED` before `YELLOW`; empty if it is good. NaN violates each."""
+        for name in (RED, YELLOW):
+            low, high = self.limits(name)
+            if (low is not None and not value >= low) or (high is not None and not value <= high):
+                return name
+        return ""
+
+    def text(self, raw: float) -> str:
+        """Return the value with its unit, and a mark if it violates a limit, such as 85.2V[red>80]."""
+        value = self.value(raw)
+        name = self.violated(value)
+        low, high = self.limits(name)
+        mark = f"[{name}<{low:g}]" if low is not None and not value >= low else f"[{name}>{high:g}]" if name else ""
+        return f"{value:.7g}{self.unit}{mark}"
+
+    def explained(self, value: float) -> str:
+        """Return a sentence about a value that violates a limit."""
+        name = self.violated(value)
+        low, high = self.limits(name)
+        unit = f" {self.unit}" if self.unit else ""
+        is_low = low is not None and not value >= low
+        limit = f"below the {name} limit of {low:g}" if is_low else f"above the {name} limit of {high:g}"
+        return f"{value:.7g}{unit}, {limit}{unit}"
+
+
 class Cell(NamedTuple):
     """A number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` is "u16" or "char[20]"."""
 
@@ -95,15 +202,19 @@ class Cell(NamedTuple):
     offset: int
     size: int
     names: ValueNames | None = None
+    measurement: Measurement | None = None
 
 
 class _Scalar:
     """A number or a bool."""
 
-    __slots__ = ("align", "code", "leaves", "names", "size")
+    __slots__ = ("align", "code", "leaves", "measurement", "names", "size")
 
-    def __init__(self, code: str, size: int, names: ValueNames | None = None) -> None:
+    def __init__(
+        self, code: str, size: int, names: ValueNames | None = None, measurement: Measurement | None = None
+    ) -> None:
         self.names: ValueNames | None = names
+        self.measurement: Measurement | None = measurement
         self.code: str = code
         self.size: int = size
         self.align: int = size
@@ -122,7 +233,7 @@ class _Scalar:
         return next(leaves)
 
     def cells(self, path: str, at: int) -> Iterator[Cell]:
-        yield Cell(path, _name_of_code(self.code), at, self.size, self.names)
+        yield Cell(path, _name_of_code(self.code), at, self.size, self.names, self.measurement)
 
     def zero(self) -> Any:
         return 0
@@ -334,8 +445,10 @@ def _parse_type(kind: Any, path: str) -> _Type:
         return kind
     if isinstance(kind, ValueNames):
         return _Scalar(*_SCALARS[kind.type], kind)
+    if isinstance(kind, Measurement):
+        return _Scalar(*_SCALARS[kind.type], measurement=kind)
     if isinstance(kind, tuple):
-        return _Array(kind[0], kind[1])
+        return _Array(_parse_type(kind[0], path), kind[1])
     match = _TYPE.fullmatch(kind)
     if match is None or match[1] not in {*_SCALARS, "char"}:
         hint = did_you_mean(kind, [*_SCALARS, "char[N]"], before="; ")

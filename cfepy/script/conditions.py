@@ -527,4 +527,4 @@ def seen_text(condition: Condition, scene: Scene, packet: Seen | None, since: Si
     if packet.msg_id in EVENT_IDS:
         return f"there was {DecodedEvent.of(packet)}"
     decoded = scene.dictionary.decode(packet.packet)
-    return f"there was {decoded.name} {decoded.line()} at {seconds(packet.at_ns)}"
+    return f"there was {decoded.name} {decoded.line(raw=True)} at {seconds(packet.at_ns)}"

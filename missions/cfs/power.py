@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from cfepy.app import Cfe
-from cfepy.msg import Command, CommandTable, Layout, Telemetry
+from cfepy.msg import Command, CommandTable, Layout, Measurement, Telemetry
 
 CMD_MID, HK_TLM_MID = 0x18D0, 0x08D0
 PERIOD_MS = 1000
 DRAINED, CHARGED, FULL = 5, 1, 100  # percent a second, percent a second, percent
 HEATER_EID = 1
 
-HOUSEKEEPING = Layout("POWER_HkTlm_Payload_t", [("Charge", "u16"), ("Heater", "u8"), ("CommandCounter", "u8")])
+CHARGE = Measurement("u16", "%", yellow=(40, None), red=(20, None))
+HOUSEKEEPING = Layout("POWER_HkTlm_Payload_t", [("Charge", CHARGE), ("Heater", "u8"), ("CommandCounter", "u8")])
 HEATER = Layout("POWER_SetHeater_Payload_t", [("On", "u8"), ("Padding", "u8[3]")])
 SET_HEATER = Command("POWER_SET_HEATER", CMD_MID, 1, HEATER, "Switches the heater on or off.")
 HK_TLM = Telemetry("POWER_HK_TLM", HK_TLM_MID, HOUSEKEEPING, "Charge in percent, and whether the heater is on.")

@@ -15,8 +15,9 @@ from cfepy.cli.ground.console.saved import SavedScript, time_text, without_when
 from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.es.packets import HK_TLM
 from cfepy.evs.packets import LONG_EVENT_MSG
-from cfepy.ground import dictionary_of, packet_of
+from cfepy.ground import Dictionary, dictionary_of, packet_of
 from cfepy.mission import FIRST_PIECE_NS, Seen
+from cfepy.msg import RED, YELLOW, Layout, Measurement, Telemetry
 from cfepy.pilot import RunPlan, takeoff
 from cfepy.rtos import ENDLESS
 from cfepy.script import Step, StepVerdict
@@ -129,6 +130,25 @@ def test_a_page_shows_control_characters_of_packets_as_escapes() -> None:
         assert r"\x1b]0;title\x07" in text
     with pytest.raises(UsageError, match="unknown telemetry packet NOPE"):
         board.choose(["NOPE"])
+
+
+def test_page_shows_measurements_with_marks_and_as_raw_numbers() -> None:
+    layout = Layout("Hk", [("Temp", Measurement("u16", "degC", polynomial=(-40.0, 0.1), yellow=(0, 50), red=(0, 60)))])
+    hot = Telemetry("T_HK_TLM", 0x08F0, layout)
+    dictionary = Dictionary()
+    dictionary.add([hot])
+    board = PacketBoard(dictionary)
+    for raw, text, style in (
+        (700, "30degC", "value"),
+        (930, "53degC[yellow>50]", YELLOW),
+        (1100, "70degC[red>60]", RED),
+    ):
+        board.note(Seen(10**9, hot.packet(Temp=raw), "T"))
+        assert cells(board.rows(80)).get(text) == style
+    board.show_raw(True)
+    assert cells(board.rows(80))["1100"] == RED
+    board.show_raw(False)
+    assert cells(board.rows(80))["70degC[red>60]"] == RED
 
 
 EXPECTED = Step(1, "expect event HK", condition=EventCondition("HK"))

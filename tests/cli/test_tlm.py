@@ -15,6 +15,7 @@ from cfepy.io.udp import UdpListener
 from cfepy.msg import get_fcn_code, get_msg_id, telemetry
 from tests.cli.conftest import Write
 from tests.cli.ros_missions import robot
+from tests.ground.measured import write_thermal
 
 EVENT = bytes(
     telemetry(0x0808, LONG_EVENT.pack(PacketID={"AppName": "APP", "EventID": 3, "EventType": 2}, Message="all is well"))
@@ -186,3 +187,20 @@ def test_bad_usage(words: list[str], said: str, capsys: pytest.CaptureFixture[st
 def test_a_topic_without_a_subscriber(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["tlm", str(robot(tmp_path)), "/odom", "--for", "1"]) == 1
     assert "a topic is sent only while it has a subscriber; `cfepy rostopic echo`" in capsys.readouterr().err
+
+
+def test_measurements_have_units_and_marks_or_raw_numbers(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["tlm", write_thermal(tmp_path), "THERMAL_HK_TLM", "--for", "2.1"]
+    assert main(words) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0] == "0.550 THERMAL_HK_TLM Temp=32degC Volts=28V Samples=1"
+    assert lines[2:] == [
+        "1.550 THERMAL_HK_TLM Temp=56degC[yellow>50] Volts=28V Samples=3",
+        "2.050 THERMAL_HK_TLM Temp=68degC[red>60] Volts=28V Samples=4",
+    ]
+    assert main([*words, "--raw"]) == 0
+    assert capsys.readouterr().out.splitlines()[0] == "0.550 THERMAL_HK_TLM Temp=720 Volts=140 Samples=1"
+    assert main([*words, "--json", "-"]) == 0
+    record = json.loads(capsys.readouterr().out.splitlines()[-1])
+    assert record["values"]["Temp"] == 1080
+    assert record["measurements"]["Temp"] == {"value": 68.0, "unit": "degC", "violated": "red"}

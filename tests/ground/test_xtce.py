@@ -19,7 +19,7 @@ from cfepy.ground.values import flat, named_fields
 from cfepy.ground.xtce import NAMESPACE, cells_with_padding, xtce_name, xtce_of
 from cfepy.mission import UNIX_AT_CFE_EPOCH, Mission, read_mission
 from cfepy.mission.packet_watch import PacketWatch, Seen
-from cfepy.msg import Command, Layout, MsgType, Telemetry, get_type, telemetry
+from cfepy.msg import Command, Layout, Measurement, MsgType, Telemetry, get_type, telemetry
 from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 
@@ -255,3 +255,46 @@ def test_command_built_from_the_document_equals_ours(export: Export) -> None:
         ours = bytearray(command.packet(command.payload.unpack(payload)))
         ours[7] = 0
         assert packet == bytes(ours), command.name
+
+
+TEMPERATURE = Measurement("u16", "degC", polynomial=(-40.0, 0.1), yellow=(0, 50), red=(-20, 60))
+VOLTAGE = Measurement("i8", "V", points=((0, 0.0), (50, 20.0), (100, 30.0)), red=(22, None))
+RATE = Measurement("f32", "rad/s", yellow=(None, 2.5))
+COUNT = Measurement("u32", "1", red=(0, 7))
+MEASURED = [("Temp", TEMPERATURE), ("Volts", (VOLTAGE, 2)), ("Rate", RATE), ("Count", COUNT)]
+
+
+def test_measurements_have_units_calibrators_and_alarms(tmp_path: Path) -> None:
+    packet = Telemetry("T_HK_TLM", 0x08F0, Layout("Hk", MEASURED))
+    dictionary = Dictionary()
+    set_limit = Command("T_SET_LIMIT", 0x18F0, 1, Layout("Set", [("Temp", TEMPERATURE)]))  # XTCE has no alarm for it
+    dictionary.add([packet, set_limit])
+    text, file = xtce_of("t", dictionary), tmp_path / "t.xml"
+    file.write_text(text, encoding="utf-8")
+    result = validate_xtce(file, level="all", raise_on_error=False)
+    assert result.valid, [str(error) for error in result.errors[:5]]
+    raw = {"Temp": 930, "Volts": [25, 75], "Rate": 0.25, "Count": 9}
+    found = XtcePacketDefinition.from_xtce(file).parse_bytes(packet.packet(raw))
+    values = {name.removeprefix("T_HK_TLM_"): value for name, value in found.items() if name.startswith("T_HK")}
+    assert values == {"Temp": pytest.approx(53.0), "Volts_0": 10.0, "Volts_1": 25.0, "Rate": 0.25, "Count": 9}
+    assert found["T_HK_TLM_Temp"].raw_value == 930
+    root = ElementTree.fromstring(text)
+    kinds = {each.get("name"): each for each in root.iter() if each.tag.endswith("ParameterType")}
+
+    def of(name: str) -> ElementTree.Element:
+        parameters = root.iter(f"{{{NAMESPACE}}}Parameter")
+        return kinds[next(each.attrib["parameterTypeRef"] for each in parameters if each.get("name") == name)]
+
+    def limits(name: str) -> dict[str, dict[str, str]]:
+        ranges = of(name).find(f"{{{NAMESPACE}}}DefaultAlarm/{{{NAMESPACE}}}StaticAlarmRanges")
+        return {} if ranges is None else {each.tag.rpartition("}")[2]: each.attrib for each in ranges}
+
+    assert limits("T_HK_TLM_Temp") == {
+        "WarningRange": {"minInclusive": "0.0", "maxInclusive": "50.0"},
+        "CriticalRange": {"minInclusive": "-20.0", "maxInclusive": "60.0"},
+    }
+    assert limits("T_HK_TLM_Volts_1") == {"CriticalRange": {"minInclusive": "22.0"}}
+    assert limits("T_HK_TLM_Rate") == {"WarningRange": {"maxInclusive": "2.5"}}
+    assert of("T_HK_TLM_Count").tag.endswith("IntegerParameterType")
+    assert [unit.text for unit in of("T_HK_TLM_Temp").iter(f"{{{NAMESPACE}}}Unit")] == ["degC"]
+    assert of("T_HK_TLM_Volts_0") is of("T_HK_TLM_Volts_1")

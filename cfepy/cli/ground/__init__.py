@@ -20,6 +20,7 @@ from cfepy.cli.options import (
     add_looked_at,
     add_mission,
     add_output,
+    add_raw,
     add_run_options,
     seconds_of,
 )
@@ -102,6 +103,7 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         metavar="SECONDS",
         help="end after so many seconds (default: a mission flies for 10, else until Ctrl-C)",
     )
+    add_raw(tlm)
     add_json(tlm, "an object for each packet, a line each,")
     add_run_options(tlm, without=["seconds"])
     tlm.set_defaults(module="cfepy.cli.ground.tlm")

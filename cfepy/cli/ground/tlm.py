@@ -21,7 +21,7 @@ from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.ground import CI_PORT, TO_PORT, Decoded, Dictionary, dictionary_of, packet_of, topic_id, topics_of
 from cfepy.io import udp
 from cfepy.mission import MissionSpec, PacketWatch, Seen, find_script, is_node
-from cfepy.msg import TLM_HEADER_SIZE, get_header_size, get_msg_id
+from cfepy.msg import RED, TLM_HEADER_SIZE, YELLOW, get_header_size, get_msg_id
 from cfepy.pilot import LiveRun, RunPlan, never_happened, takeoff
 from cfepy.rtos import Stopwatch
 from cfepy.status import UsageError
@@ -60,7 +60,8 @@ def output_for(dictionary: Dictionary, arguments: argparse.Namespace, is_live: b
     """
     shows_table = is_live and sys.stdout.isatty()
     with json_lines(arguments) as lines:
-        text = LiveTable(dictionary, sys.stdout) if shows_table else TextLines(dictionary, sys.stdout)
+        kind = LiveTable if shows_table else TextLines
+        text: Output = kind(dictionary, sys.stdout, arguments.raw)
         output = Several([text] if lines is None else [text, JsonLines(dictionary, lines)])
         try:
             yield output
@@ -94,13 +95,14 @@ class Several:
 class TextLines:
     """Writes lines such as `2.450 CFE_ES_HK_TLM CommandCounter=0 ...`."""
 
-    def __init__(self, dictionary: Dictionary, stream: TextIO) -> None:
+    def __init__(self, dictionary: Dictionary, stream: TextIO, raw: bool = False) -> None:
         self._dictionary = dictionary
         self._stream = stream
+        self._raw = raw
 
     def show(self, packet: bytes, at_ns: int) -> None:
         decoded = self._dictionary.decode(packet)
-        text = f"{at_ns / NS_PER_S:.3f} {decoded.name} {content(decoded, packet)}"
+        text = f"{at_ns / NS_PER_S:.3f} {decoded.name} {content(decoded, packet, self._raw)}"
         show_paragraph(visible_line(text), self._stream)
 
     def refresh(self) -> None:
@@ -111,7 +113,10 @@ class TextLines:
 
 
 class JsonLines(TextLines):
-    """Writes objects with name, msg_id, sequence, time (spacecraft time, s), at (s) and values, one a line."""
+    """Writes objects with name, msg_id, sequence, time (spacecraft time, s), at (s) and raw values, one a line.
+
+    Packets with measurements also have their engineering values.
+    """
 
     def show(self, packet: bytes, at_ns: int) -> None:
         decoded = self._dictionary.decode(packet)
@@ -123,6 +128,8 @@ class JsonLines(TextLines):
             "at": at_ns / NS_PER_S,
             "values": decoded.values,
         }
+        if decoded.measurements:
+            record["measurements"] = decoded.measurements
         if decoded.problem:
             record |= {"problem": decoded.problem, "packet": packet.hex()}
         self._stream.write(json_text(record, default=bytes.hex) + "\n")
@@ -131,10 +138,11 @@ class JsonLines(TextLines):
 class LiveTable:
     """Shows a row for each kind of packet: their number, the time of the newest one, and its fields."""
 
-    def __init__(self, dictionary: Dictionary, stream: TextIO) -> None:
+    def __init__(self, dictionary: Dictionary, stream: TextIO, raw: bool = False) -> None:
         from rich.live import Live
 
         self._dictionary = dictionary
+        self._raw = raw
         self._rows: dict[int, tuple[int, int, bytes]] = {}
         self._is_new = True
         self._live = Live(console=rich_console(stream), auto_refresh=False)
@@ -167,14 +175,17 @@ class LiveTable:
         table.add_column("content")
         for _, (count, at_ns, packet) in sorted(self._rows.items()):
             decoded = self._dictionary.decode(packet)
-            cells = (decoded.name, f"{count:,}", f"{at_ns / NS_PER_S:.1f}", content(decoded, packet))
-            table.add_row(*(Text(visible_line(cell)) for cell in cells))
+            cells = (decoded.name, f"{count:,}", f"{at_ns / NS_PER_S:.1f}", content(decoded, packet, self._raw))
+            texts = [Text(visible_line(cell)) for cell in cells]
+            for name, style in ((YELLOW, "yellow"), (RED, "bold red")):
+                texts[-1].highlight_regex(rf"\S+\[{name}[<>][^\]]*\]", style)
+            table.add_row(*texts)
         return table
 
 
-def content(decoded: Decoded, packet: bytes) -> str:
+def content(decoded: Decoded, packet: bytes, raw: bool = False) -> str:
     """Return the fields of a packet, or its bytes if its fields are not known."""
-    return f"{packet.hex()} ({decoded.problem})" if decoded.problem else decoded.line()
+    return f"{packet.hex()} ({decoded.problem})" if decoded.problem else decoded.line(raw)
 
 
 def run(arguments: argparse.Namespace) -> int:

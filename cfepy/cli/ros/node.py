@@ -67,8 +67,7 @@ class NodeView(View):
         """Print problems other than the node's own. Returns the exit status of the node or of the run's script."""
         outputs.save_files(flown, self.quiet)
         if self.quiet:
-            print("".join(f"{line}
-" for line in failed_steps(flown)), end="")
+            print("".join(f"{line}\n" for line in failed_steps(flown)), end="")
         else:
             show_tables(self.tables, sys.stdout)
             tell(flown.results.never_happened)

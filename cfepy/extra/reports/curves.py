@@ -8,12 +8,13 @@ Drawing needs no display. The script of a page draws the same curves in a browse
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.ground import Series, SeriesSet
+from cfepy.msg import RED, YELLOW
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -30,6 +31,9 @@ SIZE = (10.0, 4.5)  # inches
 EXTRA_HEIGHT = 2.2  # inches for each further axes
 DPI = 144
 MOST_OF_COLORS, MOST_IN_CORNER, MOST_NAMED = 10, 4, 16
+LIMIT_COLORS = {RED: "C3", YELLOW: "goldenrod"}
+LIMIT_LINES: dict[str, Any] = {RED: (0, (6, 2)), YELLOW: (0, (2, 2))}
+LIMIT_RIM = 0.03  # of the height, beyond a limit
 HEADER = "header."  # fields of a whole message that are not drawn
 
 
@@ -58,6 +62,7 @@ class Curves:
         unit: unit of the values; empty if it is not known.
         lines: a line for each number in the field.
         changes: changes of the text in it, by time.
+        limits: limits of the lines: `RED` or `YELLOW`, and the value.
     """
 
     name: str
@@ -65,6 +70,7 @@ class Curves:
     unit: str
     lines: tuple[Curve, ...]
     changes: tuple[Change, ...] = ()
+    limits: tuple[tuple[str, float], ...] = ()
 
     @property
     def title(self) -> str:
@@ -79,20 +85,25 @@ class Curves:
         return replace(self, lines=cut, changes=tuple(each for each in self.changes if each.time >= from_s))
 
 
-def curves_of(series: SeriesSet, word: str) -> list[Curves]:
+def curves_of(series: SeriesSet, word: str, raw: bool = False) -> list[Curves]:
     """Return the curves of a field; for a pattern, the curves of each matching topic.
+
+    Args:
+        series: the values of a run.
+        word: a topic or packet, with or without a field.
+        raw: whether measurements are drawn as their raw numbers, without unit and limits.
 
     Raises:
         UsageError: no matching message was sent, there is no such field, or it cannot be drawn.
     """
-    return [_curves(found, field) for found, field in series.matching(word)]
+    return [_curves(found, field, raw) for found, field in series.matching(word)]
 
 
-def _curves(series: Series, field: str) -> Curves:
+def _curves(series: Series, field: str, raw: bool) -> Curves:
     columns = {path: column for path, column in series.columns(field).items() if field or not path.startswith(HEADER)}
     times = series.times
     lines = [
-        Curve(_label(series, path), times, column.astype(float))
+        Curve(_label(series, path), times, (column if raw else series.engineering(path, column)).astype(float))
         for path, column in columns.items()
         if column.dtype.kind in "iufb"
     ]
@@ -103,7 +114,22 @@ def _curves(series: Series, field: str) -> Curves:
             f"changes {len(changes)} times, {MOST_CHANGES} can be marked" if changes else "neither numbers nor a text"
         )
         raise UsageError(f"cannot be drawn: {what}", file=series.name, field=field or None)
-    return Curves(series.name, field, series.unit(field), tuple(lines), tuple(changes))
+    limits = () if raw else limits_of(series, field, [path for path in columns if path in series.measured])
+    unit = "" if raw and series.measured else series.unit(field)
+    return Curves(series.name, field, unit, tuple(lines), tuple(changes), limits)
+
+
+def limits_of(series: Series, field: str, paths: Sequence[str]) -> tuple[tuple[str, float], ...]:
+    """Return the limits of a field, each once; none for a whole packet, whose fields have limits of their own."""
+    found = {
+        (name, limit): None
+        for path in paths
+        if field
+        for name in (YELLOW, RED)
+        for limit in series.measured[path].limits(name)
+        if limit is not None
+    }
+    return tuple(found)
 
 
 def _label(series: Series, path: str) -> str:
@@ -250,7 +276,21 @@ def _draw(place: Axes, curves: Sequence[Curves]) -> None:
         marker = "o" if len(few.times) < FEW_POINTS else None
         name = line.label if len(shown) == 1 else f"{each.name}.{line.label}"
         place.plot(few.times, few.values, color=color, linewidth=1.3, marker=marker, markersize=3, label=name)
+    _draw_limits(place, dict.fromkeys(limit for each in shown for limit in each.limits))
     _dress(place, shown, len(lines))
+
+
+def _draw_limits(place: Axes, limits: Iterable[tuple[str, float]]) -> None:
+    """Draw lines with the names of limits; the axes grow for a limit near the curves, not for a distant one."""
+    low, high = place.get_ylim()
+    near = [value for _, value in limits if 2 * low - high <= value <= 2 * high - low]
+    for name, value in limits:
+        look: dict[str, Any] = {"color": LIMIT_COLORS[name], "linewidth": 1.0, "linestyle": LIMIT_LINES[name]}
+        place.axhline(value, **look)
+        if value in near:
+            place.annotate(name, (1.0, value), xycoords=("axes fraction", "data"), fontsize="x-small", color="0.3")
+    rim = (high - low) * LIMIT_RIM
+    place.set_ylim(min([low, *(value - rim for value in near)]), max([high, *(value + rim for value in near)]))
 
 
 def _colors(count: int) -> Any:

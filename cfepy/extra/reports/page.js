@@ -328,6 +328,7 @@ function drawPlot(on, group, top, width) {
   on.beginPath();
   on.rect(labels, top, width - labels, PLOT);
   on.clip();
+  drawLimits(on, group, range, y, width);
   group.decoded.forEach((line, index) => drawLine(on, group, line, index, range, y, width));
   on.restore();
   drawNames(on, group, top);
@@ -342,6 +343,16 @@ function drawGrid(on, range, y, width) {
     on.fillRect(labels, y(value), width - labels, 1);
     on.fillStyle = color("--soft");
     on.fillText(number(Math.abs(value) < step / 1e6 ? 0 : value, step), labels + 3, y(value) - 6);
+  }
+}
+
+/* Draw the limits of a measurement as dashed lines with their names; those outside of the shown values are left out. */
+function drawLimits(on, group, range, y, width) {
+  for (const [name, value] of group.limits) {
+    if (value < range.low || value > range.high) continue;
+    on.fillStyle = color(name === "red" ? "--bad" : "--warn");
+    for (let x = labels; x < width; x += name === "red" ? 9 : 5) on.fillRect(x, y(value), name === "red" ? 6 : 2, 1);
+    on.fillText(name, width - on.measureText(name).width - 4, y(value) - 6);
   }
 }
 

@@ -30,7 +30,7 @@ from cfepy.extra.reports.page_story import (
     problems_of_page,
     story_section,
 )
-from cfepy.extra.reports.page_values import value_data, values_section
+from cfepy.extra.reports.page_values import limits_section, value_data, values_section
 from cfepy.ground import SeriesSet, graph_svg
 from cfepy.pilot import Flown, Results, RunProblem
 from cfepy.units import NS_PER_S, time_text
@@ -99,6 +99,7 @@ def page_of(flown: Flown, collector: Collector, about: About, recorded: SeriesSe
         "" if values is None or recorded is None else values_section(values, recorded),
         _deadlines(results, numbers),
         _invariants(results, numbers),
+        "" if recorded is None else limits_section(recorded),
         _faults(results, numbers),
         _marks(results, numbers, collector),
         _script(flown.outcome, numbers),

@@ -15,10 +15,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cfepy.extra.reports.curves import Curve, Curves, curves_of
-from cfepy.extra.reports.html_text import section
-from cfepy.ground import Series, SeriesSet
+from cfepy.extra.reports.html_text import section, table
+from cfepy.extra.reports.page_story import instant
+from cfepy.ground import Series, SeriesSet, steps_of, value_at
+from cfepy.msg import RED, YELLOW
 from cfepy.status import UsageError
-from cfepy.writing.markup import element
+from cfepy.units import NS_PER_S
+from cfepy.writing.markup import element, escaped
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -82,12 +85,21 @@ def _series(series: Series, curves: Curves, lines: Sequence[Curve], pairs: int) 
             {
                 "name": name,
                 "unit": series.unit(_path(members[0].label)),
+                "limits": _limits(series, members),
                 "lines": [{"name": line.label, **encoded(bins.thinned(line.values))} for line in members],
             }
             for name, members in groups.items()
         ],
         "changes": [[round(change.time * US_PER_S), change.text] for change in curves.changes],
     }
+
+
+def _limits(series: Series, members: Sequence[Curve]) -> list[list[str | float]]:
+    """Return the limits of a group of lines that has one field, or an array of equal measurements."""
+    measured = {series.measured.get(line.label) for line in members}
+    found = measured.pop() if len(measured) == 1 else None
+    limits = [] if found is None else [(name, limit) for name in (YELLOW, RED) for limit in found.limits(name)]
+    return [[name, limit] for name, limit in limits if limit is not None]
 
 
 def _path(label: str) -> str:
@@ -192,6 +204,42 @@ def values_section(values: ValueData, recorded: SeriesSet) -> str:
     )
     inside = element("p", search, class_="filter") + element("div", picker + drawn, class_="values")
     return section("Values over time", "values", inside, " ".join([about, *_thinned(values, recorded)]))
+
+
+def limits_section(recorded: SeriesSet) -> str:
+    """Return the section about the measurements with limits; empty without any."""
+    rows = [row for name in recorded.names for row in _limit_rows(recorded.series(name))]
+    if not rows:
+        return ""
+    heads = ("Field", "Verdict", "Lowest", "Highest", "Unit", "Yellow", "Red", "First violation")
+    inside = table("Measurements with limits", heads, rows, (2, 3), class_="log")
+    about = "Engineering values of telemetry, with the limits that its application declares."
+    return section("Limits", "limits", inside, about)
+
+
+def _limit_rows(series: Series) -> Iterator[list[str]]:
+    measured = {path: each for path, each in series.measured.items() if each.has_limits}
+    if not measured or not len(series):
+        return
+    times = series.times.tolist()
+    for path, each in measured.items():
+        raws = [value_at(message, steps_of(path)) for message in series.messages]
+        values = [each.value(raw) for raw in raws]
+        violated = [each.violated(value) for value in values]
+        worst = RED if RED in violated else YELLOW if YELLOW in violated else ""
+        first = violated.index(worst) if worst else None
+        mark = "missed" if worst == RED else "warned" if worst else "kept"
+        at = "" if first is None else instant(round(times[first] * NS_PER_S), f"{times[first]:.6f} s")
+        told = "" if first is None else f"{at}: {escaped(each.explained(values[first]))}"
+        limits = [escaped(_range_text(each.limits(name))) for name in (YELLOW, RED)]
+        verdict = element("span", escaped(worst or "kept"), class_=f"verdict {mark}")
+        ends = [f"{min(values):.7g}", f"{max(values):.7g}"]
+        yield [escaped(f"{series.name}.{path}"), verdict, *ends, escaped(each.unit), *limits, told]
+
+
+def _range_text(limits: tuple[float | None, float | None]) -> str:
+    low, high = ("" if each is None else f"{each:g}" for each in limits)
+    return f"{low} to {high}" if low and high else f"from {low}" if low else f"to {high}" if high else ""
 
 
 def _thinned(values: ValueData, recorded: SeriesSet) -> Iterator[str]:

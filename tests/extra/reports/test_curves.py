@@ -8,9 +8,11 @@ import numpy
 import pytest
 
 from cfepy.extra.reports.curves import Change, Curve, Curves, curves_of, picture_of, save, thinned
+from cfepy.extra.reports.page_values import limits_section, value_data
 from cfepy.ground.series import SeriesRecorder
 from cfepy.pilot import RunPlan, fly
 from cfepy.status import UsageError
+from tests.ground.measured import write_thermal
 
 
 @pytest.fixture(scope="module")
@@ -93,3 +95,53 @@ def test_equal_pictures_have_equal_bytes(kind: str, tmp_path: Path) -> None:
     for file in files:
         save(picture_of([[Curves("/a", "x", "m", (line,))]]), file)
     assert files[0].read_bytes() == files[1].read_bytes()
+
+
+@pytest.fixture(scope="module")
+def thermal(tmp_path_factory: pytest.TempPathFactory) -> SeriesRecorder:
+    recorder = SeriesRecorder()
+    fly(RunPlan((write_thermal(tmp_path_factory.mktemp("thermal")),), seconds=2.4), attachments=[recorder])
+    return recorder
+
+
+def test_measurement_is_drawn_with_unit_and_limits(thermal: SeriesRecorder) -> None:
+    (curves,) = curves_of(thermal, "THERMAL_HK_TLM.Temp")
+    assert curves.title == "THERMAL_HK_TLM.Temp, degC"
+    assert curves.lines[0].values.tolist() == pytest.approx([32, 44, 56, 68])
+    assert curves.limits == (("yellow", 0), ("yellow", 50), ("red", -20), ("red", 60))
+    (place,) = picture_of([[curves]]).axes
+    assert sorted(text.get_text() for text in place.texts) == ["red", "yellow", "yellow"], "needs no colour"
+    low, high = place.get_ylim()
+    assert -20 < low < 0 < 68 < high, "a distant limit is left out"
+
+
+def test_measurement_is_drawn_as_raw_number_on_demand(thermal: SeriesRecorder) -> None:
+    (curves,) = curves_of(thermal, "THERMAL_HK_TLM.Temp", raw=True)
+    assert (curves.title, curves.limits) == ("THERMAL_HK_TLM.Temp", ())
+    assert curves.lines[0].values.tolist() == [720, 840, 960, 1080]
+    assert thermal.series("THERMAL_HK_TLM").to_numpy("Temp").values.tolist() == [720, 840, 960, 1080]
+
+
+def test_distant_limit_does_not_flatten_the_curve() -> None:
+    times = numpy.array([0.0, 1.0])
+    curves = Curves("T", "x", "", (Curve("x", times, times),), (), (("red", 1e6), ("yellow", 1.5)))
+    (place,) = picture_of([[curves]]).axes
+    assert place.get_ylim()[1] == pytest.approx(1.5, abs=0.1)
+
+
+def test_page_lists_measurements_with_limits(thermal: SeriesRecorder) -> None:
+    section = limits_section(thermal)
+    assert '<span class="verdict missed">red</span>' in section
+    assert "68 degC, above the red limit of 60 degC" in section
+    assert "THERMAL_HK_TLM.Volts" not in section, "it has no limits"
+    assert limits_section(SeriesRecorder()) == ""
+    (temperature,) = [
+        group
+        for series in value_data(thermal).plain
+        if series["name"] == "THERMAL_HK_TLM"
+        for group in series["groups"]
+        if group["name"] == "Temp"
+    ]
+    assert temperature["unit"] == "degC"
+    assert temperature["limits"] == [["yellow", 0], ["yellow", 50], ["red", -20], ["red", 60]]
+    assert temperature["lines"][0]["low"] == pytest.approx(32)

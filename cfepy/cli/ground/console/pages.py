@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 from cfepy.ground import Decoded, Dictionary
 from cfepy.mission import Seen
+from cfepy.msg import RED, YELLOW
 from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible_line
 
@@ -36,7 +37,7 @@ Row = list[Piece]
 
 @dataclass(slots=True)
 class Kind:
-    """The packets of one MsgId: their number, the newest one, and the texts of its fields at the last look."""
+    """The packets of one MsgId: their number, the newest one, and its texts and violated limits at the last look."""
 
     newest: Seen
     count: int = 0
@@ -44,6 +45,7 @@ class Kind:
     name: str = ""
     texts: dict[str, str] = field(default_factory=dict)
     changed: set[str] = field(default_factory=set)
+    violations: dict[str, str] = field(default_factory=dict)
 
 
 class PacketBoard:
@@ -54,10 +56,12 @@ class PacketBoard:
 
     Attributes:
         page: the chosen page: "hk", "all", or names of packets.
+        raw: whether measurements are shown as their raw numbers.
     """
 
     def __init__(self, dictionary: Dictionary) -> None:
         self.page: tuple[str, ...] = (HK,)
+        self.raw = False
         self._dictionary = dictionary
         self._kinds: dict[int, Kind] = {}
 
@@ -85,6 +89,13 @@ class PacketBoard:
             if name not in (HK, ALL) and not self._is_known(name):
                 self._dictionary.telemetry_of(name)
         self.page = tuple(names)
+
+    def show_raw(self, raw: bool) -> None:
+        """Show measurements as raw numbers, or as engineering values."""
+        self.raw = raw
+        for kind in self._kinds.values():
+            kind.looked = 0
+            kind.texts.clear()
 
     def counters(self) -> tuple[int, int]:
         """Return how many commands the applications accepted and refused, according to their newest housekeeping."""
@@ -129,23 +140,24 @@ class PacketBoard:
         if kind.looked == kind.count:
             return
         decoded = self._dictionary.decode(kind.newest.packet)
-        texts = {path: visible_line(text) for path, text in _texts(decoded, kind.newest.packet).items()}
+        texts = {path: visible_line(text) for path, text in _texts(decoded, kind.newest.packet, self.raw).items()}
         kind.changed = {path for path, text in texts.items() if kind.texts.get(path, text) != text}
         kind.name, kind.texts, kind.looked = visible_line(decoded.name), texts, kind.count
+        kind.violations = decoded.violations
 
     def _overview(self, width: int) -> Iterator[Row]:
         """Yield a row for each kind of packet."""
         for kind in sorted(self._kinds.values(), key=lambda each: each.newest.msg_id):
             decoded = self._dictionary.decode(kind.newest.packet)
             head = f"{visible_line(decoded.name)}  {kind.count:,}  {kind.newest.at_ns / NS_PER_S:.3f}  "
-            content = visible_line(decoded.problem or decoded.line())
+            content = visible_line(decoded.problem or decoded.line(self.raw))
             yield [Piece(cut(head, width), TITLE), Piece(cut(content, max(0, width - len(head))))]
 
 
-def _texts(decoded: Decoded, packet: bytes) -> dict[str, str]:
+def _texts(decoded: Decoded, packet: bytes, raw: bool) -> dict[str, str]:
     if decoded.problem:
         return {"bytes": packet.hex(), "problem": decoded.problem}
-    return decoded.texts()
+    return decoded.texts(raw)
 
 
 def _is_hk(name: str) -> bool:
@@ -173,7 +185,10 @@ def _cell(path: str, kind: Kind, width: int) -> Row:
     name = cut(path, width)
     text = cut(kind.texts[path], width - len(name) - 1)
     blank = " " * (width - len(name) - len(text))
-    return [Piece(name, NAME), Piece(blank), Piece(text, CHANGED if path in kind.changed else VALUE), Piece(" " * GAP)]
+    style = CHANGED if path in kind.changed else VALUE
+    violated = {name for each, name in kind.violations.items() if each == path or each.rpartition("[")[0] == path}
+    style = next((name for name in (RED, YELLOW) if name in violated), style)
+    return [Piece(name, NAME), Piece(blank), Piece(text, style), Piece(" " * GAP)]
 
 
 def cut(text: str, width: int) -> str:

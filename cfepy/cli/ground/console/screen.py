@@ -28,6 +28,7 @@ from cfepy.cli.ground.console.session import BAD, CONSOLE, EVENT, GOOD, REPLY, T
 from cfepy.cli.main import INTERRUPTED
 from cfepy.cli.watched_host import PATIENCE_NS, STDERR
 from cfepy.ground import EVENT_TYPES
+from cfepy.msg import RED, YELLOW
 from cfepy.rtos import Stopwatch
 from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible, visible_line
@@ -50,7 +51,9 @@ PIECE_STYLES = {
     pages.TITLE: "bold cyan",
     pages.NAME: "",
     pages.VALUE: "",
-    pages.CHANGED: "bold yellow",
+    pages.CHANGED: "bold cyan",
+    YELLOW: "bold yellow",
+    RED: "bold white on red",
 }
 
 

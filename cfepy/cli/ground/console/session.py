@@ -31,7 +31,7 @@ T = TypeVar("T")
 VERBS = ("send", "expect", "reset", *ROS_STEPS)
 TIMES = ("at", "after", "end")
 EVENT, CONSOLE, TYPED_LINE, REPLY, GOOD, BAD = "event", "console", "typed", "reply", "good", "bad"
-LOOKING = ("page", "events", "save", "help", "quit")
+LOOKING = ("page", "raw", "events", "save", "help", "quit")
 MAXIMUM = "max"
 EVENT_PORT = "EVS Port"
 REQUEST = "_SEND_HK"
@@ -148,6 +148,7 @@ class ConsoleSession:
             "pause": ConsoleWord(self._pause, "pause", "stand still, and wait no more for what was expected"),
             "speed": ConsoleWord(self._speed, "speed FACTOR|max", "how many times as fast as the wall clock"),
             "page": ConsoleWord(self._page, "page hk|all|NAME ...", "the telemetry that is shown; NAME may have a *"),
+            "raw": ConsoleWord(self._raw, "raw on|off", "show measurements as raw numbers"),
             "events": ConsoleWord(self._events, "events [APP] [TYPE]|all", "choose those that are shown"),
             "hk": ConsoleWord(self._ask_hk, "hk", "ask all applications for housekeeping"),
             "load": ConsoleWord(self._load, "load FILE", "do what a script says"),
@@ -365,6 +366,11 @@ class ConsoleSession:
 
     def _page(self, words: list[str]) -> None:
         self.board.choose(words)
+
+    def _raw(self, words: list[str]) -> None:
+        if words not in (["on"], ["off"]):
+            raise UsageError(f"invalid words {' '.join(words)!r}; write raw on, or raw off", field="raw")
+        self.board.show_raw(words == ["on"])
 
     def _events(self, words: list[str]) -> None:
         least, app = 0, None

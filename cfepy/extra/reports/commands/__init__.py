@@ -16,6 +16,7 @@ from cfepy.cli.options import (
     add_mission_or_node,
     add_output,
     add_perfetto,
+    add_raw,
     add_run_options,
 )
 
@@ -77,6 +78,7 @@ def _add_plot(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     )
     plot.add_argument("names", metavar="NAME.FIELD", nargs="+", help=VALUES_HELP)
     add_output(plot, f"{PLOT_FILE}; also .svg and .pdf", PLOT_FILE)
+    add_raw(plot)
     plot.add_argument("--subplots", action="store_true", help="each NAME.FIELD in axes of its own")
     add_from(plot)
     plot.add_argument("--title", metavar="TEXT", help="above it (default: the run)")

@@ -30,7 +30,8 @@ def run(arguments: argparse.Namespace) -> int:
     picture_of([[]])  # fail before a long run if matplotlib is not installed
     check_writable(path, "--output")
     series, status = look_at_series(arguments, arguments.names)
-    drawn = [curves.since(arguments.from_s or 0.0) for word in arguments.names for curves in curves_of(series, word)]
+    found = [curves for word in arguments.names for curves in curves_of(series, word, arguments.raw)]
+    drawn = [curves.since(arguments.from_s or 0.0) for curves in found]
     if not any(each.changes or any(len(line.times) for line in each.lines) for each in drawn):
         raise UsageError(f"no message was sent after {arguments.from_s:g} s", field="--from")
     title = Path(arguments.source).stem if arguments.title is None else arguments.title
