@@ -7,16 +7,18 @@ messages are forgotten. A mission without invariants never loads this module.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
 from cfepy.attachment import Attachment
+from cfepy.ground import flat
 from cfepy.mission import Mission, MissionSpec, Processor, app_traceback, described, matches
 from cfepy.monitors.invariants import CAUSE, Answer, Invariant, Selection, code_of
 from cfepy.monitors.observed_messages import Heard, MessageWatch, unknown_packets
 from cfepy.monitors.predicate import LATEST, short
 from cfepy.monitors.record import InvariantRecord, InvariantRecords, Violation
+from cfepy.msg import RED, YELLOW, Measurement
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -206,6 +208,36 @@ class EventuallyJudge(Judge):
             self.report(text, now_ns, "", "")
 
 
+class LimitsJudge(Judge):
+    """Reports measurements outside their limits.
+
+    Args:
+        invariant: the invariant.
+        latest: latest messages of all topics.
+        report: receives violations.
+        measured: measurements of a packet, by the path of the field.
+    """
+
+    def __init__(
+        self,
+        invariant: Invariant,
+        latest: Latest,
+        report: Report,
+        measured: Callable[[str], Mapping[str, Measurement]],
+    ) -> None:
+        super().__init__(invariant, latest, report)
+        self._measured = {packet: measured(packet) for packet in invariant.selection.packets}
+
+    def _judge(self, heard: Heard, names: dict[str, Any]) -> None:
+        numbers = flat(heard.msg)
+        for path, measurement in self._measured[heard.topic].items():
+            value = measurement.value(numbers[path])
+            violated = measurement.violated(value)
+            if violated == RED or (violated and self.invariant.limits == YELLOW):
+                text = f"{heard.topic}.{path} is {measurement.explained(value)}"
+                self.report(text, heard.at_ns, heard.sender, f"{heard.topic}: {short(heard.msg)}")
+
+
 class InvariantWatch(Attachment):
     """Checks all invariants of a mission.
 
@@ -231,10 +263,27 @@ class InvariantWatch(Attachment):
         except UsageError as error:
             named = [(each.name, packet) for each in self._invariants for packet in each.packets]
             raise unknown_packets(spec, "invariants", named) or error from None
+        self._check_limits(spec)
         self._mission: Mission | None = None
         self._now_ns = 0  # when the processor was created
         self._records = InvariantRecords()
         self._make_judges()
+
+    def _check_limits(self, spec: MissionSpec) -> None:
+        """Check that the packets of `limits` have some.
+
+        Raises:
+            UsageError: one has none.
+        """
+        for each in self._invariants:
+            for packet in each.selection.packets if each.limits else ():
+                kinds = (RED,) if each.limits == RED else (RED, YELLOW)
+                found = (
+                    measured.limits(kind) for measured in self._messages.measured(packet).values() for kind in kinds
+                )
+                if all(limits == (None, None) for limits in found):
+                    text = f"{packet} has no field with a {each.limits} limit; declare it as a Measurement"
+                    raise UsageError(text, file=spec.mission_file, field=f"invariants.{each.name}")
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         return self._messages.bus(base)
@@ -272,6 +321,8 @@ class InvariantWatch(Attachment):
         def report(text: str, at_ns: int, sender: str, detail: str) -> None:
             self._report(invariant, Violation(text, at_ns, sender, detail))
 
+        if invariant.limits:
+            return LimitsJudge(invariant, self._latest, report, self._messages.measured)
         if invariant.again_ns is not None:
             return AgainJudge(invariant, self._latest, report, self._now_ns)
         return kind(invariant, self._latest, report)

@@ -16,7 +16,7 @@ from typing import Any
 from cfepy.interpreter.syntax_trees import compiled
 from cfepy.mission import app_sources as sources
 from cfepy.monitors.predicate import LATEST, Predicate
-from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.msg import HIGHEST_VALID_MSG_ID, RED, YELLOW
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.reading.marked_yaml import Marked
@@ -28,8 +28,20 @@ NAMES = ("msg", "last", LATEST, "topic", "sender", "t", "count")
 CAUSE = "cause"
 SOURCE_FIELDS = ("topic", "packet")
 ANSWER_FIELDS = (*SOURCE_FIELDS, "holds")
-KINDS = ("holds", "function", "within", "again", "eventually")
-FIELDS = (*SOURCE_FIELDS, "holds", "when", "within", "then", "again", "eventually", "file", "function", "after")
+KINDS = ("holds", "function", "within", "again", "eventually", "limits")
+FIELDS = (
+    *SOURCE_FIELDS,
+    "holds",
+    "when",
+    "within",
+    "then",
+    "again",
+    "eventually",
+    "limits",
+    "file",
+    "function",
+    "after",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +82,7 @@ class Invariant:
         file: Python file of the mission with `function`; None without it.
         function: function of the mission that judges the messages; empty for none.
         after_ns: virtual time in ns from which on it applies.
+        limits: limits that the measurements of the packets must keep, `RED`, or `YELLOW` for both; empty for none.
     """
 
     name: str
@@ -83,6 +96,7 @@ class Invariant:
     file: Path | None = None
     function: str = ""
     after_ns: int = 0
+    limits: str = ""
 
     @property
     def predicates(self) -> tuple[Predicate, ...]:
@@ -119,7 +133,8 @@ def _invariant(name: str, entry: Marked, mistakes: Mistakes) -> Invariant:
     is_known = not mistakes.errors  # otherwise a field is missing because its name is wrong
     if len(kinds) > 1 or (not kinds and is_known):
         said = f"has {' and '.join(kinds)}; write one of them" if kinds else "missing condition"
-        text = 'give `holds: "msg.data < 3"`, `file` and `function`, `within` and `then`, `again`, or `eventually`'
+        text = 'give `holds: "msg.data < 3"`, `file` and `function`, `within` and `then`, `again`, `eventually`'
+        text += ", or `limits: red`"
         mistakes.add(entry.fail(f"{said}; {text}"))
     selection = mistakes.attempt(partial(read_selection, fields))
     if selection == Selection() and "function" not in fields and is_known:
@@ -142,6 +157,7 @@ def _invariant(name: str, entry: Marked, mistakes: Mistakes) -> Invariant:
         file=file,
         function=function,
         after_ns=(mistakes.attempt(fields["after"].time) or 0) if "after" in fields else 0,
+        limits=mistakes.attempt(partial(_limits, fields)) or "" if "limits" in fields else "",
     )
 
 
@@ -197,6 +213,16 @@ def _again(entry: Marked) -> int:
     if not time_ns:
         raise entry.fail("must be the longest time between two such messages, such as 0.5 s, not 0")
     return time_ns
+
+
+def _limits(fields: Mapping[str, Marked]) -> str:
+    """Return the limits that measurements must keep."""
+    entry = fields["limits"]
+    if entry.value not in (RED, YELLOW):
+        raise entry.fail(f"must be {RED} or {YELLOW}, not {entry.shown()}")
+    if "topic" in fields:
+        raise fields["topic"].fail("cannot be combined with `limits`; only packets have them: `packet: NAME`")
+    return str(entry.value)
 
 
 def _function(entry: Marked, fields: Mapping[str, Marked]) -> tuple[Path | None, str]:

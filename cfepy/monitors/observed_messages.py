@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from cfepy.attachment import Attachment
-from cfepy.ground import Dictionary, MessageDecoder, dictionary_of
+from cfepy.ground import Dictionary, MessageDecoder, dictionary_of, measured_fields
 from cfepy.mission import Mission, MissionSpec, PacketWatch, Seen, TopicMessage, TopicWatch
-from cfepy.msg import Command, get_fcn_code
+from cfepy.msg import Command, Measurement, Telemetry, get_fcn_code
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError, together
 from cfepy.units import NS_PER_S
@@ -134,6 +134,12 @@ class MessageWatch(Attachment):
         if packets:
             self._watches.append(PacketWatch(self._take_packet, self._names.__contains__))
         self._mission: Mission | None = None
+
+    def measured(self, packet: str) -> Mapping[str, Measurement]:
+        """Return the measurements of a telemetry packet, by the path of the field."""
+        found = self._dictionary.telemetry.get(packet)
+        found = self._dictionary.telemetry_of(packet) if found is None else found
+        return measured_fields(found.payload) if isinstance(found, Telemetry) else {}
 
     def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
         for each in self._watches:
