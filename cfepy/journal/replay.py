@@ -200,7 +200,9 @@ class Replay:
         return self.journal.end.beside if self.is_whole and self.journal.end is not None else []
 
     def make_course(self, mission: Mission, seconds: float | None, script: ScriptRun | None) -> ReplayCourse:
-        """Return the course to fly."""
+        """Return the course to fly. Steps of the script are reported with the path that it had in the recorded run."""
+        if script is not None:
+            script.script = replace(script.script, file=script.script.file.removeprefix(self.stage.root))
         self._course = ReplayCourse(mission, seconds, script, self.journal, self.until_ns)
         return self._course
 

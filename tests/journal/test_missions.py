@@ -44,6 +44,17 @@ def test_script_is_replayed(tmp_path: Path) -> None:
     assert outcome.ok
 
 
+def test_failed_step_has_the_recorded_path_of_its_script(tmp_path: Path) -> None:
+    script = tmp_path / "never.txt"
+    script.write_text("at 1  expect event CFE_ES 99 within 0.5\n", encoding="utf-8")
+    flown = assert_replays(plan_for("lab", script=str(script)), tmp_path)
+    again = replay(read_journal(tmp_path / "run.cfepy")).flown
+    assert again.outcome is not None
+    assert again.outcome.file == str(script), "and not its place in the folder of the replay"
+    assert again.results.problems == flown.results.problems
+    assert again.results.problems[0].startswith(f"step {script}:1 failed: at 1")
+
+
 @pytest.mark.slow
 def test_faults_are_replayed(tmp_path: Path) -> None:
     faults = tmp_path / "faults.yaml"
