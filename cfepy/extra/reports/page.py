@@ -452,7 +452,7 @@ def _applications(results: Results, numbers: Numbers) -> str:
     about = (
         f"Processor time is virtual: the board profile defines the cost of calls. All applications used {total:.2%}."
     )
-    inside = table("Applications", heads, rows, (2, 3, 4, 5), class_="sortable")
+    inside = table("Applications", heads, rows, (2, 3, 4, 5), class_="sortable log")
     return section("Applications", "applications", inside, about)
 
 

@@ -19,6 +19,7 @@ from cfepy.ground.series import SeriesRecorder
 from dev.pages.browser import Browser, find_browser
 from tests.extra.reports import looked_at
 from tests.extra.reports.conftest import Shown
+from tests.mission.flights import write_mission
 
 NEEDS = "needs a browser: install the package chromium"
 IS_REQUIRED = os.environ.get("CFEPY_BROWSER") == "required"  # .ci/run sets this if it has installed one
@@ -260,6 +261,24 @@ def test_race_of_a_journal_is_shown_exactly_and_fits_the_window(browser: Browser
         assert browser.evaluate(overflow) == [0]
     acts = "[...document.querySelectorAll('.story .act')].map(act => getComputedStyle(act, '::before').content)"
     assert browser.evaluate(f"{acts}.some(text => text.includes('ODOMETER.right_ti.2'))"), "a narrow window names tasks"
+
+
+DIES = """
+    def DIES_Main(cfe):
+        cfe.es.run_loop()
+        raise ValueError("a_word_that_has_no_blank_at_which_a_line_could_end_" * 4)
+"""
+
+
+def test_tables_fit_a_window_of_1280_pixels(browser: Browser, tmp_path: Path) -> None:
+    mission = write_mission(tmp_path, "CFE_APP, dies, DIES_Main, DIES, 50, 8192, 0, 1;\n!\n", dies=DIES)
+    collector, page = Collector(), tmp_path / "wide.html"
+    flown = looked_at.fly(mission, collector, seconds=1)
+    page.write_text(page_of(flown, collector, About("", "fifo", mission)), encoding="utf-8")
+    browser.resize(1280, 900)
+    browser.open(page)
+    wide = "[...document.querySelectorAll('.scroll')].filter(box => box.scrollWidth > box.clientWidth)"
+    assert browser.evaluate(f"{wide}.map(box => box.ariaLabel)") == []
 
 
 def test_events_are_filtered(opened: Browser, shown: Shown) -> None:
