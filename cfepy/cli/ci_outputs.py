@@ -15,7 +15,6 @@ from cfepy import __version__
 from cfepy.cli.json_output import json_text, write_text
 from cfepy.status import UsageError
 from cfepy.writing.ci_findings import CiFinding, FindingPlace, annotation
-from cfepy.writing.escapes import for_data
 from cfepy.writing.junit import Suite
 from cfepy.writing.sarif_log import SarifRule, sarif_log
 
@@ -53,10 +52,9 @@ def write_ci_outputs(
 
 def print_annotations(findings: Iterable[CiFinding], base: Path) -> None:
     """Print findings as GitHub's annotations."""
-    stream = for_data(sys.stdout)
     for each in findings:
-        print(annotation(each, base), file=stream)
-    stream.flush()
+        print(annotation(each, base))
+    sys.stdout.flush()
 
 
 def annotate(error: UsageError) -> None:

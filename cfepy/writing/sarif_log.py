@@ -22,14 +22,14 @@ class SarifRule(NamedTuple):
 
     Attributes:
         id: as in `CiFinding.rule`.
-        what: its name in some words.
-        why: a sentence about it; empty if `what` is enough.
+        name: its name in some words.
+        why: a sentence about it; empty if `name` is enough.
         remedy: a sentence with the remedy; empty if there is no general one.
         level: of its findings.
     """
 
     id: str
-    what: str
+    name: str
     why: str = ""
     remedy: str = ""
     level: str = ERROR
@@ -61,10 +61,10 @@ def sarif_log(
 
 
 def _rule(rule: SarifRule) -> dict[str, Any]:
-    full = {"fullDescription": {"text": f"{rule.what}: {rule.why}"}} if rule.why else {}
+    full = {"fullDescription": {"text": f"{rule.name}: {rule.why}"}} if rule.why else {}
     return {
         "id": rule.id,
-        "shortDescription": {"text": rule.what},
+        "shortDescription": {"text": rule.name},
         **full,
         **({"help": {"text": rule.remedy}} if rule.remedy else {}),
         "defaultConfiguration": {"level": rule.level},

@@ -64,7 +64,7 @@ def test_demand_that_was_never_judged_is_reported(tmp_path: Path, demands: str) 
     "command",
     [
         ["run", "--no-console"],
-        ["explore", "--seeds", "1", "--jobs", "1", "--quiet"],
+        ["explore", "--seeds", "1", "--jobs", "1"],
         ["graph", "--mids"],
         ["rostopic", "echo", "/energy", "-n", "1"],
         ["tlm"],
@@ -90,7 +90,7 @@ def test_commands_report_an_invariant_that_was_never_judged(
 @pytest.mark.slow
 def test_explore_reports_a_measure_without_values(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = str(mission(tmp_path, ""))
-    main(["explore", folder, "--for", "1.5", "--seeds", "1", "--jobs", "1", "--quiet", "--worst", "age:/enrgy"])
+    main(["explore", folder, "--for", "1.5", "--seeds", "1", "--jobs", "1", "--worst", "age:/enrgy"])
     told = "no value of age:/enrgy was measured: no message of /enrgy was sent; did you mean /energy?"
     assert told in capsys.readouterr().out
 

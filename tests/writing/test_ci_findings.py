@@ -13,7 +13,7 @@ BASE = Path("/work/repository")
 ARM = FindingPlace(BASE / "src" / "arm, left.py", 12, 3)
 
 
-def test_annotation_escapes_what_would_end_it() -> None:
+def test_annotation_escapes_percent_signs_and_newlines() -> None:
     found = CiFinding("data-race", "100 % lost\r\nreplay: cfepy run ::", (ARM,))
     assert annotation(found, BASE) == (
         "::error file=src/arm%2C left.py,line=12,col=3,title=cfepy%3A data-race::100 %25 lost%0D%0Areplay: cfepy run ::"
