@@ -7,7 +7,8 @@ task that uses the CPU may be further.
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from itertools import repeat
 from pathlib import PurePath
 
@@ -37,9 +38,35 @@ class TraceText:
         self._pipes: dict[int, str] = {}
 
     def watch(self, mission: Mission) -> None:
-        """Learn names of tasks, pipes and messages from this mission."""
+        """Learn names of tasks, pipes and messages from this mission, before any part of it has run."""
         self._mission = mission
         self._names = names_of(mission.spec)
+        kernel = mission.kernel
+        if kernel.record is not None:
+            kernel.record = self._naming(mission, kernel.record)
+            mission.cfe.sb.listen(partial(self._heard, mission))  # the buses after a reset use the kernel's `record`
+
+    def _naming(self, mission: Mission, record: Callable[[bytes], None]) -> Callable[[bytes], None]:
+        """Return the kernel's `record`, which also learns the names of tasks and pipes that are gone when records
+        become text.
+        """
+        kernel, tasks = mission.kernel, self._tasks
+
+        def note(mark: bytes) -> None:
+            record(mark)
+            if mark[:1] in (tr.DISPATCH, tr.EXIT):
+                (number,) = _number(mark)
+                if number not in tasks:
+                    tasks[number] = kernel.current.name
+            else:
+                self._heard(mission, mark)
+
+        return note
+
+    def _heard(self, mission: Mission, record: bytes) -> None:
+        """Learn the names of pipes when a record is about an unknown one."""
+        if record[:1] in (tr.RECEIVE, tr.DROP) and _number(record)[0] not in self._pipes:
+            self._learn_pipes(mission)
 
     def lines(self, records: Sequence[bytes]) -> Iterator[str]:
         """Yield a line without its line end for each record, except those that move the clock."""
@@ -61,10 +88,13 @@ class TraceText:
             return
         for task in mission.kernel.tasks:
             self._tasks.setdefault(task.ident & 0xFFFF, task.name)
-        for pipe in mission.cfe.sb.pipes:
-            self._pipes[pipe.pipe_id & 0xFFFF] = pipe.name
+        self._learn_pipes(mission)
         if mission.ros is not None:
             self._names.update((row.msg_id, row.name) for row in mission.ros.topics())
+
+    def _learn_pipes(self, mission: Mission) -> None:
+        for pipe in mission.cfe.sb.pipes:
+            self._pipes[pipe.pipe_id & 0xFFFF] = pipe.name
 
     def _mark(self, record: bytes) -> str | None:
         kind = record[:1]
@@ -95,6 +125,17 @@ class TraceText:
             return f"drop at {self._pipe_name(number)}"
         verb = {tr.PUT: "put into queue", tr.GET: "get from queue"}.get(kind, f"record {kind!r}")
         return f"{verb} {number}"
+
+    def subject(self, record: bytes) -> str:
+        """Return the topic or packet of a message, also of one that the bus does not carry; its MsgId if it has no
+        name.
+        """
+        if record[:1] == tr.UNSENT:
+            topic, _, record = record[1:].partition(b"\0")
+            if topic:
+                return topic.decode()
+        msg_id = record[0] << 8 | record[1]
+        return self._names.get(msg_id) or f"0x{msg_id:04X}"
 
     def _packet(self, packet: bytes) -> str:
         msg_id = packet[0] << 8 | packet[1]

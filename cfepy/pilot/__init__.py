@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.pilot.determinism import RecordReader, RunEndedError
+    from cfepy.pilot.determinism_look import place_text
     from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
     from cfepy.pilot.failure_places import SourcePlaces
     from cfepy.pilot.idleness import idle_nodes
@@ -45,7 +47,9 @@ __all__ = [
     "Host",
     "LiveRun",
     "MissionProblem",
+    "RecordReader",
     "Results",
+    "RunEndedError",
     "RunPlan",
     "RunProblem",
     "SentNames",
@@ -64,6 +68,7 @@ __all__ = [
     "mark",
     "never_happened",
     "no_such_app",
+    "place_text",
     "problem_of",
     "problems_of",
     "problems_so_far",
@@ -75,6 +80,8 @@ if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".determinism": ("RecordReader", "RunEndedError"),
+            ".determinism_look": ("place_text",),
             ".mission_check": ("MissionProblem", "check_mission", "problem_of", "shown_file"),
             ".peers": ("boot_of",),
             ".run_loop": (

@@ -141,7 +141,7 @@ class Parting:
 
 
 def first_parting(runs: Sequence[RecordReader]) -> tuple[Parting | None, int]:
-    """Compare runs with the first one, to their end or to the first difference.
+    """Compare runs with the first one, to their end or to the first difference, with which `pending` begins then.
 
     Args:
         runs: two or more.
@@ -164,6 +164,8 @@ def first_parting(runs: Sequence[RecordReader]) -> tuple[Parting | None, int]:
         found = [Parting(i, agreed + _prefix(ahead[0], other)) for i, other in enumerate(ahead) if other != ahead[0]]
         if found:
             earliest = min(found, key=lambda parting: parting.index)
+            for run in runs:
+                del run.pending[: earliest.index - agreed]
             return earliest, earliest.index
         for run in runs:
             del run.pending[:common]

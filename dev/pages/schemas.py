@@ -272,6 +272,7 @@ def _invariant() -> Schema:
         "then": answer,
         "again": TIME,
         "eventually": TEXT,
+        "limits": one_of(invariants.LIMITS),
         "file": TEXT,
         "function": TEXT,
         "after": TIME,

@@ -55,8 +55,9 @@ def _add_diff(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
         "diff",
         help="show where two runs differ first",
         examples=("cfepy diff good.cfepy bad.cfepy", "cfepy diff monday.trace tuesday.trace --lines 20"),
-        description="Show the first record in which two runs differ, the records before it, and other differences. "
-        "Journals are replayed for that, each with its own files.",
+        description="Report where two runs differ first: which timer, which message with which values, or which step "
+        "of a task, with its line of source; then the differences of each topic. Journals are replayed for that, "
+        "each with its own files.",
         epilog=_DIFF_STATUS,
     )
     diff.add_argument("one", metavar="A", help="a journal, or a file that `cfepy run --trace FILE` wrote")
@@ -64,8 +65,7 @@ def _add_diff(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> 
     diff.add_argument(
         "--lines",
         type=whole_number_of,
-        default=6,
         metavar="N",
-        help="records that are shown before the one that differs",
+        help="also show the records: the two that differ, with stacks and bytes, and N before them",
     )
     diff.set_defaults(module="cfepy.cli.journal.diff")

@@ -6,23 +6,32 @@ import argparse
 import contextlib
 import sys
 from collections import deque
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from io import TextIOWrapper
-from itertools import zip_longest
+from itertools import accumulate, zip_longest
 from pathlib import Path
 from typing import Any, TextIO
 
+from cfepy import trace as tr
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.run.compared_run import ComparedRun
 from cfepy.cli.run.compared_runs import FirstDifference, facts_of, failure, show_sides, started
+from cfepy.cli.run.record_event import RecordEvent, difference_lines, is_message, line_difference, value_texts
 from cfepy.journal import Journal, differences, is_journal, read_journal
-from cfepy.pilot import SUDDEN
-from cfepy.pilot.determinism import RunEndedError, first_parting
+from cfepy.msg import CMD_HEADER_SIZE, PRIMARY_HEADER_SIZE, TLM_HEADER_SIZE
+from cfepy.pilot import SUDDEN, RecordReader, RunEndedError
+from cfepy.pilot.determinism import first_parting
 from cfepy.pilot.determinism_look import Look
 from cfepy.reading.input_files import open_input
 from cfepy.status import UsageError
 
-MOST_FIELDS = 12
+DEFAULT_LINES = 6
+Decoded = tuple[str, Mapping[str, str]]
+"""The name of a message and its fields."""
+MOST_TOPICS = 12
+MOST_BYTES = 40_000  # of messages that are decoded, because they go through a command line
+_COMMAND, _HAS_SECONDARY = 0x10, 0x08  # bits of the first byte of a packet
 
 
 def compare_texts(one: str, other: str, before: int, stream: TextIO) -> bool:
@@ -69,6 +78,8 @@ def _texts(lines: TextIO, file: str) -> Iterator[str]:
 
 def _show(number: int, before: deque[str], sides: dict[str, str], stream: TextIO) -> None:
     print(f"the first {number - 1:,} lines are alike; line {number:,} differs", file=stream)
+    for text in line_difference(list(sides.items())):
+        print(f"  {text}", file=stream)
     if before:
         print("\nbefore it, in both:", file=stream)
         stream.writelines(f"  {line}" for line in before)
@@ -86,13 +97,14 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: a file is neither a journal nor a trace, or one of each kind.
     """
     paths = (arguments.one, arguments.other)
-    if arguments.lines < 0:
+    if arguments.lines is not None and arguments.lines < 0:
         raise UsageError(f"must be 0 or more, not {arguments.lines}", field="--lines")
     kinds = {_is_journal(path) for path in paths}
     if len(kinds) > 1:
         raise UsageError("cannot compare a journal with a trace; give two journals, or two files of --trace")
     if not kinds.pop():
-        return ENDED_WELL if compare_texts(*paths, arguments.lines, sys.stdout) else FOUND_PROBLEMS
+        before = DEFAULT_LINES if arguments.lines is None else arguments.lines
+        return ENDED_WELL if compare_texts(*paths, before, sys.stdout) else FOUND_PROBLEMS
     return _Comparison(read_journal(paths[0]), read_journal(paths[1]), arguments.lines).run()
 
 
@@ -106,7 +118,7 @@ def _is_journal(path: str) -> bool:
 class _Comparison:
     """Compares two journals by replaying both."""
 
-    def __init__(self, one: Journal, other: Journal, lines: int) -> None:
+    def __init__(self, one: Journal, other: Journal, lines: int | None) -> None:
         self._journals = (one, other)
         self._lines = lines
 
@@ -122,29 +134,50 @@ class _Comparison:
             if not is_same:
                 print("but the numbers of the report differ; compare them with cfepy replay --json")
             return ENDED_WELL if is_same else FOUND_PROBLEMS
-        index, agreed = self._first_difference()
+        runs = (one.path, other.path)
+        index, agreed, topics = self._first_difference()
         if index is None:
             print(f"all {agreed:,} records that can be replayed are alike" if agreed else "nothing was compared")
             return self._without_difference()
-        facts = [self._facts(each, index) for each in self._journals]
-        looks = (Look.from_dict(facts[0]), Look.from_dict(facts[1]))
-        print(f"\nthe first {index:,} records are alike; record {index:,} differs (counted from 0)")
-        show_sides(FirstDifference((one.path, other.path), index, looks), sys.stdout)
-        _show_fields(facts[0]["fields"], facts[1]["fields"])
+        differing = ranked(topics)
+        pairs = to_decode(differing)
+        facts = [
+            self._facts(each, index, [pair[side].hex() for pair in pairs]) for side, each in enumerate(self._journals)
+        ]
+        events = (RecordEvent(**facts[0]["event"]), RecordEvent(**facts[1]["event"]))
+        until = f", until {float(facts[0]['last'].partition(' ')[0]):.6f} s" if index else ""
+        print(f"\nthe first {index:,} records are alike{until}; then the runs differ:")
+        for line in difference_lines(*events, runs):
+            print(f"  {line}")
+        if topics:
+            print("\nfrom there on, by topic and packet:")
+        decoded = [each["decoded"] for each in facts]
+        for line in topic_lines(differing, decoded, len(topics) - len(differing), runs):
+            print(f"  {line}")
+        if self._lines is not None:
+            looks = (Look.from_dict(facts[0]), Look.from_dict(facts[1]))
+            print(f"\nrecord {index:,} is the first that differs (counted from 0)")
+            show_sides(FirstDifference(runs, index, looks), sys.stdout)
         return FOUND_PROBLEMS
 
-    def _first_difference(self) -> tuple[int | None, int]:
+    def _first_difference(self) -> tuple[int | None, int, list[TopicDifference]]:
+        """Return the number of the first record that differs, the number of equal records, and the differences of all
+        messages after it.
+        """
         with contextlib.ExitStack() as stack:
             runs = [stack.enter_context(started(_plan(each))) for each in self._journals]
+            readers = [run.reader for run in runs]
             try:
-                parting, agreed = first_parting([run.reader for run in runs])
+                parting, agreed = first_parting(readers)
             except RunEndedError:
                 raise failure(runs) from None
-            return (None if parting is None else parting.index), agreed
+            topics = [] if parting is None else list(rest_of(readers).values())
+            return (None if parting is None else parting.index), agreed, topics
 
-    def _facts(self, journal: Journal, index: int) -> dict[str, Any]:
-        """Return the facts that a replay shows at a record."""
-        with started(_plan(journal, index, self._lines)) as run:
+    def _facts(self, journal: Journal, index: int, decode: Sequence[str]) -> dict[str, Any]:
+        """Return the facts that a replay shows at a record, with the names and fields of other records."""
+        lines = DEFAULT_LINES if self._lines is None else self._lines
+        with started(_plan(journal, index, lines, decode)) as run:
             return facts_of(run)
 
     def _without_difference(self) -> int:
@@ -162,16 +195,125 @@ class _Comparison:
         return FOUND_PROBLEMS
 
 
-def _show_fields(one: Mapping[str, str], other: Mapping[str, str]) -> None:
-    """Print the fields in which two packets differ, among the fields that both have."""
-    names = [name for name in one if name in other and one[name] != other[name]]
-    if names:
-        print("\nfields that differ:")
-    for name in names[:MOST_FIELDS]:
-        print(f"  {name}: {one[name]}, {other[name]}")
-    if len(names) > MOST_FIELDS:
-        print(f"  and {len(names) - MOST_FIELDS} more")
+def _plan(journal: Journal, look_at: int | None = None, lines: int = 0, decode: Sequence[str] = ()) -> ComparedRun:
+    place = str(Path(journal.path).resolve())
+    return ComparedRun(journal=place, look_at=look_at, lines=lines, decode=tuple(decode))
 
 
-def _plan(journal: Journal, look_at: int | None = None, lines: int = 0) -> ComparedRun:
-    return ComparedRun(journal=str(Path(journal.path).resolve()), look_at=look_at, lines=lines)
+# -- messages after the first difference -------------------------------------------------------------------------------
+# The n-th message of a topic in one run is compared with the n-th in the other, by its contents without its header.
+
+
+@dataclass(slots=True)
+class TopicDifference:
+    """The messages of a topic or packet after the first difference.
+
+    Attributes:
+        counts: numbers of messages in the two runs.
+        other: number of pairs with different contents.
+        pair: the first such pair, two records; before there is one, a message twice.
+    """
+
+    counts: list[int] = field(default_factory=lambda: [0, 0])
+    other: int = 0
+    pair: tuple[bytes, bytes] = (b"", b"")
+    _waiting: tuple[deque[bytes], deque[bytes]] = field(default_factory=lambda: (deque(), deque()))
+
+    def add(self, side: int, record: bytes) -> None:
+        """Add a message of run 0 or 1."""
+        if not any(self.counts):
+            self.pair = (record, record)
+        self.counts[side] += 1
+        mine, theirs = self._waiting[side], self._waiting[1 - side]
+        if not theirs:
+            mine.append(record)
+            return
+        pair = (record, theirs.popleft()) if side == 0 else (theirs.popleft(), record)
+        if _contents(pair[0]) != _contents(pair[1]):
+            self.pair = self.pair if self.other else pair
+            self.other += 1
+
+    @property
+    def is_same(self) -> bool:
+        """Whether both runs have the same messages."""
+        return not self.other and self.counts[0] == self.counts[1]
+
+
+def _contents(record: bytes) -> bytes:
+    if record[:1] == tr.UNSENT:
+        topic, _, packet = record[1:].partition(b"\0")
+        return packet if topic or not packet else _contents(packet)
+    if not record[0] & _HAS_SECONDARY:
+        return record[PRIMARY_HEADER_SIZE:]
+    return record[CMD_HEADER_SIZE if record[0] & _COMMAND else TLM_HEADER_SIZE :]
+
+
+def rest_of(runs: Sequence[RecordReader]) -> dict[bytes, TopicDifference]:
+    """Read two runs to their ends.
+
+    Args:
+        runs: the runs, at their first difference.
+
+    Returns:
+        The difference of each topic or packet, by MsgId or topic.
+    """
+    found: dict[bytes, TopicDifference] = {}
+    is_going_on = True
+    while is_going_on:
+        is_going_on = False
+        for side, run in enumerate(runs):
+            try:
+                run.fill()
+            except RunEndedError:
+                continue
+            is_going_on |= bool(run.pending)
+            for record in run.pending:
+                if is_message(record):
+                    found.setdefault(_key(record), TopicDifference()).add(side, record)
+            run.pending.clear()
+    return found
+
+
+def _key(record: bytes) -> bytes:
+    if record[:1] != tr.UNSENT:
+        return record[:2]
+    topic, _, packet = record[1:].partition(b"\0")
+    return topic or packet[:2]
+
+
+def ranked(topics: Iterable[TopicDifference]) -> list[TopicDifference]:
+    """Return the topics that differ: those with other values first, then those with other numbers of messages."""
+    return sorted((each for each in topics if not each.is_same), key=lambda each: (not each.other, -each.other))
+
+
+def to_decode(topics: Sequence[TopicDifference]) -> list[tuple[bytes, bytes]]:
+    """Return the pairs of the first topics, as many as a command line can hold."""
+    sizes = accumulate(len(each.pair[0]) + len(each.pair[1]) for each in topics)
+    return [each.pair for each, size in zip(topics[:MOST_TOPICS], sizes, strict=False) if size <= MOST_BYTES]
+
+
+def topic_lines(
+    ranked: Sequence[TopicDifference], decoded: Sequence[Sequence[Decoded]], same: int, runs: tuple[str, str]
+) -> Iterator[str]:
+    """Yield a line for each topic or packet that differs, and a line about the others.
+
+    Args:
+        ranked: the topics that differ, the most important first.
+        decoded: for each run, name and fields of the messages in the pairs of the first of these topics.
+        same: number of topics that do not differ.
+        runs: the names of the runs.
+    """
+    for each, (name, one_values), (_, other_values) in zip(ranked, *decoded, strict=False):
+        one, other = each.counts
+        parts = [f"{one} messages in {runs[0]}, {other} in {runs[1]}"] if one != other else []
+        if each.other:
+            parts.append(f"{each.other} of {min(one, other)} with other values")
+            values = value_texts(one_values, other_values)
+            parts += [f"the first: {'; '.join(values)}"] if values else []
+        way = " (not over the bus)" if each.pair[0][:1] == tr.UNSENT else ""
+        yield f"{name}{way}: {', '.join(parts)}"
+    if len(ranked) > len(decoded[0]):
+        yield f"and {len(ranked) - len(decoded[0])} more"
+    if same:
+        others = ("other" if same == 1 else "others") if ranked else ("topic" if same == 1 else "topics and packets")
+        yield f"{same} {others}: the same values"

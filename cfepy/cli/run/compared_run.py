@@ -11,11 +11,14 @@ import json
 import os
 import sys
 import tempfile
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import NoReturn
 
 from cfepy.attachment import Recorder
 from cfepy.cli.main import BAD_USAGE, ENDED_WELL
+from cfepy.cli.run.record_event import MESSAGE, OTHER, OVER, RecordEvent, due_timer, is_message, timer_line
 from cfepy.cli.trace_text import TraceText
 from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.ground import dictionary_of, flat, library_of, plain, text_of, topics_of
@@ -27,7 +30,7 @@ from cfepy.pilot.determinism import ComparedTrace, RecordWriter, hear_calls
 from cfepy.pilot.determinism_look import Look, LookingTrace, outside_lines
 from cfepy.pilot.host_access import OpenWorld
 from cfepy.status import CfeError, UsageError
-from cfepy.trace import UNSENT
+from cfepy.trace import TIME, UNSENT
 
 _FIRST_MARK = 0x20  # smaller first bytes begin packets
 LINES = 6  # records that are shown before the one that is looked at
@@ -78,6 +81,7 @@ class ComparedRun:
         look_at: number of the record to look at; None writes all records.
         ordered_sets: all nodes get ordered sets, regardless of the mission file.
         lines: number of records to show before the one that is looked at.
+        decode: records, in hexadecimal digits, whose names and fields are wanted with the look.
         scratch: folder for temporary files; empty for the computer's default.
     """
 
@@ -87,6 +91,7 @@ class ComparedRun:
     look_at: int | None = None
     ordered_sets: bool = False
     lines: int = LINES
+    decode: tuple[str, ...] = ()
     scratch: str = ""
 
     def to_json(self) -> str:
@@ -131,11 +136,16 @@ class Lookout(Recorder):
         writer: receives the look.
         index: number of the record.
         lines: how many records before it are shown.
+        decode: as in `ComparedRun`.
         root: folder in which the files of a journal were unpacked for this run, if they were.
     """
 
-    def __init__(self, writer: RecordWriter, index: int, lines: int, root: str = "") -> None:
+    def __init__(
+        self, writer: RecordWriter, index: int, lines: int, decode: Sequence[str] = (), root: str = ""
+    ) -> None:
         self._before = lines
+        self._last = ""  # the line of the record before the one that is looked at
+        self._decode = [bytes.fromhex(each) for each in decode]
         self._root = root
         self.trace = self._looking = LookingTrace(index, self._lines, self._seen)
         self._writer = writer
@@ -153,15 +163,40 @@ class Lookout(Recorder):
         self._text.watch(mission)
 
     def _lines(self, records: list[bytes]) -> list[str]:
-        return list(self._text.lines(records))[-self._before - 1 :]
+        lines = list(self._text.lines(records))
+        if records[-1][:1] == TIME and self._mission is not None:  # such a record has no line of its own
+            lines.append(timer_line(due_timer(records[-1], self._mission)))
+        self._last = lines[-2] if len(lines) > 1 else ""
+        return lines[-self._before - 1 :]
 
     def _seen(self, look: Look) -> NoReturn:
         """Write the look and end the process. It is called deep inside the simulation, where a run cannot be ended
         properly.
         """
-        fields = {} if self._mission is None else fields_of(look.record, self._mission)
-        self._writer.end({**look.without_root(self._root).to_dict(), "fields": fields})
+        look = look.without_root(self._root)
+        event = self._event(look).to_dict()
+        decoded = [self._decoded(record) for record in self._decode]
+        self._writer.end({**look.to_dict(), "last": self._last, "event": event, "decoded": decoded})
         os._exit(ENDED_WELL)
+
+    def _event(self, look: Look) -> RecordEvent:
+        record, mission = look.record, self._mission
+        if not record or mission is None:
+            return RecordEvent(OVER, self._text.now_ns)
+        if record[:1] == TIME:
+            found = due_timer(record, mission)
+            return replace(found, place=found.place.removeprefix(self._root))
+        _, task, what = look.lines[-1].split(" ", 2)
+        culprit = look.culprit
+        place = "" if culprit is None else f"{Path(culprit.file).name}:{culprit.number}: {culprit.source}"
+        if is_message(record):
+            name, fields = self._decoded(record)
+            return RecordEvent(MESSAGE, self._text.now_ns, task, name, place, fields, record.hex())
+        return RecordEvent(OTHER, self._text.now_ns, task, what, place)
+
+    def _decoded(self, record: bytes) -> tuple[str, dict[str, str]]:
+        """Return the topic or packet of a message, and its fields."""
+        return self._text.subject(record), {} if self._mission is None else fields_of(record, self._mission)
 
 
 def run(asked: ComparedRun) -> None:
@@ -208,7 +243,11 @@ def _run_again(asked: ComparedRun) -> None:
 
 def _recorder(asked: ComparedRun, world: OpenWorld, root: str = "") -> RecordPipe | Lookout:
     writer = RecordWriter(open(descriptor_of(asked.pipe), "wb"))  # noqa: SIM115  # as long as the process
-    return RecordPipe(writer, world) if asked.look_at is None else Lookout(writer, asked.look_at, asked.lines, root)
+    return (
+        RecordPipe(writer, world)
+        if asked.look_at is None
+        else Lookout(writer, asked.look_at, asked.lines, asked.decode, root)
+    )
 
 
 def _with_ordered_sets(spec: MissionSpec) -> MissionSpec:
