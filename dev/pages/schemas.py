@@ -20,7 +20,7 @@ from cfepy.config.versions import RELEASES
 from cfepy.faults import fault_plan, kinds
 from cfepy.mission import cpp_nodes, drawn_parameters, limits, mission_file, parameter_files
 from cfepy.monitors import deadlines, invariants, selected_results
-from cfepy.msg import HIGHEST_VALID_MSG_ID
+from cfepy.msg import HIGHEST_VALID_MSG_ID, RED, YELLOW
 from cfepy.psp import profile
 from cfepy.reading.marked_yaml import MOST_SECONDS
 from cfepy.units import TIME_UNITS
@@ -272,7 +272,7 @@ def _invariant() -> Schema:
         "then": answer,
         "again": TIME,
         "eventually": TEXT,
-        "limits": one_of(invariants.LIMITS),
+        "limits": one_of((YELLOW, RED)),
         "file": TEXT,
         "function": TEXT,
         "after": TIME,

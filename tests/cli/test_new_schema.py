@@ -143,6 +143,8 @@ MISSIONS = {
     "invariants: {near: {topic: /scan, holds: msg.range > 0.2}}": True,
     "invariants: {near: {topic: scan, holds: msg.range > 0.2}}": False,
     "invariants: {near: {topic: /scan, hold: msg.range > 0.2}}": False,
+    "invariants: {cold: {packet: HEATER_HK_TLM, limits: red}}": True,
+    "invariants: {cold: {packet: HEATER_HK_TLM, limits: orange}}": False,
     "invariants: {answer: {topic: /a, within: 0.5 s, then: {topic: /b}}}": True,
     "results: {/odom: last}": True,
     "results: {/odom: {compare: last, ignore: [header.stamp]}}": True,
