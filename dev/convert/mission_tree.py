@@ -53,7 +53,7 @@ class MissionTree:
             The names of their applications.
         """
         made = self._folder / "apps" / name
-        if main(["convert", *words, "-o", str(made), "--profile", profile]):
+        if main(["convert", *words, "-o", str(made), "--node-profile", profile]):
             raise SystemExit(f"{words[0]} could not be converted")
         with (self._folder / TARGETS).open("a", encoding="utf-8") as targets:
             targets.write(f"include(${{MISSION_SOURCE_DIR}}/apps/{name}/targets.cmake)\n")

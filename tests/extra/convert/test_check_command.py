@@ -32,7 +32,7 @@ def checked(folder: Path, text: str, *more: str) -> int:
 
 def rules_of(folder: Path, text: str, profile: str = "host") -> set[str]:
     """Return the rules of the errors."""
-    status = checked(folder, text, "--profile", profile, "--json", str(folder / "found.json"))
+    status = checked(folder, text, "--node-profile", profile, "--json", str(folder / "found.json"))
     (node,) = json.loads((folder / "found.json").read_text(encoding="utf-8"))["nodes"]
     assert node["refused"] == (status == 1)
     return {each["rule"] for each in node["found"] if each["level"] == "error"}
@@ -43,7 +43,7 @@ def test_a_node_that_converts(
     tmp_path: Path, profile: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    assert checked(tmp_path, NODE, "--profile", profile) == 0
+    assert checked(tmp_path, NODE, "--node-profile", profile) == 0
     found, memory, count = capsys.readouterr().out.splitlines()
     assert found.startswith("ear.cpp:8:25: warning: a queue of 1,000: 64 messages are kept: ")
     assert found.endswith(" [queue-large]")
@@ -69,7 +69,9 @@ def test_source_refused_by_the_compiler_is_never_clean(tmp_path: Path, old: str,
 
 
 def test_finding_of_both_passes_is_reported_once(tmp_path: Path) -> None:
-    checked(tmp_path, NODE.replace("ros::spin();", "throw 1;"), "--profile", "pool", "--json", str(tmp_path / "f.json"))
+    checked(
+        tmp_path, NODE.replace("ros::spin();", "throw 1;"), "--node-profile", "pool", "--json", str(tmp_path / "f.json")
+    )
     (node,) = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))["nodes"]
     assert [each["rule"] for each in node["found"]].count("throw") == 1
 

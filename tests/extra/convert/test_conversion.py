@@ -148,7 +148,7 @@ def test_texts_are_quoted_as_in_c() -> None:
 def test_unused_parts_of_the_library_are_excluded(package: Path, tmp_path: Path) -> None:
     """Messages of unused parts have no capacity, so no strict node could be built beside them."""
     out = tmp_path / "made"
-    assert convert(package, out, "--profile", "strict") == 0
+    assert convert(package, out, "--node-profile", "strict") == 0
     cmake = (out / "roscfe/roscfe.cmake").read_text(encoding="utf-8")
     assert "/src/topics.cpp" in cmake
     assert "/src/tf/" not in cmake

@@ -35,7 +35,7 @@ def cpp_nodes_config(arguments: argparse.Namespace) -> CppNodesConfig:
         said = cpp_nodes_of(arguments.cpp_nodes)
     else:
         said = CppNodesConfig() if arguments.ids is None else read_sections(arguments.ids).cpp_nodes
-    return said if arguments.profile is None else replace(said, profile=arguments.profile)
+    return said if arguments.node_profile is None else replace(said, profile=arguments.node_profile)
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -52,7 +52,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     convert.add_argument("words", metavar="WORD", nargs="+", help=_WORDS)
     add_output(convert, "a folder of the name here")
     convert.add_argument(
-        "--profile",
+        "--node-profile",
         choices=("host", "pool", "strict"),
         help="rules for the nodes: host allows exceptions and the heap; pool has an arena in place of the heap, and no "
         "exceptions; strict allows neither (default: the profile of --cpp-nodes, or host)",
