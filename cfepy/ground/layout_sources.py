@@ -1,6 +1,6 @@
 """The layouts that the ground names of a compiled application declare, read from the source without executing it.
 
-`Layout("HEATER_HkTlm_t", [("Value", "u16")])` is evaluated with the constants, layouts and value names that stand above
+`Layout("HEATER_HkTlm_t", [("Value", "u16")])` is evaluated with the constants, layouts and other declarations above
 it. A layout made in another way, such as in a loop, is unknown; its line is remembered.
 """
 
@@ -14,11 +14,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.mission import app_sources as sources
-from cfepy.msg import Layout, ValueNames
+from cfepy.msg import Layout, Measurement, ValueNames
 from cfepy.status import UsageError
 
 _TYPE = re.compile(r"(\w+)((?:\[\d+\])*)")
-_LAYOUT, _NAMES = "Layout", "ValueNames"
+_LAYOUT = "Layout"
+_KINDS: dict[str, Callable[..., Any]] = {"ValueNames": ValueNames, "Measurement": Measurement}
+"""The kinds of fields that have more than a type."""
 _SUMS: dict[type, Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -113,8 +115,12 @@ class _Reader:
             return "".join(str(self._value(each)) for each in node.values)
         if isinstance(node, ast.FormattedValue) and node.format_spec is None:
             return self._value(node.value)
-        if isinstance(node, ast.Call) and _called(node) in (_LAYOUT, _NAMES):
-            return self._layout(node) if _called(node) == _LAYOUT else self._names(node)
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            return -self._value(node.operand)
+        if isinstance(node, ast.Call) and _called(node) == _LAYOUT:
+            return self._layout(node)
+        if isinstance(node, ast.Call) and _called(node) in _KINDS:
+            return _KINDS[_called(node)](*map(self._value, node.args), **self._options(node))
         raise _UnknownValueError
 
     def _sum(self, node: ast.BinOp) -> Any:
@@ -124,9 +130,6 @@ class _Reader:
         if type(node.op) not in _SUMS or type(left) is not type(right):
             raise _UnknownValueError
         return _SUMS[type(node.op)](left, right)
-
-    def _names(self, node: ast.Call) -> ValueNames:
-        return ValueNames(*map(self._value, node.args), **self._options(node))
 
     def _options(self, node: ast.Call) -> dict[str, Any]:
         if any(each.arg is None for each in node.keywords):
@@ -150,7 +153,7 @@ class _Reader:
         counts: tuple[int, ...] = ()
         if isinstance(kind, tuple):
             kind, counts = kind[0], (kind[1],)
-        if isinstance(kind, ValueNames):
+        if isinstance(kind, ValueNames | Measurement):
             kind = kind.type
         if isinstance(kind, Layout):
             written = kind.name + "".join(f"[{count}]" for count in counts)

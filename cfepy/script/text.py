@@ -129,10 +129,24 @@ def seconds_ns(text: str) -> int:
     return round(number * NS_PER_S)
 
 
+WHEN = ("at", "after")
+"""Words before a step, for its time."""
+OTHER_WORDS = {
+    **dict.fromkeys(("cmd", "command"), "send NAME FIELD=VALUE"),
+    **dict.fromkeys(("wait", "sleep", "delay"), "after SECONDS"),
+    **dict.fromkeys(("check", "assert", "verify"), "expect"),
+    "pub": "publish",
+    "service": "call",
+    "restart": "reset",
+    **dict.fromkeys(("telemetry", "packet"), "tlm"),
+}
+"""Words of other tools for a step or a condition, and the words here."""
+
+
 def without_when(text: str) -> str:
     """Return a step's text without its leading time."""
     first, _, rest = text.partition(" ")
-    return rest.strip().partition(" ")[2].strip() if first in ("at", "after") else text
+    return rest.strip().partition(" ")[2].strip() if first in WHEN else text
 
 
 def choice(text: str, choices: Iterable[str], what: str) -> str:
@@ -149,6 +163,9 @@ def choice(text: str, choices: Iterable[str], what: str) -> str:
     known = list(choices)
     if text in known:
         return text
+    meant = OTHER_WORDS.get(text, "")
+    if meant.split(" ")[0] in (*known, *(WHEN if "send" in known else ())):
+        raise UsageError(f"invalid {what} {text!r}; write `{meant}`")
     hint = expected(text, known, likeness=0.5) if len(text) > LONGEST_SIGN else f"expected {listed(known)}"
     raise UsageError(f"invalid {what} {text!r}; {hint}")
 

@@ -72,6 +72,9 @@ def test_every_kind_of_step_is_understood(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("line", "said"),
     [
+        ("cmd CFE_ES_NOOP", "invalid step 'cmd'; write `send NAME FIELD=VALUE`"),
+        ("wait 2", "invalid step 'wait'; write `after SECONDS`"),
+        ("expect telemetry CFE_ES_HK_TLM", "invalid condition 'telemetry'; write `tlm`"),
         ("sned CFE_ES_NOOP", "invalid step 'sned'; did you mean send?"),
         ("at noon send CFE_ES_NOOP", "invalid number of seconds 'noon'; expected 0 to 1e+09"),
         ("at 2", "unexpected end of line; a step such as send or expect is missing"),
