@@ -78,7 +78,8 @@ def test_equal_layouts_have_no_problem(tmp_path: Path, library: Path, name: str)
 
 def test_measurements_have_the_type_of_their_raw_number(tmp_path: Path, library: Path) -> None:
     measured = 'VALUE = Measurement("{}", "degC", polynomial=(-40.0, 0.1), red=(-20, 60))\n'
-    ground = 'from cfepy.msg import Layout, Measurement\n{}SET = Layout("TEST_SetCmd_t", [("Value", VALUE), ("spare", "u16")])\n'
+    layout = 'SET = Layout("TEST_SetCmd_t", [("Value", VALUE), ("spare", "u16")])\n'
+    ground = "from cfepy.msg import Layout, Measurement\n{}" + layout
     assert problems(tmp_path, library, ground.format(measured.format("u16"))) == []
     [problem] = problems(tmp_path, library, ground.format(measured.format("i16")))
     assert problem.startswith("3: TEST_SetCmd_t.Value: is i16 at offset 0 here, but u16 at offset 0 in TEST.so")
