@@ -120,7 +120,8 @@ class Series:
         if not self._sent:
             return headline(self.name, f"none of {self.type}")
         ends = [self._read(self._sent[0]), self._read(self._sent[-1])]
-        rows = [(path, self.unit(path), *map(str, values)) for path, values in columns_of(ends)]
+        columns = ((path, self.engineering(path, values)) for path, values in columns_of(ends))
+        rows = [(path, self.unit(path), *map(str, values)) for path, values in columns]
         first, last = (f"at {self._sent[index].at_ns / NS_PER_S:.3f} s" for index in (0, -1))
         table = rows_of(("field", "unit", first, last), rows)
         count = f"{len(self):,} of {self.type}" if "/" in self.type else f"{len(self):,} packets of {self.type}"
@@ -189,7 +190,7 @@ class Series:
 
     def unit(self, field: str) -> str:
         """Return the unit of a field, defined by its message type or its measurement; "" if it is not known."""
-        measurement = self.measured.get(field) or self.measured.get(f"{field}[0]")
+        measurement = self.measurement(field)
         if measurement is not None:
             return measurement.unit
         return unit_at(self.messages[0], steps_of(field)) if len(self) else ""
@@ -207,14 +208,21 @@ class Series:
             raise UsageError("tables require the library pandas: pip install pandas") from None
         return DataFrame(self.columns(*fields), index=Index(self.times, name="time"))
 
+    def measurement(self, field: str) -> Measurement | None:
+        """Return the measurement of a field, or of the items of an array; None if it is not one."""
+        if not self.measured:
+            return None
+        path = path_of(steps_of(field))
+        return self.measured.get(path) or self.measured.get(f"{path}[0]")
+
     def engineering(self, path: str, column: NDArray[Any]) -> NDArray[Any]:
         """Return the engineering values of a field's raw numbers; the same numbers if the field is not calibrated.
 
         Args:
-            path: the field, as named by `columns`.
-            column: its raw numbers.
+            path: path of the field.
+            column: its raw numbers, of one dimension.
         """
-        measurement = self.measured.get(path)
+        measurement = self.measurement(path)
         if measurement is None or not measurement.is_calibrated:
             return column
         import numpy

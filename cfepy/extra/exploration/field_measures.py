@@ -79,7 +79,7 @@ class FieldMeasure:
             return FieldValue(self.text, None, why=error.text)
         if values.ndim != 1 or values.dtype.kind not in "iufb":
             return FieldValue(self.text, None, why="the field is not a single number")
-        value = float(_reduced(self.kind, values))
+        value = float(_reduced(self.kind, series.engineering(field, values)))
         if value != value or value in (float("inf"), float("-inf")):
             return FieldValue(self.text, None, why=f"the value is {value}")
         return FieldValue(self.text, float(f"{value:.{_DIGITS}g}"), series.unit(field))

@@ -6,13 +6,15 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.exploration.field_measures import FieldMeasure, FieldValue
+from cfepy.extra.exploration.field_measures import FieldMeasure, FieldValue, recorder_of
 from cfepy.extra.exploration.monte_carlo import Group, groups_of, wilson
 from cfepy.extra.exploration.monte_carlo_picture import picture_of_draws
 from cfepy.extra.exploration.sweep import Point, PointNumbers, SweepRow, TopicNumbers, sweep_table
 from cfepy.extra.reports import save
 from cfepy.ground import SeriesSet
+from cfepy.pilot import RunPlan, fly
 from cfepy.status import UsageError
+from tests.ground.measured import write_thermal
 
 
 def row(run: int, latency_us: float = 1.0, lost: int = 0, problem: str = "", value: float | None = None) -> SweepRow:
@@ -74,6 +76,16 @@ def test_drawn_run_without_a_value_of_a_measured_field_is_not_clean() -> None:
     numbers = PointNumbers("small", values=(FieldMeasure("max", "/a.x").value_in(SeriesSet()),))
     text = "no value of max:/a.x: no message was sent there or on any other topic"
     assert SweepRow(Point(run=0), numbers, ()).why_not_clean == text
+
+
+def test_measured_field_has_the_engineering_value_and_its_unit(tmp_path: Path) -> None:
+    measure = FieldMeasure.parse("max:THERMAL_HK_TLM.Temp", "--measure")
+    (recorder,) = recorder_of([measure])
+    fly(RunPlan((write_thermal(tmp_path),), seconds=1.2), attachments=[recorder])
+    assert measure.value_in(recorder) == FieldValue("max:THERMAL_HK_TLM.Temp", 44.0, "degC")
+    page = recorder.series("THERMAL_HK_TLM")._repr_html_()
+    assert "44.0" in page
+    assert "840" not in page, "it has the unit of the engineering value"
 
 
 @pytest.mark.parametrize(
