@@ -108,3 +108,11 @@ def test_draws_that_are_refused(words: list[str], told: str, capsys: pytest.Capt
         status = ended.code
     assert status == 2
     assert told in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("option", ["--set", "--draw"])
+def test_parameter_of_an_unknown_node_is_reported_once(option: str, capsys: pytest.CaptureFixture[str]) -> None:
+    values = "1,2" if option == "--set" else "uniform:1,2"
+    assert main([*WORDS, option, f"/lef/rate={values}", "--jobs", "1", "--for", "0.7"]) == 0
+    text = f"{option} /lef/rate: unknown node /lef; did you mean /left?"
+    assert capsys.readouterr().err.count(text) == 1

@@ -19,12 +19,13 @@ from cfepy.cli.json_output import STDOUT, check_json, write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.text_table import Table, show_tables
-from cfepy.cli.user_notes import check_writable, writing
+from cfepy.cli.user_notes import check_writable, tell_briefly, writing
 from cfepy.extra.exploration import (
     Drawn,
     FieldMeasure,
     Group,
     Knee,
+    Point,
     Sweep,
     SweepRow,
     answers,
@@ -120,6 +121,7 @@ def _flown(arguments: argparse.Namespace, plan: RunPlan) -> tuple[list[SweepRow]
     draws = _draws_asked(arguments, spec)
     seeds = None if arguments.seeds is None else seeds_of(arguments.seeds, "--seed")
     points = points_of(spec, boards, rates, varied, seeds, draws)
+    tell_briefly(_notes(points[0][0], plan))
     lot = Sweep(plan, topics or spec.sweep.topics, fields)
     crew = make_crew(
         len(points),
@@ -140,6 +142,13 @@ def _flown(arguments: argparse.Namespace, plan: RunPlan) -> tuple[list[SweepRow]
     finally:
         progress.close()
     return [found[number] for number in sorted(found)], is_over
+
+
+def _notes(point: Point, plan: RunPlan) -> list[str]:
+    """Return the notes about the mission of a point, such as a parameter of an unknown node."""
+    drawn = tuple(f"--set {name}:" for name, _ in point.drawn)
+    notes = point.plan(plan).spec().notes
+    return [note.replace("--set", "--draw", 1) if note.startswith(drawn) else note for note in notes]
 
 
 def _is_field(measure: str) -> bool:
