@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from cfepy.mission import STARTUP_SCRIPT, Mission, MissionSpec, read_mission
+from cfepy.mission import Mission, MissionSpec, is_mission_folder, read_mission
 from cfepy.mission.parameter_files import read_tree
 from cfepy.psp import load_profile
 from cfepy.reading.input_files import read_limited, unreadable
@@ -86,7 +86,7 @@ def of_files(path: Path, problems: list[str]) -> Parameters:
 def is_source_of_files(source: str) -> bool:
     """Return whether a word refers to table files, and not to a mission."""
     path = Path(source)
-    return path.suffix == TABLE_SUFFIX or (os.path.isdir(path) and not os.path.isfile(path / STARTUP_SCRIPT))
+    return path.suffix == TABLE_SUFFIX or (os.path.isdir(path) and not is_mission_folder(path))
 
 
 def changed(path: Path, name: str, value: Any) -> dict[Path, bytes]:

@@ -43,7 +43,14 @@ if TYPE_CHECKING:
         spec_of_node,
         spec_of_script,
     )
-    from cfepy.mission.launch_names import LAUNCH_FILES, STARTUP_SCRIPT, WITHOUT_LAUNCH, is_alone, mission_file_of
+    from cfepy.mission.launch_names import (
+        LAUNCH_FILES,
+        STARTUP_SCRIPT,
+        WITHOUT_LAUNCH,
+        is_alone,
+        is_mission_folder,
+        mission_file_of,
+    )
     from cfepy.mission.loader import NODE_SYMBOL
     from cfepy.mission.mission import Mission
     from cfepy.mission.mission_file import MissionSections, read_mission_file
@@ -136,6 +143,7 @@ __all__ = [
     "find_script",
     "hearing",
     "is_alone",
+    "is_mission_folder",
     "is_node",
     "launch_file",
     "lines_for",
@@ -221,7 +229,14 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "spec_of_node",
                 "spec_of_script",
             ),
-            ".launch_names": ("LAUNCH_FILES", "STARTUP_SCRIPT", "WITHOUT_LAUNCH", "is_alone", "mission_file_of"),
+            ".launch_names": (
+                "LAUNCH_FILES",
+                "STARTUP_SCRIPT",
+                "WITHOUT_LAUNCH",
+                "is_alone",
+                "is_mission_folder",
+                "mission_file_of",
+            ),
             ".loader": ("NODE_SYMBOL",),
             ".mission": ("Mission",),
             ".mission_file": (

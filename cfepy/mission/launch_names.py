@@ -52,6 +52,11 @@ def is_alone(path: Path) -> bool:
     return False
 
 
+def is_mission_folder(folder: Path) -> bool:
+    """Return whether a folder is a mission: it has a startup script, or a mission file without one."""
+    return os.path.isfile(folder / STARTUP_SCRIPT) or is_alone(folder / MISSION_FILE)
+
+
 def mission_file_of(script: Path) -> Path | None:
     """Return the mission file that belongs to a startup script or a launch file; None if there is none.
 

@@ -21,6 +21,7 @@ from cfepy.mission.launch_names import (
     WITHOUT_LAUNCH,
     files_near,
     is_alone,
+    is_mission_folder,
     launch_file_of_package,
     mission_file_of,
 )
@@ -83,14 +84,14 @@ def find_script(mission: str) -> Path:
     hint = did_you_mean(mission, [*names, *missions_near(path)], f"shipped missions are {listed(names, 'and')}")
     text = (
         "unknown mission; expected a startup script, a launch file, a folder "
-        f"with a {STARTUP_SCRIPT} or a shipped mission"
+        f"with a {STARTUP_SCRIPT} or a {MISSION_FILE}, or a shipped mission"
     )
     raise UsageError(f"{text}; {hint}", file=mission)
 
 
 def missions_near(path: Path) -> list[str]:
     """Return the missions in the folder of a path, written like the path."""
-    folders = [str(each.parent) for each in path.parent.glob(f"*/{STARTUP_SCRIPT}")]
+    folders = [str(each) for each in path.parent.glob("*") if is_mission_folder(each)]
     return sorted([*folders, *files_near(path, _MISSION_FILES)])
 
 

@@ -20,6 +20,7 @@ from cfepy.attachment import Attachment
 from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
 from cfepy.interpreter.host_system import command_line
 from cfepy.interpreter.own_code import source_file
+from cfepy.mission import is_mission_folder
 from cfepy.pilot import RunPlan
 from cfepy.rtos import AUTO, NotingPolicy, Policy
 from cfepy.schedules import Schedule
@@ -222,7 +223,7 @@ class Missions:
         """Return a path as on the command line, or a name unchanged."""
         item = self._item
         beside = None if item is None else item.path.parent / os.fspath(name)
-        if beside is None or not (beside.is_file() or (beside / "startup.scr").is_file()):
+        if beside is None or not (beside.is_file() or is_mission_folder(beside)):
             return os.fspath(name)
         found = beside.resolve()
         here = Path.cwd()

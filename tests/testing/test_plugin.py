@@ -14,6 +14,7 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.extra.exploration import in_tests as exploration
+from cfepy.ground.parameters import is_source_of_files
 from cfepy.journal import read_journal, replay
 from cfepy.rtos import watchdog
 from cfepy.rtos.watchdog import Spent
@@ -200,6 +201,18 @@ def test_paths_are_relative_to_the_test_file(pytester: pytest.Pytester, missions
         "def test_it(mission):\n    assert mission('../talk').plan.words == ('talk',)\n", encoding="utf-8"
     )
     pytester.runpytest_inprocess("-p", "cfepy.testing.plugin").assert_outcomes(passed=1)
+
+
+def test_folder_with_launch_files_alone_is_a_mission(pytester: pytest.Pytester) -> None:
+    folder = pytester.mkdir("drive")
+    (folder / "mission.yaml").write_text("launch: [drive.launch]\n", encoding="utf-8")
+    (folder / "drive.launch").write_text("<launch/>\n", encoding="utf-8")
+    (folder / "test_drive.py").write_text(
+        "def test_it(mission):\n    assert mission('.').plan.words == ('drive',)\n", encoding="utf-8"
+    )
+    pytester.runpytest_inprocess("-p", "cfepy.testing.plugin").assert_outcomes(passed=1)
+    assert not is_source_of_files(str(folder))
+    assert is_source_of_files(str(folder.parent))
 
 
 @pytest.mark.parametrize(
