@@ -51,6 +51,7 @@ MAY_TOUCH_THE_HOST = {
     "schedules": "a policy draws from the seed of its schedule",
     "io": "joins the virtual network of a paced run to real sockets on the loopback interface",
     "ros_host": "speaks ROS's protocols on real sockets, and does in threads of the host what must wait for others",
+    "attach": "listens for programs of the same user at a socket in the file system",
     "profiler": "measures the wall time of tasks, and looks at their stacks in a thread of the host",
     "viewers": "listens for viewers on real sockets, at the pace of the wall clock, and makes tokens",
     "exploration": "spreads trials over processes and computers, sees when one of them ends, tells how far it has come",

@@ -2,10 +2,10 @@
 
 Code that opens a real socket, or waits for input from outside, belongs here: the bridge of a paced run to the loopback
 interface (`host_network`), datagrams of a ground system (`udp`), typed lines (`typed_lines`), non-blocking connections
-with programs (`peer_socket`), their counts (`peer_counts`) and limits (`peer_places`), and the names by which they
-address this computer (`own_names`). The simulation does not know this package; the command that runs a mission connects
-the bridge to it. When input from outside comes in is decided in `cfepy.mission`. The central file is
-`cfepy/io/host_network.py`.
+with programs (`peer_socket`), running flights (`live_flights`), counts (`peer_counts`) and limits (`peer_places`) of
+connections, and the names by which programs address this computer (`own_names`). The simulation does not know this
+package; the command that runs a mission connects the bridge to it. When input from outside comes in is decided in
+`cfepy.mission`. The central file is `cfepy/io/host_network.py`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,16 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.io.host_network import Guest, HostNetwork
+    from cfepy.io.live_flights import (
+        LIVE,
+        LiveFlight,
+        LiveFrames,
+        LiveTopic,
+        flight_folder,
+        framed,
+        live_flight,
+        live_name,
+    )
     from cfepy.io.own_names import OwnNames, is_this_computer
     from cfepy.io.peer_counts import INTO, OUT_OF, PeerCount, PeerCounts
     from cfepy.io.peer_places import InputRoom, InputTurn, PeerPlaces
@@ -26,12 +36,16 @@ if TYPE_CHECKING:
 __all__ = [
     "ENDED",
     "INTO",
+    "LIVE",
     "OUT_OF",
     "Guest",
     "HostNetwork",
     "InputRoom",
     "InputTurn",
     "Listening",
+    "LiveFlight",
+    "LiveFrames",
+    "LiveTopic",
     "OwnNames",
     "PeerCount",
     "PeerCounts",
@@ -39,8 +53,12 @@ __all__ = [
     "PeerSocket",
     "TypedLines",
     "UdpListener",
+    "flight_folder",
+    "framed",
     "is_this_computer",
     "listening_socket",
+    "live_flight",
+    "live_name",
     "own_address",
     "send",
 ]
@@ -52,6 +70,16 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".host_network": (
                 "Guest",
                 "HostNetwork",
+            ),
+            ".live_flights": (
+                "LIVE",
+                "LiveFrames",
+                "LiveFlight",
+                "LiveTopic",
+                "flight_folder",
+                "framed",
+                "live_flight",
+                "live_name",
             ),
             ".own_names": (
                 "OwnNames",

@@ -49,7 +49,8 @@ class PeerSocket:
         self._ends_when_sent = self._is_paused = False
         self._watched = 0  # events, as in the selector
         connected.setblocking(False)
-        connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        if connected.family in (socket.AF_INET, socket.AF_INET6):
+            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         self._watch()
 
     @property
@@ -199,7 +200,8 @@ class Listening:
         self._selector = selector
         self._socket = opened
         self._accept = accept
-        self.port = int(opened.getsockname()[1])
+        place = opened.getsockname()
+        self.port = 0 if isinstance(place, str) else int(place[1])  # a socket in the file system has no port
         opened.setblocking(False)
         selector.register(opened, EVENT_READ, self._handle)
 

@@ -34,7 +34,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("flight",),
     ("testing",),
     ("cli", "__main__"),
-    ("extra", "c", "convert", "exploration", "reports", "debugger", "viewers", "ros_host", "profiler"),
+    ("extra", "c", "convert", "exploration", "reports", "debugger", "viewers", "ros_host", "profiler", "attach"),
     ("__init__",),  # the public API of the library
 )
 LEVEL = {part: level for level, floor in enumerate(FLOORS) for part in floor}

@@ -51,7 +51,8 @@ def _add_cmd(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         "target",
         nargs="?",
         metavar="MISSION|HOST[:PORT]",
-        help="a mission, or where CI_LAB listens: 127.0.0.1, or any name with a port (default: 1234)",
+        help="a mission, live: (a running flight), or where CI_LAB listens: 127.0.0.1, or any name with a port "
+        "(default: 1234)",
     )
     cmd.add_argument("name", nargs="?", metavar="NAME", help="such as CFE_ES_NOOP")
     cmd.add_argument("fields", nargs="*", metavar="FIELD=VALUE", help="others are zero")
@@ -84,7 +85,8 @@ def _add_tlm(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         "words",
         nargs="*",
         metavar="WORD",
-        help="first a mission, or this computer's address to listen at, HOST[:PORT] (default: any, port 1235); then "
+        help="first a mission, live: (a running flight), or this computer's address to listen at, HOST[:PORT] "
+        "(default: any, port 1235); then "
         "the packets by their names, patterns such as 'CFE_*', or MsgIds (default: all)",
     )
     add_mission(tlm, "--mission", help=DICTIONARY_HELP)

@@ -12,8 +12,9 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.options import LONGEST_S, plan_of, refuse_run_options
 from cfepy.cli.text_table import Table, show_paragraph, show_tables
 from cfepy.cli.user_notes import tell, tell_briefly
-from cfepy.ground import CI_PORT, CommandTrial, Dictionary, dictionary_of, packet_of
-from cfepy.io import udp
+from cfepy.ground import CI_PORT, EVENT_IDS, CommandTrial, DecodedEvent, Dictionary, dictionary_of, packet_of
+from cfepy.io import live_flight, live_name, udp
+from cfepy.mission import Seen, TopicMessage, read_mission
 from cfepy.msg import Command
 from cfepy.pilot import RunPlan, never_happened, takeoff
 from cfepy.status import UsageError
@@ -33,6 +34,9 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is no such mission, host, command or field.
     """
     target: str | None = arguments.target
+    live = None if target is None else live_name(target)
+    if live is not None:
+        return _attach(live, arguments)
     host = host_of(target, CI_PORT) if target is not None else None
     plan = None
     if target is not None and host is None:
@@ -55,6 +59,33 @@ def run(arguments: argparse.Namespace) -> int:
         return _send(host, declared, packet)
     assert plan is not None
     return _fly(plan, dictionary, declared, packet)
+
+
+def _attach(name: str, arguments: argparse.Namespace) -> int:
+    """Send a command to a running flight, and show the events of the next seconds."""
+    refuse_run_options(arguments, "only valid for a mission to be run; leave it out", but=["seconds"])
+    if arguments.name is None:
+        raise UsageError("missing command name; cfepy cmd MISSION --list shows the command names")
+    with live_flight(name) as flight:
+        dictionary = dictionary_of(read_mission(arguments.mission or flight.script))
+        declared = dictionary.command(arguments.name)
+        flight.listen(telemetry=sorted(EVENT_IDS))
+        answer = flight.ask({"op": "send", "packet": packet_of(declared, arguments.fields)})
+        receivers = ", ".join(answer["receivers"]) or "no receiver"
+        print(f"{answer['at_ns'] / NS_PER_S:.3f} {declared.name} sent to {receivers}")
+        errors = 0
+        for message in flight.messages(ANSWER_S if arguments.seconds is None else arguments.seconds):
+            if not isinstance(message, TopicMessage):
+                packet, at_ns = message
+                event = DecodedEvent.of(Seen(at_ns, packet, ""))
+                errors += event.type_name in ("ERROR", "CRITICAL")
+                show_paragraph(_event_line(event), sys.stdout)
+                sys.stdout.flush()
+    return ENDED_WELL if answer["receivers"] and not errors else FOUND_PROBLEMS
+
+
+def _event_line(event: DecodedEvent) -> str:
+    return f"{event.at_ns / NS_PER_S:.3f} {event.app} {event.event_id} {event.type_name}: {event.text}"
 
 
 def _send(host: RemoteHost, declared: Command, packet: bytes) -> int:
@@ -117,8 +148,7 @@ def _patience(plan: RunPlan) -> float:
 
 def _say_what_followed(trial: CommandTrial, dictionary: Dictionary) -> None:
     for event in trial.events:
-        line = f"{event.at_ns / NS_PER_S:.3f} {event.app} {event.event_id} {event.type_name}: {event.text}"
-        show_paragraph(line, sys.stdout)
+        show_paragraph(_event_line(event), sys.stdout)
     for seen in trial.telemetry:
         decoded = dictionary.decode(seen.packet)
         show_paragraph(f"{seen.at_ns / NS_PER_S:.3f} {decoded.name} {decoded.problem or decoded.line()}", sys.stdout)

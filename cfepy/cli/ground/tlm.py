@@ -19,8 +19,8 @@ from cfepy.cli.options import plan_of, refuse_run_options
 from cfepy.cli.text_table import show_paragraph
 from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.ground import CI_PORT, TO_PORT, Decoded, Dictionary, dictionary_of, packet_of, topic_id, topics_of
-from cfepy.io import udp
-from cfepy.mission import MissionSpec, PacketWatch, Seen, find_script, is_node
+from cfepy.io import live_flight, live_name, udp
+from cfepy.mission import MissionSpec, PacketWatch, Seen, TopicMessage, find_script, is_node, read_mission
 from cfepy.msg import RED, TLM_HEADER_SIZE, YELLOW, get_header_size, get_msg_id
 from cfepy.pilot import LiveRun, RunPlan, never_happened, takeoff
 from cfepy.rtos import Stopwatch
@@ -198,6 +198,9 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: there is no such mission, packet or address.
     """
     words: list[str] = list(arguments.words)
+    live = live_name(words[0]) if words else None
+    if live is not None:
+        return _attach(live, words[1:], arguments)
     host = host_of(words[0], TO_PORT) if words else None
     if host is None and words and _is_mission(words[0]):
         if arguments.enable is not None:
@@ -208,6 +211,28 @@ def run(arguments: argparse.Namespace) -> int:
     dictionary = dictionary_for(arguments.mission)
     wanted = {msg_id for name in names for msg_id in dictionary.telemetry_like(name)}
     return _listen(host or RemoteHost(ANY_ADDRESS, TO_PORT), dictionary, wanted, arguments)
+
+
+def _attach(name: str, names: list[str], arguments: argparse.Namespace) -> int:
+    """Show the telemetry of a running flight."""
+    if arguments.enable is not None:
+        raise UsageError("only valid for a remote target; leave it out", field="--enable")
+    refuse_run_options(arguments, "only valid for a mission to be run; leave it out", but=["seconds"])
+    with live_flight(name) as flight:
+        spec = read_mission(arguments.mission or flight.script)
+        dictionary = dictionary_of(spec)
+        wanted = [msg_id for each in names for msg_id in _msg_ids(spec, dictionary, each)]
+        flight.listen(telemetry=wanted)
+        shown = 0
+        with output_for(dictionary, arguments, is_live=True) as output:
+            for message in flight.messages(arguments.seconds):
+                if not isinstance(message, TopicMessage):
+                    output.show(*message)
+                    output.refresh()
+                    shown += 1
+                if shown == arguments.count:
+                    break
+    return ENDED_WELL if shown else _nothing("no matching packet was sent")
 
 
 def _is_mission(word: str) -> bool:

@@ -32,7 +32,9 @@ _NODE_STATUS = (
     "exit status: that of the node, 0 when it still runs at the end; 2 bad usage, 130 ended by Ctrl-C; with "
     "--check-determinism 0 when all runs were the same, 1 when two differed"
 )
-_SOURCE_HELP = f"a bag, or {MISSION_HELP}"
+_LIVE_HELP = "live:, the running flight of another terminal (several: live:NAME, live:PID)"
+_SOURCE_HELP = f"a bag, {_LIVE_HELP}, or {MISSION_HELP}"
+_PUB_HELP = f"{_LIVE_HELP}, or {MISSION_HELP}"
 _TOPIC_HELP = "such as /odom, or with a field: /odom/pose/pose/position/x"
 _TOPIC_STATUS = "exit status: 0 well, 1 nothing was found or something failed, 2 bad usage"
 _PARAM_HELP = f"{MISSION_HELP}; or a file of a parameter table, or a folder with such files"
@@ -110,8 +112,13 @@ def _add_topic(commands: _Actions[argparse.ArgumentParser]) -> None:
     topic = commands.add_parser(
         "rostopic",
         help="show topics, and publish",
-        examples=("cfepy rostopic list capture", "cfepy rostopic echo run.bag /odom/pose/pose/position -n 3"),
-        description="Show the topics of a bag, or of a mission, which the command runs in virtual time; or publish.",
+        examples=(
+            "cfepy rostopic list capture",
+            "cfepy rostopic echo run.bag /odom/pose/pose/position -n 3",
+            "cfepy rostopic hz live: /odom",
+        ),
+        description="Show the topics of a bag, of a flight that runs in another terminal, or of a mission, which the "
+        "command runs in virtual time; or publish.",
         epilog=_TOPIC_STATUS,
     )
     topic.set_defaults(module="cfepy.cli.ros.rostopic")
@@ -137,7 +144,7 @@ def _add_topic(commands: _Actions[argparse.ArgumentParser]) -> None:
             "-w", "--window", type=count_of, metavar="N", help="the newest N messages count (default: all)"
         )
     example = "rostopic pub robot.launch /cmd_vel geometry_msgs/Twist '{linear: {x: 1}}' --at 5"
-    _add_pub(_flown(actions, "pub", "publish a message in a mission", example, MISSION_HELP))
+    _add_pub(_flown(actions, "pub", "publish a message in a mission", example, _PUB_HELP))
 
 
 def _flown(

@@ -1,4 +1,4 @@
-"""`cfepy rostopic`: the answers of rostopic, from a mission that is flown for them or from a bag."""
+"""`cfepy rostopic`: the answers of rostopic, from a mission that is flown for them, a running flight or a bag."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ from typing import Any
 
 from cfepy.cli.json_output import STDOUT, json_lines, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
+from cfepy.cli.options import refuse_run_options
 from cfepy.cli.ros.rostopic_output import Bandwidth, Delay, Echo, Hz, Meter
 from cfepy.cli.ros.source import FlightSource, SeenTopic, source_of
 from cfepy.cli.text_table import print_lines
 from cfepy.cli.user_notes import tell
 from cfepy.cli.viewed_runs import flight_plan
 from cfepy.ground import GroundConsole, candidates, check_message_type, with_ground_node
+from cfepy.io import live_flight, live_name
 from cfepy.mission import described
+from cfepy.reading.plain_yaml import YamlError, plain_yaml
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 from cfepy.writing.console import Console
@@ -216,6 +219,9 @@ def _ended(arguments: argparse.Namespace, is_shown: bool, known: list[str]) -> i
 
 def _publish(arguments: argparse.Namespace) -> int:
     topic = _rooted(arguments.topic)
+    name = live_name(arguments.source)
+    if name is not None:
+        return _publish_live(arguments, name, topic)
     told = [topic, arguments.type, arguments.values, arguments.rate, arguments.at]
     plan = flight_plan(arguments)
     base = plan.spec()
@@ -233,3 +239,32 @@ def _publish(arguments: argparse.Namespace) -> int:
     for problem in problems:
         print(f"cfepy: {problem}", file=sys.stderr)
     return FOUND_PROBLEMS if problems or not count else ENDED_WELL
+
+
+def _publish_live(arguments: argparse.Namespace, name: str, topic: str) -> int:
+    """Publish one message in a running flight."""
+    refuse_run_options(arguments, "only valid for a mission to be run; leave it out")
+    for option, value in (("--rate", arguments.rate), ("--at", arguments.at)):
+        if value is not None:
+            raise UsageError("only valid for a mission to be run; a running flight gets one message now", field=option)
+    fields: dict[str, Any] = {}
+    for text in arguments.values:
+        value = _yaml(text)
+        if not isinstance(value, dict):
+            raise UsageError(f"invalid value {text!r}; expected fields, such as 'data: hi' or '{{linear: {{x: 1}}}}'")
+        fields |= value
+    with live_flight(name) as flight:
+        kinds = {row.name: row.type for row in flight.topics()}
+        if kinds.get(topic, arguments.type) != arguments.type:
+            raise UsageError(f"{topic} has type {kinds[topic]}, not {arguments.type}", file=arguments.source)
+        flight.ask({"op": "publish", "topic": topic, "fields": fields})
+    write_json(arguments, {"topic": topic, "published": 1}, indent=None)
+    print(f"published 1 message on {topic}")
+    return ENDED_WELL
+
+
+def _yaml(text: str) -> Any:
+    try:
+        return plain_yaml(text)
+    except YamlError as error:
+        raise UsageError(f"invalid value {text!r}: {error}") from None

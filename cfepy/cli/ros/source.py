@@ -1,4 +1,5 @@
-"""The source of `cfepy rostopic` and `cfepy rosservice`: a bag, or a mission that is flown for them in virtual time."""
+"""The source of `cfepy rostopic` and `cfepy rosservice`: a bag, a mission that is flown for them in virtual time, or a
+running flight."""
 
 from __future__ import annotations
 
@@ -13,6 +14,7 @@ from cfepy.cli.options import refuse_run_options
 from cfepy.cli.user_notes import tell, tell_briefly
 from cfepy.cli.viewed_runs import flight_plan
 from cfepy.ground import BagReader, header_of, is_bag
+from cfepy.io import LiveFlight, live_flight, live_name
 from cfepy.mission import Mission, MissionSpec, TopicMessage, TopicWatch
 from cfepy.pilot import LiveRun, RunPlan, never_happened, takeoff
 from cfepy.units import NS_PER_MS, NS_PER_S
@@ -144,11 +146,59 @@ class FlightSource:
         tell(problems)
 
 
-Source = BagSource | FlightSource
+class LiveSource:
+    """A running flight; use as a context manager.
+
+    Args:
+        flight: the connection with it.
+        seconds: wall time to listen, in s; None until Ctrl-C.
+    """
+
+    def __init__(self, flight: LiveFlight, seconds: float | None) -> None:
+        self._flight = flight
+        self._seconds = seconds
+        self._topics: list[SeenTopic] = []
+
+    def messages(self, patterns: Sequence[str] = ()) -> Generator[TopicMessage, None, None]:
+        """Yield the messages from now on, until the flight or the time ends, or Ctrl-C."""
+        self.topics()
+        self._flight.listen(patterns)
+        for message in self._flight.messages(self._seconds):
+            if isinstance(message, TopicMessage):
+                yield message
+
+    def topics(self) -> list[SeenTopic]:
+        """Return the topics that exist now, by name; after the end of the flight, those before."""
+        try:
+            self._topics = [SeenTopic(*row) for row in sorted(self._flight.topics())]
+        except OSError:  # the flight has ended
+            pass
+        return self._topics
+
+    def addresses(self) -> dict[str, str]:
+        """Return the URIs of the nodes that exist now, by name."""
+        return self._flight.nodes()
+
+    def __enter__(self) -> LiveSource:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, where: TracebackType | None
+    ) -> None:
+        self._flight.close()
+        if self._flight.lost:
+            tell([f"{self._flight.lost} messages were lost, because they were not read in time"])
+
+
+Source = BagSource | FlightSource | LiveSource
 
 
 def source_of(arguments: argparse.Namespace) -> Source:
-    """Make the source that the command line names: a bag or a mission."""
+    """Make the source that the command line names: a bag, a mission or a running flight."""
+    name = live_name(arguments.source)
+    if name is not None:
+        refuse_run_options(arguments, "only valid for a mission to be run; leave it out", but=["seconds"])
+        return LiveSource(live_flight(name), arguments.seconds)
     if is_bag(arguments.source):
         refuse_run_options(
             arguments, f"only valid for a mission, and {arguments.source} is a bag; leave it out", but=["seconds"]
