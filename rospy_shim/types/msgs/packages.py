@@ -31,7 +31,8 @@ class Packages:
     """The packages that a program can see, each by its first place.
 
     They are searched at first use: near the program, then along ROS_PACKAGE_PATH, then in the share folders of
-    CMAKE_PREFIX_PATH. Last come the packages included in cfepy.
+    CMAKE_PREFIX_PATH. A package included in cfepy is found by its name if there is no other; it is in no list, so a
+    program that lists packages gets the same as on ROS.
 
     Args:
         script: the program's file; None leaves out packages near it.
@@ -50,7 +51,7 @@ class Packages:
         self._resolve = resolve
 
     def names(self) -> list[str]:
-        """Return the names of all packages, sorted."""
+        """Return the names of all packages, sorted, without those included in cfepy."""
         return sorted(self._found)
 
     def path(self, name: str) -> Path | None:
@@ -60,7 +61,7 @@ class Packages:
 
     def folders(self, name: str) -> list[Path]:
         """Return all folders of a package by precedence; a built package may have a `share` folder as well."""
-        return self._found.get(name, [])
+        return self._found.get(name) or _included(name)
 
     def package_of(self, file: Path) -> str | None:
         """Return the name of the package that a file belongs to (rospkg.get_package_name)."""
@@ -87,10 +88,15 @@ class Packages:
             yield from crawl(root)
         for prefix in self._listed("CMAKE_PREFIX_PATH"):
             yield from filter(is_package, _subfolders(prefix / "share"))
-        yield from crawl(shipped("ros_packages"))
 
     def _listed(self, variable: str) -> list[Path]:
         return [Path(self._resolve(each)) for each in self._environ.get(variable, "").split(os.pathsep) if each]
+
+
+def _included(name: str) -> list[Path]:
+    """Return the folder of a package that is included in cfepy."""
+    folder = shipped("ros_packages") / name
+    return [folder] if is_package_name(name) and has_manifest(folder) else []
 
 
 def _code_roots(package: Path) -> list[str]:

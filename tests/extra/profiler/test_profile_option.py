@@ -38,7 +38,7 @@ def folder(tmp_path: Path) -> str:
 
 
 def flown(capsys: pytest.CaptureFixture[str], folder: str, *options: str) -> str:
-    assert main(["run", folder, "--for", "1", "--quiet", *options]) == 0
+    assert main(["run", folder, "--for", "1", "--no-console", *options]) == 0
     return capsys.readouterr().out
 
 

@@ -22,6 +22,19 @@ def make_package(folder: Path, name: str = "", *files: str) -> Path:
     return folder
 
 
+def test_included_package_is_found_by_its_name_and_is_in_no_list(tmp_path: Path) -> None:
+    alone = Packages(None, {})
+    folder = alone.path("cfepy_plant")
+    assert folder is not None
+    assert (folder / "package.xml").is_file()
+    assert alone.names() == []
+    own = tmp_path / "cfepy_plant"
+    own.mkdir()
+    (own / "package.xml").write_text("<package><name>cfepy_plant</name></package>", encoding="utf-8")
+    assert Packages(None, {"ROS_PACKAGE_PATH": str(tmp_path)}).folders("cfepy_plant") == [own]
+    assert alone.path("../boards") is None
+
+
 def test_ros_package_path_is_searched_deep(tmp_path: Path) -> None:
     rover = make_package(tmp_path / "a" / "stack" / "rover", "rover")
     make_package(rover / "inside", "inside")
