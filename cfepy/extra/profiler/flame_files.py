@@ -14,7 +14,6 @@ from cfepy import __version__
 from cfepy.extra.profiler.run_profile import RunProfile
 from cfepy.extra.profiler.task_times import HOST
 
-SPEEDSCOPE, COLLAPSED = (".json",), (".txt", ".folded", ".collapsed")
 SCHEMA = "https://www.speedscope.app/file-format-schema.json"
 SWITCHES, OUTSIDE, NO_APP = "(task switches)", "(display, ports, pace)", "(boot and timers)"
 
@@ -29,7 +28,7 @@ def flame_text(file: str, profile: RunProfile, name: str) -> str:
         profile: the profile.
         name: name of the mission.
     """
-    return speedscope(profile, name) if Path(file).suffix in SPEEDSCOPE else collapsed(profile)
+    return speedscope(profile, name) if Path(file).suffix == ".json" else collapsed(profile)
 
 
 def speedscope(profile: RunProfile, name: str) -> str:

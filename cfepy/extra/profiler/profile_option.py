@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 from cfepy.cli.flight_add_ons import FlightAddOn, Tell
 from cfepy.cli.parser import shared_group
-from cfepy.cli.text_table import Table
-from cfepy.extra.profiler.flame_files import COLLAPSED, SPEEDSCOPE
 
 if TYPE_CHECKING:
+    from cfepy.cli.text_table import Table
     from cfepy.pilot import Flown
 
 OPTION, NO_FILE = "--profile", "-"
+SPEEDSCOPE, COLLAPSED = (".json",), (".txt", ".folded", ".collapsed")
+"""The endings of files, by their formats."""
 
 
 class Profiler(FlightAddOn):

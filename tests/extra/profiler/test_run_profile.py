@@ -10,7 +10,8 @@ from types import CodeType
 
 import pytest
 
-from cfepy.extra.profiler.flame_files import COLLAPSED, flame_text
+from cfepy.extra.profiler.flame_files import flame_text
+from cfepy.extra.profiler.profile_option import COLLAPSED
 from cfepy.extra.profiler.run_profile import RunProfile, code_owner
 from cfepy.extra.profiler.stack_sampler import StackSampler
 from cfepy.extra.profiler.task_times import HOST, TaskLabel, TaskTimes, TimedTasks
