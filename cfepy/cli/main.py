@@ -144,6 +144,7 @@ def _obey(words: Sequence[str]) -> int:
         if words[:1] == [HELP]:
             return _print_help(words[1:])
         chosen = parser_for(words).parse_args(words)
+        chosen.given = words
         command = _command(chosen.module)
         with terminable(), standard_output(chosen):
             status: int = command.run(chosen)

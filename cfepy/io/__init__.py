@@ -1,11 +1,11 @@
 """Real sockets of this computer, with which a run and a ground system reach other programs.
 
 Code that opens a real socket, or waits for input from outside, belongs here: the bridge of a paced run to the loopback
-interface (`host_network`), datagrams of a ground system (`udp`), typed lines (`typed_lines`), non-blocking connections
-with programs (`peer_socket`), running flights (`live_flights`), counts (`peer_counts`) and limits (`peer_places`) of
-connections, and the names by which programs address this computer (`own_names`). The simulation does not know this
-package; the command that runs a mission connects the bridge to it. When input from outside comes in is decided in
-`cfepy.mission`. The central file is `cfepy/io/host_network.py`.
+interface (`host_network`), datagrams of a ground system (`udp`), typed lines (`typed_lines`), changed files
+(`changed_files`), non-blocking connections with programs (`peer_socket`), running flights (`live_flights`), counts
+(`peer_counts`) and limits (`peer_places`) of connections, and the names by which programs address this computer
+(`own_names`). The simulation does not know this package; the command that runs a mission connects the bridge to it.
+When input from outside comes in is decided in `cfepy.mission`. The central file is `cfepy/io/host_network.py`.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.io.changed_files import WatchedFiles
     from cfepy.io.host_network import Guest, HostNetwork
     from cfepy.io.live_flights import (
         LIVE,
@@ -53,6 +54,7 @@ __all__ = [
     "PeerSocket",
     "TypedLines",
     "UdpListener",
+    "WatchedFiles",
     "flight_folder",
     "framed",
     "is_this_computer",
@@ -67,6 +69,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".changed_files": ("WatchedFiles",),
             ".host_network": (
                 "Guest",
                 "HostNetwork",

@@ -44,6 +44,14 @@ def _add_run(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     add_mission_or_node(run)
     add_run_options(run)
     add_flight(run)
+    run.add_argument(
+        "--watch",
+        action="store_const",
+        dest="module",
+        const="cfepy.cli.run.watch",
+        help="run it again whenever a file changes that lies in its folder or that it opened, and show each result "
+        "briefly; Ctrl-C ends",
+    )
     run.set_defaults(module="cfepy.cli.run.run")
 
 
