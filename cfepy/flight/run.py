@@ -20,7 +20,18 @@ from cfepy.flight.notebook import Picture, page_of_run, picture
 from cfepy.ground import DecodedEvent, Dictionary, Series, SeriesSet
 from cfepy.mission import Mission, endless_waits
 from cfepy.monitors import Heard
-from cfepy.pilot import AppResult, Flown, Results, RunPlan, TopicResult, mark, problems_of
+from cfepy.pilot import (
+    AppResult,
+    Failure,
+    Flown,
+    Results,
+    RunPlan,
+    RunProblem,
+    TopicResult,
+    failures_of,
+    mark,
+    problems_of,
+)
 from cfepy.reading.suggestions import did_you_mean, listed
 from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible
@@ -237,7 +248,16 @@ class Run:
         """A line for each problem so far, as in a run's report; a run without problems went well."""
         if self._flown is not None:
             return self._flown.results.problems
-        return [problem.text for problem in problems_of(self.mission, endless_waits(self.mission))]
+        return [problem.text for problem in self._problems]
+
+    @property
+    def failures(self) -> list[Failure]:
+        """The failures behind the problems so far, by time, as `cfepy explore` counts them."""
+        return failures_of(self._problems if self._flown is None else self._flown.problems)
+
+    @property
+    def _problems(self) -> list[RunProblem]:
+        return problems_of(self.mission, endless_waits(self.mission))
 
     def message_class(self, kind: str) -> Any:
         """Return the class of a ROS message type, such as "std_msgs/Float64". The mission's own packages are searched

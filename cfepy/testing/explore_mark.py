@@ -28,6 +28,7 @@ class Exploration:
         steps: minimum number of decisions that PCT expects in a run.
         options: a schedule with the options of all except fifo.
         shrink: maximum number of runs for shrinking; None for as many as before, 300 to 800.
+        shrink_time: maximum wall time for shrinking in s.
         races: whether data races are failures.
     """
 
@@ -37,6 +38,7 @@ class Exploration:
     steps: int
     options: Schedule
     shrink: int | None
+    shrink_time: float
     races: bool = False
 
 
@@ -54,12 +56,14 @@ def explore(
     races: bool = False,
     start: str = "",
     shrink: int | None = None,
+    shrink_time: float = 60.0,
 ) -> pytest.MarkDecorator:
     """Run a test under many schedules, until it fails under one.
 
     Each schedule is a run of the whole test, with new function-scoped fixtures, including `mission` and tmp_path. The
     first schedule is fifo. When the test fails, the schedule is shrunk to the fewest deviations from fifo that still
-    fail. The failure shows these deviations, and the command that repeats the run. It works on functions and classes.
+    fail. The failure shows its cause if it is known, these deviations, and the command that repeats the run. You can
+    mark functions and classes.
 
     Args:
         seeds: number of schedules; overridden by --cfepy-schedules.
@@ -75,6 +79,7 @@ def explore(
         start: virtual time from the boot until which everything is as with fifo, such as "600ms"; empty for none.
         shrink: maximum number of runs for shrinking a schedule; None for as many as before, 300 to 800; 0 for no
             shrinking.
+        shrink_time: maximum wall time for shrinking in s; afterwards the shortest schedule so far is reported.
 
     Raises:
         UsageError: if an argument is invalid.
@@ -89,10 +94,12 @@ def explore(
         raise UsageError("must not be empty; give at least one", field="seeds" if policies else "policy")
     if depth is not None and depth < 1:
         raise UsageError(f"invalid depth {depth}; expected a whole number of at least 1", field="depth")
+    if not shrink_time > 0:
+        raise UsageError(f"invalid time {shrink_time}; expected more than 0 s", field="shrink_time")
     words = [BASE, *(["any"] if any_priority else []), *([f"hold={hold}"] if hold else [])]
     words += [f"connect={connect}"] if connect else []
     words += [f"points={Points.parse(points, 'points').text()}"] if points else []
     words += [f"from={start}"] if start else []
     options = Schedule.parse(":".join(words))
     mark: pytest.MarkDecorator = getattr(pytest.mark, EXPLORE_MARK)
-    return mark(Exploration(seeds, policies, depth, steps, options, shrink, races))
+    return mark(Exploration(seeds, policies, depth, steps, options, shrink, shrink_time, races))

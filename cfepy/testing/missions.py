@@ -21,7 +21,7 @@ from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachmen
 from cfepy.interpreter.host_system import command_line
 from cfepy.interpreter.own_code import source_file
 from cfepy.mission import is_mission_folder
-from cfepy.pilot import RunPlan
+from cfepy.pilot import Failure, RunPlan
 from cfepy.rtos import AUTO, NotingPolicy, Policy
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
@@ -55,6 +55,8 @@ class Conditions:
         attachments: observe each mission.
         plans: flown plans, one per mission.
         recorded: decisions of the policies, one per mission.
+        ended_ns: virtual time of the mission when the test function ended; None if there is not exactly one.
+        failures: the mission's own failures by then; only of a failed or observed test, and under fifo.
     """
 
     schedule: Schedule
@@ -62,6 +64,18 @@ class Conditions:
     attachments: Sequence[Attachment] = ()
     plans: list[RunPlan] = field(default_factory=list)
     recorded: list[NotingPolicy] = field(default_factory=list)
+    ended_ns: int | None = None
+    failures: tuple[Failure, ...] = ()
+
+    def note_end(self, flights: Sequence[Flight], failed: bool) -> None:
+        """Note the state of the mission at the end of the test function, while it still flies."""
+        if len(flights) == 1 == len(self.plans):
+            self.ended_ns = flights[0].mission.kernel.now
+            if failed or self.attachments or self.schedule.kind == FIFO:
+                first: dict[str, Failure] = {}
+                for each in flights[0].failures:
+                    first.setdefault(each.group, each)
+                self.failures = tuple(first.values())
 
 
 @contextmanager
@@ -319,6 +333,8 @@ class Missions:
         """Add the command that repeats a failure; for wrong calls in a test, show the test's own lines."""
         if call.excinfo is not None:
             leave_out_own_lines(call.excinfo)
+        if call.when == "call" and self._conditions is not None:
+            self._conditions.note_end(self.flown, call.excinfo is not None)
         report = yield
         if call.excinfo is not None and report.failed:
             if self._journals is not None:

@@ -8,8 +8,9 @@ from typing import Any
 
 import pytest
 
-from cfepy.extra.exploration import Shrinker, Trial, budget_of
-from cfepy.extra.exploration.in_tests import schedules_of
+from cfepy.extra.exploration import Shrinker, Trial, budget_of, in_tests
+from cfepy.extra.exploration.in_tests import MORE, schedules_of
+from cfepy.extra.exploration.verdict import Findings, Verdict
 from cfepy.journal import read_journal, replay
 from cfepy.pilot import RunPlan
 from cfepy.schedules import Schedule
@@ -262,7 +263,7 @@ def test_default_policy_equals_the_default_of_the_command() -> None:
 
 @pytest.mark.slow
 def test_explore_command_shrinks_to_the_same_schedule(suite: Suite, missions: Path) -> None:
-    """It is the same function with the same budget: `cfepy explore` on the schedule under which the test failed."""
+    """It is the same function with the same budget, on the shortest of the first schedules that fail."""
     result = suite(RACE.format(policy="random", shrink=None))
     result.assert_outcomes(failed=1)
     text = result.stdout.str()
@@ -273,9 +274,72 @@ def test_explore_command_shrinks_to_the_same_schedule(suite: Suite, missions: Pa
     expected = 'invariants: {all: {topic: /total, holds: "msg.data == 6"}}\n'
     (missions / "race" / "mission.yaml").write_text(expected, encoding="utf-8")
     trial = Trial(RunPlan((str(missions / "race"),), seconds=0.9, tasks="greenlet"))
-    schedule = Schedule.parse(failed[2])
-    group = trial.run(schedule).groups[0]
-    shrunk = Shrinker(trial, [schedule], group, budget_of(int(failed[1]))).run()
+    findings = Findings(Verdict(Schedule()))
+    schedules = list(schedules_of(explore(seeds=60, policy="random").args[0], lambda: 1, 60))
+    first = int(failed[1])
+    for number, schedule in enumerate(schedules[first - 1 : first + MORE], first):
+        findings.take(number, trial.run(schedule))
+    (finding,) = findings.all()
+    assert finding.simplest[0].preemptions <= finding.verdict.preemptions
+    starts = [verdict.schedule for verdict in finding.simplest]
+    shrunk = Shrinker(trial, starts, finding.failure.group, budget_of(first)).run()
     assert shrunk is not None
     assert shrunk.verdict.schedule.text() == told[2]
-    assert int(told[1]) <= budget_of(int(failed[1])) + 1
+    assert int(told[1]) <= budget_of(first) + 1
+
+
+STORY = """
+from cfepy.testing import explore
+
+@explore(seeds=60, policy="random", shrink=20, shrink_time={time})
+def test_total(mission):
+    flight = mission("race")
+    flight.run_for(0.9)
+    assert flight.problems == []
+"""
+
+
+def test_failure_has_the_story_of_the_explore_command(suite: Suite, missions: Path) -> None:
+    """Cause, the row of the failed step, and the name of the mission's invariant."""
+    rule = 'invariants: {all added: {topic: /total, holds: "msg.data == 6"}}\n'
+    (missions / "race" / "mission.yaml").write_text(rule, encoding="utf-8")
+    result = suite(STORY.format(time=60))
+    result.assert_outcomes(failed=1)
+    text = result.stdout.str()
+    assert re.search(r"^\d+ preemptions?.*, found in \d+ runs$", text, re.MULTILINE)
+    assert re.search(r"^cause: an update of racy\.total is lost: ", text, re.MULTILINE)
+    assert re.search(r"^\d\.\d{6} +FAILURE.* invariant: all added: ", text, re.MULTILINE)
+    assert (
+        text.index("\ncause: ") < text.index("\ntime, s ") < text.index(" FAILURE in ") < text.rindex("to reproduce: ")
+    )
+
+
+def test_shrinking_ends_with_its_time(suite: Suite) -> None:
+    result = suite(RACE.format(policy="random", shrink="None, shrink_time=1e-9"))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*, until its time was over (shrink_time of @explore gives more)"])
+
+
+def test_long_work_is_reported_between_runs(suite: Suite, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(in_tests.WorkLines, "every_ns", 0)
+    result = suite(RACE.format(policy="random", shrink=5))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "test_it.py::test_total: 1 of 60 schedules, 1 runs in * s",
+            "test_it.py::test_total: looking for a shorter schedule that fails, * runs in * s",
+            "test_it.py::test_total: shrinking the schedule of a failure, * runs in * s",
+            "*= FAILURES =*",
+        ]
+    )
+
+
+def test_short_work_is_not_reported(suite: Suite) -> None:
+    result = suite(RACE.format(policy="random", shrink=0))
+    result.stdout.no_fnmatch_line("test_it.py::test_total: *runs in*")
+
+
+@pytest.mark.parametrize("seconds", [0, -1.0])
+def test_time_to_shrink_must_be_positive(seconds: float) -> None:
+    with pytest.raises(UsageError, match=r"shrink_time: invalid time .*; expected more than 0 s"):
+        explore(shrink_time=seconds)

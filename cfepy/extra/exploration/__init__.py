@@ -20,14 +20,13 @@ if TYPE_CHECKING:
     from cfepy.extra.exploration.exploration import DEFAULT_SEEDS, Expedition, Report, Told
     from cfepy.extra.exploration.field_measures import FieldMeasure, FieldValue
     from cfepy.extra.exploration.longest import Worst
-    from cfepy.extra.exploration.made_moves import MadeMove
     from cfepy.extra.exploration.mission_transfer import files_read, ship
     from cfepy.extra.exploration.monte_carlo import Group, Quantity, groups_of
     from cfepy.extra.exploration.monte_carlo_picture import picture_of_draws
     from cfepy.extra.exploration.progress import make_progress
     from cfepy.extra.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
     from cfepy.extra.exploration.search import SeededSearch, seeded_kinds
-    from cfepy.extra.exploration.shrink import Shrinkable, Shrinker, Shrunk, budget_of
+    from cfepy.extra.exploration.shrink import SHRINK_S, Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.extra.exploration.sweep import (
         Knee,
         Point,
@@ -41,8 +40,7 @@ if TYPE_CHECKING:
     )
     from cfepy.extra.exploration.sweep_picture import SweepLine, picture_of_sweep
     from cfepy.extra.exploration.sweep_points import numbers_of, points_of, seeds_of, values_of
-    from cfepy.extra.exploration.task_look import TaskLook
-    from cfepy.extra.exploration.timeline import WIDTH, Story, important, story_of_run
+    from cfepy.extra.exploration.timeline import WIDTH, Story, story_of, story_of_run
     from cfepy.extra.exploration.trial import Trial, Tried
     from cfepy.extra.exploration.verdict import Failure, Finding, Verdict
     from cfepy.extra.exploration.worker_pools import make_crew
@@ -51,6 +49,7 @@ __all__ = [
     "DEFAULT_SEEDS",
     "GONE",
     "NOT_POSSIBLE",
+    "SHRINK_S",
     "STILL_THERE",
     "WIDTH",
     "Drawn",
@@ -62,7 +61,6 @@ __all__ = [
     "Group",
     "Knee",
     "Lot",
-    "MadeMove",
     "Point",
     "PointNumbers",
     "Quantity",
@@ -76,7 +74,6 @@ __all__ = [
     "Sweep",
     "SweepLine",
     "SweepRow",
-    "TaskLook",
     "Told",
     "TopicNumbers",
     "Trial",
@@ -88,7 +85,6 @@ __all__ = [
     "draws_of",
     "files_read",
     "groups_of",
-    "important",
     "knees",
     "make_crew",
     "make_progress",
@@ -101,6 +97,7 @@ __all__ = [
     "seeded_kinds",
     "seeds_of",
     "ship",
+    "story_of",
     "story_of_run",
     "sweep_table",
     "values_of",
@@ -152,19 +149,18 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Report",
                 "Told",
             ),
-            ".made_moves": ("MadeMove",),
             ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "ReplayedFailure", "replay_all"),
             ".shrink": (
+                "SHRINK_S",
                 "Shrinkable",
                 "Shrinker",
                 "Shrunk",
                 "budget_of",
             ),
-            ".task_look": ("TaskLook",),
             ".timeline": (
                 "WIDTH",
                 "Story",
-                "important",
+                "story_of",
                 "story_of_run",
             ),
             ".trial": (

@@ -26,7 +26,7 @@ from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.progress import make_progress
 from cfepy.extra.exploration.results_file import ResultsFile, keep_failure
 from cfepy.extra.exploration.search import SeededSearch, make_search
-from cfepy.extra.exploration.shrink import Shrinker, Shrunk, budget_of
+from cfepy.extra.exploration.shrink import SHRINK_S, Shrinker, Shrunk, budget_of
 from cfepy.extra.exploration.step_accesses import check_visible
 from cfepy.extra.exploration.timeline import Story, story_of
 from cfepy.extra.exploration.trial import Trial, Tried
@@ -185,6 +185,7 @@ class Expedition:
         longest_s: wall time that a schedule may take.
         results: file that keeps the verdicts, from which the exploration resumes.
         shrink: runs that shrinking a failure may take; None for the number of `budget_of`, 0 for no shrinking.
+        shrink_s: wall time that shrinking a failure may take.
         progress: stream for the progress; None shows nothing.
     """
 
@@ -211,6 +212,7 @@ class Expedition:
     longest_s: float = LONGEST_S
     results: str | None = None
     shrink: int | None = None
+    shrink_s: float = SHRINK_S
     progress: TextIO | None = None
 
     def run(self, tell: Callable[[tuple[str, ...]], object] = lambda notes: None) -> Report:
@@ -266,7 +268,7 @@ class Expedition:
                 tally.interrupted = True
         if distribution is not None and isinstance(trial, MeasuredTrial):
             budget = budget_of(tally.done) if self.shrink is None else self.shrink
-            report.worst = worst_of(trial, distribution, 0 if tally.interrupted else budget)
+            report.worst = worst_of(trial, distribution, 0 if tally.interrupted else budget, self.shrink_s)
         return report
 
     def _search(self, first: Tried, options: Schedule) -> Search:
@@ -404,7 +406,7 @@ class Expedition:
         schedules = [verdict.schedule for verdict in finding.simplest]
         budget = budget_of(flown) if self.shrink is None else self.shrink
         with contextlib.closing(ForkingNotes()) as forks:
-            shrunk = Shrinker(probed, schedules, finding.failure.group, budget, forks.fly).run()
+            shrunk = Shrinker(probed, schedules, finding.failure.group, budget, self.shrink_s, forks.fly).run()
         if shrunk is None:
             return None
         plan = replace(shrunk.trial.plan, stall=trial.plan.stall)

@@ -8,33 +8,36 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from typing import Literal, cast
 
 import pytest
 from _pytest.runner import runtestprotocol
 
+from cfepy.attachment import Attachment
 from cfepy.extra.exploration import (
     Failure,
-    MadeMove,
+    Finding,
     SeededSearch,
     Shrinker,
     Shrunk,
-    Story,
-    TaskLook,
     Tried,
     Verdict,
     budget_of,
-    important,
     seeded_kinds,
+    story_of,
 )
-from cfepy.rtos import Policy
+from cfepy.pilot import RunPlan
+from cfepy.rtos import Policy, Stopwatch
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from cfepy.testing.explore_mark import Exploration
 from cfepy.testing.missions import EXPLORE_MARK, SECTION, UNDER_TEST, Conditions, Missions
+from cfepy.units import NS_PER_S
 from cfepy.writing.escapes import visible
 
 FAILED = "test failed"
+MORE = 20  # schedules that are tried after a failure; the shortest ones that fail are shrunk
 
 
 def schedules_of(exploration: Exploration, decisions: Callable[[], int], count: int) -> Iterator[Schedule]:
@@ -67,10 +70,12 @@ class OneRun:
     Attributes:
         reports: of setup, call and teardown.
         conditions: the conditions under which its missions were flown.
+        expected: the groups of failures that the mission has under fifo as well.
     """
 
     reports: tuple[pytest.TestReport, ...]
     conditions: Conditions
+    expected: frozenset[str] = frozenset()
 
     @property
     def is_done(self) -> bool:
@@ -79,13 +84,32 @@ class OneRun:
 
     @property
     def failure(self) -> Failure | None:
-        """The failure; None if it passed. An expected failure (xfail) counts as one."""
+        """The failure of the test; None if it passed. An expected failure (xfail) counts as one."""
         for report in self.reports:
             if report.failed or (report.skipped and hasattr(report, "wasxfail")):
                 crash = getattr(report.longrepr, "reprcrash", None)
                 place = "" if crash is None else f"{crash.path}:{crash.lineno} {crash.message.partition(':')[0]}"
-                return Failure(FAILED, report.nodeid, f"{report.when} {place.splitlines()[0] if place else ''}")
+                text = f"{report.when} {place.splitlines()[0] if place else ''}"
+                cause = "|".join([text, *(each.group for each in self.own[:1])])
+                return Failure(FAILED, report.nodeid, text, self.conditions.ended_ns, cause=cause)
         return None
+
+    @property
+    def own(self) -> list[Failure]:
+        """The failures of the mission that it does not have under fifo; the first one identifies the cause."""
+        return [each for each in self.conditions.failures if each.group not in self.expected]
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict: the failure of the test, then the failures of the mission."""
+        recorded, own = self.conditions.recorded, self.failure
+        return Verdict(
+            self.conditions.schedule,
+            (*([] if own is None else [own]), *self.own),
+            deviations=tuple(sorted(recorded[0].deviations.items())) if recorded else (),
+            preemptions=recorded[0].preemptions if recorded else 0,
+            end_ns=self.conditions.ended_ns or 0,
+        )
 
 
 class ExploredTests:
@@ -104,8 +128,38 @@ class ExploredTests:
         return True
 
 
+class WorkLines:
+    """Lines about long work on a test, which pytest shows without `-s`.
+
+    Args:
+        item: the test.
+
+    Attributes:
+        every_ns: wall time between two lines.
+    """
+
+    every_ns = 5 * NS_PER_S
+
+    def __init__(self, item: pytest.Item) -> None:
+        self._item = item
+        self._watch = Stopwatch()
+        self._due_ns = self.every_ns
+        self._runs = 0
+
+    def tell(self, work: str) -> None:
+        """Count a run of the test; after every 5 s print a line with the work. Call it only between two runs."""
+        self._runs += 1
+        elapsed_ns = self._watch.elapsed_ns()
+        reporter = self._item.config.pluginmanager.get_plugin("terminalreporter")
+        if elapsed_ns < self._due_ns or reporter is None:
+            return
+        self._due_ns = elapsed_ns + self.every_ns
+        reporter.ensure_newline()
+        reporter.write_line(f"{self._item.nodeid}: {work}, {self._runs} runs in {elapsed_ns // NS_PER_S} s")
+
+
 class ExploredTest:
-    """One test under its schedules; a `cfepy.extra.exploration.Shrinkable`, under one at a time.
+    """One test under its schedules; a `Shrinkable` and a `Retellable` as the trials of `cfepy explore`.
 
     Args:
         item: the test.
@@ -117,15 +171,22 @@ class ExploredTest:
         self._exploration = exploration
         self._properties = len(item.user_properties)
         self._flown = 0
+        self._work = WorkLines(item)
+        self._doing = ""
+        self._expected: frozenset[str] = frozenset()
         self._last: OneRun
 
     def explore(self, nextitem: pytest.Item | None) -> Sequence[pytest.TestReport]:
         """Run the test. Returns the reports that stand for all runs."""
         count = self._item.config.getoption("--cfepy-schedules") or self._exploration.seeds
-        for number, schedule in enumerate(schedules_of(self._exploration, self._decisions, count), 1):
+        schedules = schedules_of(self._exploration, self._decisions, count)
+        for number, schedule in enumerate(schedules, 1):
             when = f"under schedule {number} of {count}"
             self._flown = number
             self._last = self._once(Conditions(schedule))
+            if number == 1 and not self._last.is_done:
+                self._expected = frozenset(each.group for each in self._last.conditions.failures)
+            self._work.tell(f"{number} of {count} schedules")
             if self._last.is_done:
                 break
             if not self._last.conditions.plans:
@@ -134,7 +195,7 @@ class ExploredTest:
         reports = [*self._last.reports]
         failure = self._last.failure
         if failure is not None:
-            reports = self._told(schedule, when, failure.group)
+            reports = self._told(Finding(failure, self._flown, self._last.verdict), schedules, when)
         return [*reports, *self._end_wider(nextitem)]
 
     def _decisions(self) -> int:
@@ -153,14 +214,18 @@ class ExploredTest:
         report: pytest.TestReport = self._item.ihook.pytest_runtest_makereport(item=self._item, call=call)
         return report
 
-    def _told(self, schedule: Schedule, when: str, group: str) -> list[pytest.TestReport]:
-        """Return the reports of the failure, shrunk if possible."""
+    def _told(self, finding: Finding, schedules: Iterator[Schedule], when: str) -> list[pytest.TestReport]:
+        """Return the reports of the failure, shrunk if possible, with its story."""
+        schedule = finding.verdict.schedule
         lines = [f"failed {when}, {schedule}"]
-        shrunk = self._shrunk(schedule, group)
+        first = self._last
+        shrunk = self._shrunk(finding, schedules)
         if shrunk is not None:
             schedule = shrunk.verdict.schedule
             lines.append(f"the shortest schedule that fails in this way, after {shrunk.probes} runs: {schedule}")
-            lines += ["", *self._timeline(schedule, shrunk.moves), ""]
+            lines += [shrunk.text("shrink_time of @explore"), "", *self._story(shrunk, finding.failure.group), ""]
+        elif self._last is not first:  # the reports are those of the first failure
+            self._last = self._once(Conditions(schedule))
         if self._missions is not None:
             lines.append(f"to reproduce: {self._missions.command(self._item, schedule)}")
         reports = list(self._last.reports)
@@ -168,30 +233,58 @@ class ExploredTest:
         failed.sections.append((f"{SECTION} explore", visible("\n".join(lines))))
         return reports
 
-    def _shrunk(self, schedule: Schedule, group: str) -> Shrunk[ExploredTest] | None:
+    def _shrunk(self, finding: Finding, schedules: Iterator[Schedule]) -> Shrunk[ExploredTest] | None:
         """Return the shortest schedule, or None if shrinking does not apply."""
-        recorded = self._last.conditions.recorded
+        recorded, exploration = self._last.conditions.recorded, self._exploration
         is_alone = len(recorded) == 1 and recorded[0].moments
-        if self._exploration.shrink == 0 or not is_alone or self._item.config.getoption("usepdb"):
+        if exploration.shrink == 0 or not is_alone or self._item.config.getoption("usepdb"):
             return None
-        budget = budget_of(self._flown) if self._exploration.shrink is None else self._exploration.shrink
-        return Shrinker(self, [schedule], group, budget).run()
+        watch = Stopwatch()
+        self._find_simpler(finding, schedules)
+        budget = budget_of(self._flown) if exploration.shrink is None else exploration.shrink
+        left_s = max(0.0, exploration.shrink_time - watch.elapsed_ns() / NS_PER_S)
+        self._doing = "shrinking the schedule of a failure"
+        starts = [verdict.schedule for verdict in finding.simplest]
+        return Shrinker(self, starts, finding.failure.group, budget, left_s).run()
 
-    def _timeline(self, schedule: Schedule, moves: Sequence[MadeMove]) -> list[str]:
-        """Run the test once more under a schedule. Returns its timeline, with a column for each task that matters."""
-        look = TaskLook(self._last.conditions.plans[0].spec())
-        policy = look.policy(schedule.policy() or Policy())
-        self._last = self._once(Conditions(schedule, policy, (look,)))
-        return Story(tuple(look.rows), important(look.rows, moves)).lines()
+    def _find_simpler(self, finding: Finding, schedules: Iterator[Schedule]) -> None:
+        """Run further schedules; as in `cfepy explore`, the shortest ones that fail are shrunk."""
+        watch, limit_ns = Stopwatch(), self._exploration.shrink_time * NS_PER_S / 4
+        for number, schedule in enumerate(islice(schedules, MORE), self._flown + 1):
+            if watch.elapsed_ns() > limit_ns:
+                break
+            run = self._last = self._once(Conditions(schedule))
+            verdict = run.verdict
+            if verdict.failure(finding.failure.group) is not None and len(run.conditions.recorded) == 1:
+                finding.again(number, verdict)
+            self._work.tell("looking for a shorter schedule that fails")
+
+    def _story(self, shrunk: Shrunk[ExploredTest], group: str) -> list[str]:
+        """Return the story of the failure, as `cfepy explore` shows it: of the mission's own failure, if it has one."""
+        self._doing = "recording the timeline of the failure"
+        again = self._once(Conditions(shrunk.verdict.schedule))
+        failures = again.verdict.failures
+        failure = next((each for each in failures if each.group != group), failures[0] if failures else None)
+        if failure is None:
+            return []
+        lines = story_of(self, shrunk.verdict, failure, shrunk.moves).lines()
+        self._last = self._once(Conditions(shrunk.verdict.schedule))  # the reports are those of this run
+        return lines
 
     # -- one run -------------------------------------------------------------------------------------------------------
 
-    def fly(self, schedule: Schedule, policy: Policy | None = None) -> Tried:
+    events = "error"
+
+    @property
+    def plan(self) -> RunPlan:
+        """The run of the mission."""
+        return self._last.conditions.plans[0]
+
+    def fly(self, schedule: Schedule, attachments: Sequence[Attachment] = (), policy: Policy | None = None) -> Tried:
         """Return the verdict under a schedule, or under a policy in its place, as `Trial.fly` does."""
-        run = self._once(Conditions(schedule, policy))
-        failure, recorded = run.failure, run.conditions.recorded
-        deviations = tuple(sorted(recorded[0].deviations.items())) if recorded else ()
-        return Tried(Verdict(schedule, () if failure is None else (failure,), deviations=deviations))
+        run = self._last = self._once(Conditions(schedule, policy, tuple(attachments)))
+        self._work.tell(self._doing)
+        return Tried(run.verdict)
 
     def until(self, end_ns: int) -> None:
         """Do nothing: the length of a test cannot be changed."""
@@ -211,7 +304,7 @@ class ExploredTest:
             reports = runtestprotocol(item, log=False, nextitem=parent)
         finally:
             del item.config.stash[UNDER_TEST]
-        return OneRun(tuple(reports), conditions)
+        return OneRun(tuple(reports), conditions, self._expected)
 
 
 def _complain() -> None:

@@ -293,13 +293,14 @@ class Worst:
         }
 
 
-def worst_of(trial: MeasuredTrial, distribution: Distribution, most_probes: int) -> Worst:
+def worst_of(trial: MeasuredTrial, distribution: Distribution, most_probes: int, most_s: float | None = None) -> Worst:
     """Return the longest run of a campaign, shrunk, and with its timeline.
 
     Args:
         trial: the trial that was flown.
         distribution: the measured values.
         most_probes: runs that shrinking may take; 0 leaves the schedule as it is.
+        most_s: wall time that it may take; None for any.
     """
     worst, longest = Worst(distribution), distribution.longest
     if longest is None:
@@ -307,7 +308,7 @@ def worst_of(trial: MeasuredTrial, distribution: Distribution, most_probes: int)
     limited = replace(trial, limit_ns=max(longest.longest[0], 1))
     if distribution.number is not None and most_probes:
         group = Failure(LONGEST, trial.measure.text, "", cause=LONGEST).group
-        worst.shrunk = Shrinker(limited, [longest.schedule], group, most_probes).run()
+        worst.shrunk = Shrinker(limited, [longest.schedule], group, most_probes, most_s).run()
         if worst.shrunk is not None:
             failure = worst.shrunk.verdict.failure(group)
             if failure is not None:

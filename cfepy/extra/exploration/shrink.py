@@ -10,6 +10,7 @@ A run is flown only if known runs do not predict its end (`KnownRuns`), and it g
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, islice
@@ -18,11 +19,12 @@ from typing import Generic, NamedTuple, Protocol, Self, TypeVar
 from cfepy.extra.exploration.made_moves import Choice, KnownRuns, MadeMove, MoveNotingPolicy
 from cfepy.extra.exploration.trial import Tried
 from cfepy.extra.exploration.verdict import RESULTS, Verdict
-from cfepy.rtos import Policy
+from cfepy.rtos import Policy, Stopwatch
 from cfepy.schedules import Move, Schedule
 from cfepy.units import NS_PER_MS, NS_PER_S
 
 LEAST_PROBES, MOST_PROBES = 300, 800
+SHRINK_S = 60.0  # wall time for one failure
 STARTS = 3  # failing schedules that are shrunk, the shortest ones
 SUBSETS_OF = 6  # moves of which all subsets are flown
 REACH = 64  # the most decisions by which a move is shifted
@@ -96,12 +98,33 @@ class Shrunk(Generic[T]):
         verdict: of the shortest schedule, which consists of moves.
         moves: its moves.
         probes: number of runs that it took.
+        is_cut_short: whether the time ended before all shorter schedules were tried.
     """
 
     trial: T
     verdict: Verdict
     moves: tuple[MadeMove, ...]
     probes: int
+    is_cut_short: bool = False
+
+    def text(self, option: str) -> str:
+        """Return how long the schedule is and how it was found: `1 preemption, found in 13 runs`.
+
+        Args:
+            option: the name of the time limit, for a search that was cut short.
+        """
+        over = f", until its time was over ({option} gives more)" if self.is_cut_short else ""
+        return f"{self._length()}, found in {self.probes} runs{over}"
+
+    def _length(self) -> str:
+        preemptions = self.verdict.preemptions
+        answers = Counter(move.question for move in self.moves if move.question)
+        others = len(self.verdict.deviations) - preemptions - answers.total()
+        parts = [f"{preemptions} {'preemption' if preemptions == 1 else 'preemptions'}"]
+        if others:
+            parts.append(f"{others} {'change' if others == 1 else 'changes'} of order")
+        parts += [f"{count} {kind if count == 1 else f'{kind}s'}" for kind, count in answers.items()]
+        return " and ".join(parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,6 +157,7 @@ class Shrinker(Generic[T]):
         schedules: schedules under which it fails, the shortest first.
         group: of the failure.
         most_probes: the most runs; the final check that no move can be left out is made in any case.
+        most_s: the most wall time, after which only the final run is made; None for any.
         fly: flies a trial under a schedule and records its moves, as `fly_noting` does.
     """
 
@@ -143,6 +167,7 @@ class Shrinker(Generic[T]):
         schedules: Sequence[Schedule],
         group: str,
         most_probes: int = MOST_PROBES,
+        most_s: float | None = None,
         fly: Callable[[T, Schedule], NotedFlight] = fly_noting,
     ) -> None:
         self._trial = trial
@@ -152,7 +177,17 @@ class Shrinker(Generic[T]):
         self._most = most_probes
         self._known: dict[Schedule, KnownRuns[_Flight]] = {}
         self._limit = most_probes
+        self._most_s = most_s
+        self._watch = Stopwatch()
+        self._is_cut_short = False
         self.probes = 0
+
+    @property
+    def _is_spent(self) -> bool:
+        """Whether no further run may be made at present."""
+        if self._most_s is not None and self._watch.elapsed_ns() > self._most_s * NS_PER_S:
+            self._is_cut_short = True
+        return self._is_cut_short or self.probes >= self._limit
 
     def run(self) -> Shrunk[T] | None:
         """Shrink; None if the first schedule does not show the failure."""
@@ -163,7 +198,7 @@ class Shrinker(Generic[T]):
         self._limit = self._most // 2
         best = self._with_one(self._with_less(self._without_tail(first)), FEW)
         for schedule in self._schedules[1:STARTS]:
-            if len(best.made) > 1 and self.probes < self._limit:
+            if len(best.made) > 1 and not self._is_spent:
                 other = self._fly(schedule)
                 if other.fails:
                     best = min(best, self._with_less(self._without_tail(other)), key=lambda flight: flight.cost)
@@ -219,7 +254,7 @@ class Shrinker(Generic[T]):
 
     def _with_one(self, best: _Flight, count: int) -> _Flight:
         """Try one move in place of all, in the run of fifo: similar places and moves closest to the failure first."""
-        if len(best.made) < 2 or self.probes >= self._limit:
+        if len(best.made) < 2 or self._is_spent:
             return best
         fifo = self._flight((), best.options)
         at_ns = best.verdict.end_ns if (failure := best.verdict.failure(self._group)) is None else failure.at_ns
@@ -231,7 +266,7 @@ class Shrinker(Generic[T]):
         pieces = [(at, size) for size in MERGED for at in range(len(best.made) - size + 1)]
         for at, size in pieces:
             kept = (*best.moves[:at], *best.moves[at + size :])
-            if self.probes >= self._limit:
+            if self._is_spent:
                 break
             without = self._flight(kept, best.options)
             near = islice(_between(best, without, at, size), CANDIDATES)
@@ -304,7 +339,9 @@ class Shrinker(Generic[T]):
         """Return the result as a schedule of moves, flown once more to be sure."""
         self.probes += 1
         verdict = self._trial.fly(best.options.by_moves(best.moves)).verdict
-        return None if verdict.failure(self._group) is None else Shrunk(self._trial, verdict, best.made, self.probes)
+        if verdict.failure(self._group) is None:
+            return None
+        return Shrunk(self._trial, verdict, best.made, self.probes, self._is_cut_short)
 
     # -- probes ------------------------------------------------------------------------------------------------------
 
@@ -319,7 +356,7 @@ class Shrinker(Generic[T]):
         """Return a flight with the options of another, if it fails and the budget allows it."""
         found = self._runs(like.options).find(moves)
         if found is None:
-            if self.probes >= self._limit:
+            if self._is_spent:
                 return None
             found = self._fly(like.options.by_moves(moves))
         return found if found.fails else None

@@ -11,7 +11,9 @@ import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from textwrap import wrap
+from typing import Protocol
 
+from cfepy.attachment import Attachment
 from cfepy.extra.exploration.cause import Evidence, cause_of
 from cfepy.extra.exploration.failure_kinds import FailureWatch
 from cfepy.extra.exploration.made_moves import MadeMove, MoveNotingPolicy
@@ -29,10 +31,11 @@ from cfepy.extra.exploration.task_look import (
     Row,
     TaskLook,
 )
-from cfepy.extra.exploration.trial import Trial
+from cfepy.extra.exploration.trial import Trial, Tried
 from cfepy.extra.exploration.verdict import INVARIANT, LONGEST, Failure, Verdict
 from cfepy.pilot import RunPlan
 from cfepy.rtos import HOLD, Policy
+from cfepy.schedules import Schedule
 from cfepy.units import NS_PER_S
 
 WIDTH = 100
@@ -113,7 +116,22 @@ class Story:
         return [(at if not number else "").ljust(TIME_WIDTH) + line for number, line in enumerate(lines)]
 
 
-def story_of(trial: Trial, verdict: Verdict, failure: Failure, moves: Sequence[MadeMove]) -> Story:
+class Retellable(Protocol):
+    """An experiment whose runs have a story, such as a `Trial`."""
+
+    @property
+    def plan(self) -> RunPlan:
+        """The run."""
+
+    @property
+    def events(self) -> str:
+        """The events that are failures, as for `FailureWatch`."""
+
+    def fly(self, schedule: Schedule, attachments: Sequence[Attachment] = (), policy: Policy | None = None) -> Tried:
+        """Fly it, as `Trial.fly` does."""
+
+
+def story_of(trial: Retellable, verdict: Verdict, failure: Failure, moves: Sequence[MadeMove]) -> Story:
     """Fly the run once more, and the run under fifo. Returns the story of the failure.
 
     Args:

@@ -76,6 +76,21 @@ def test_shrinking_respects_its_number_of_runs(bank: Path) -> None:
     assert shrunk.probes <= 10 + 3 + 1  # and the subsets of two moves, and the one that makes sure of the result
 
 
+def test_shrinking_respects_its_time(bank: Path) -> None:
+    trial = Trial(RunPlan((str(bank),), seconds=0.7))
+    schedule = Schedule.parse("at:1=1,4=1,7=1")
+    (group,) = trial.run(schedule).groups
+    shrunk = Shrinker(trial, [schedule], group, most_s=0.0).run()
+    assert shrunk is not None
+    assert shrunk.is_cut_short
+    assert shrunk.probes <= 3  # the first, the same in a shorter run, and the one that makes sure of the result
+    assert shrunk.text("--time").endswith("found in 3 runs, until its time was over (--time gives more)")
+    whole = Shrinker(trial, [schedule], group).run()
+    assert whole is not None
+    assert not whole.is_cut_short
+    assert whole.text("--time") == f"2 preemptions, found in {whole.probes} runs"
+
+
 def test_the_timeline_shows_both_tasks_up_to_the_failure(bank: Path) -> None:
     trial = Trial(RunPlan((str(bank),), seconds=0.7))
     schedule = Schedule.parse("at:4=1,7=1")

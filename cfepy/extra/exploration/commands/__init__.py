@@ -135,6 +135,9 @@ def _add_outputs(explore: argparse.ArgumentParser) -> None:
     explore.add_argument(
         "--shrink", type=_number_of, metavar="N", help="most runs to shrink a failure (default: 300 to 800)"
     )
+    explore.add_argument(
+        "--shrink-time", type=seconds_of, default=60.0, metavar="S", help="most wall time to shrink one (default: 60)"
+    )
     explore.add_argument("--quiet", action="store_true", help="print only the failures and the summary")
 
 

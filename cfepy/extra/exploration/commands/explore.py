@@ -8,16 +8,15 @@ from __future__ import annotations
 import argparse
 import shutil
 import sys
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, TextIO
+from typing import TextIO
 
 from cfepy.cli.json_output import check_ci_outputs, check_json, wants_ci_outputs, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.user_notes import tell
-from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Shrunk, Told, Worst
+from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Told, Worst
 from cfepy.extra.exploration.commands import DEFAULT_SEEDS
 from cfepy.pilot import RunPlan
 from cfepy.schedules import Schedule
@@ -25,6 +24,7 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S, time_text
 
 RUNS_THAT_ARE_COMPARED = 2
+SHRINK_OPTION = "--shrink-time"
 INDENT = 2  # of the lines about a failure
 
 
@@ -95,7 +95,7 @@ def _about(report: Report, told: Told, width: int) -> Iterator[str]:
     yield f"replay: {report.trial.command(report.schedule_of(told))}"
     if shrunk is not None:
         yield f"shrunk: {shrunk.trial.command(shrunk.verdict.schedule)}"
-        yield f"        {_moves_text(shrunk)}, found in {shrunk.probes} runs"
+        yield f"        {shrunk.text(SHRINK_OPTION)}"
         for move in shrunk.moves:
             if move.question:
                 yield f"        {move.task}: {move.chosen}"
@@ -125,7 +125,7 @@ def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
         yield f"  number {found.number}: {report.trial.command(longest.schedule)}"
     if worst.shrunk is not None:
         yield f"  shrunk: {worst.shrunk.trial.command(worst.shrunk.verdict.schedule)}"
-        yield f"          {_moves_text(worst.shrunk)}, found in {worst.shrunk.probes} runs"
+        yield f"          {worst.shrunk.text(SHRINK_OPTION)}"
     lines = worst.story.lines(width)
     if lines:
         yield ""
@@ -139,17 +139,6 @@ def _how_often(report: Report, finding: Finding) -> Iterator[str]:
         median = finding.median_schedules
         count = f"{len(finding.numbers)} of {report.tally.done} schedules"
         yield f"{count}, first number {finding.numbers[0]}; one in {median:g} in the median"
-
-
-def _moves_text(shrunk: Shrunk[Any]) -> str:
-    preemptions = shrunk.verdict.preemptions
-    answers = Counter(move.question for move in shrunk.moves if move.question)
-    others = len(shrunk.verdict.deviations) - preemptions - answers.total()
-    parts = [f"{preemptions} {'preemption' if preemptions == 1 else 'preemptions'}"]
-    if others:
-        parts.append(f"{others} {'change' if others == 1 else 'changes'} of order")
-    parts += [f"{count} {kind if count == 1 else f'{kind}s'}" for kind, count in answers.items()]
-    return " and ".join(parts)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -213,5 +202,6 @@ def _expedition(arguments: argparse.Namespace) -> Expedition:
         from_s=getattr(arguments, "from"),
         stuck=not arguments.no_stuck,
         longest_s=arguments.longest,
+        shrink_s=arguments.shrink_time,
         progress=None if arguments.quiet else sys.stderr,
     )
