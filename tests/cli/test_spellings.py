@@ -70,7 +70,6 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--tasks": (None, "kind of tasks"),
     "--trace": ("FILE", "write all records of the run to a file"),
     "--until": ("SECONDS", "ends at this virtual time"),
-    "--profile": ("FILE", "print where wall time goes"),
     "--foxglove": ("[HOST:]PORT", "serve Foxglove"),
     "--rosbridge": ("[HOST:]PORT", "serve clients of rosbridge"),
     "--viewer-origin": ("ORIGIN", "let pages of a web site"),
