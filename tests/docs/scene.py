@@ -64,7 +64,7 @@ class Scene:
         elsewhere: command to the file of the test that runs it unchanged.
         needs: programs without which the page is left out.
         files: path in the scratch folder to path in the repository, None for the same, or to `{block: TEXT}` for the
-            page's code block that contains this text.
+            page's code block that contains this text; `{block: TEXT, page: PAGE}` is a block of another page.
         before: commands that the reader executed before the page.
         instead: text in commands to its replacement here, so that they end soon or find a computer.
         steps: command to a step, if it needs more than running.
@@ -110,7 +110,7 @@ class Scene:
             target = folder / name
             target.parent.mkdir(parents=True, exist_ok=True)
             if isinstance(source, dict):
-                target.write_text(self._block_with(source["block"]).text, encoding="utf-8")
+                target.write_text(self._block_with(**source).text, encoding="utf-8")
             elif (ROOT / (source or name)).is_dir():
                 shutil.copytree(ROOT / (source or name), target, ignore=shutil.ignore_patterns("__pycache__"))
             else:
@@ -124,7 +124,7 @@ class Scene:
         yield from (text for text in self.instead if not any(text in command for command in self.commands))
         for name, source in self.files.items():
             if isinstance(source, dict):
-                self._block_with(source["block"])
+                self._block_with(**source)
             elif not (ROOT / (source or name)).exists():
                 yield name
         for command in self.steps:
@@ -137,9 +137,10 @@ class Scene:
     def _below(self) -> dict[str, str]:
         return {command: shown for block in blocks(self.page) for command, shown in block.session}
 
-    def _block_with(self, text: str) -> Block:
-        [block] = [block for block in blocks(self.page) if text in block.text]
-        return block
+    def _block_with(self, block: str, page: str = "") -> Block:
+        found = [each for each in blocks(ROOT / page if page else self.page) if block in each.text]
+        assert len(found) == 1, f"{len(found)} blocks of {page or self.page} contain {block!r}"
+        return found[0]
 
 
 @cache
