@@ -1,4 +1,4 @@
-"""`cfepy run --watch`: a run for each change, its short result, and the files that count."""
+"""`cfepy run --watch`: a run for each change, its short result, and the files that count. docs/how_to/recipes.md shows it."""
 
 from __future__ import annotations
 

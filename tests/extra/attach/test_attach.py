@@ -1,4 +1,4 @@
-"""Attaching to a running flight: the flight's socket, `live:` of the commands, and their limits."""
+"""Attaching to a running flight: the flight's socket, `live:` of the commands, and their limits. docs/how_to/recipes.md shows it."""
 
 from __future__ import annotations
 
