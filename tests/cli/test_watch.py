@@ -1,4 +1,7 @@
-"""`cfepy run --watch`: a run for each change, its short result, and the files that count. docs/how_to/recipes.md shows it."""
+"""`cfepy run --watch`: a run for each change, its short result, and the files that count.
+
+recipes.md, ground_tools.md and other pages show it.
+"""
 
 from __future__ import annotations
 

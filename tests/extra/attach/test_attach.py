@@ -1,4 +1,7 @@
-"""Attaching to a running flight: the flight's socket, `live:` of the commands, and their limits. docs/how_to/recipes.md shows it."""
+"""Attaching to a running flight: the flight's socket, `live:` of the commands, and their limits.
+
+recipes.md, ground_tools.md and other pages show it.
+"""
 
 from __future__ import annotations
 
