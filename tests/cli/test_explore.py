@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from cfepy.cli.main import BAD_USAGE, ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED, m
 from cfepy.extra.exploration.campaign import Inline
 from cfepy.extra.exploration.shrink import Shrinker
 from cfepy.extra.exploration.trial import Trial
+from cfepy.writing.work_progress import WorkProgress
 from tests.extra.exploration import missions
 
 ROOT = Path(__file__).parents[2]
@@ -209,6 +211,19 @@ def test_numbers_that_cannot_be(late: Path, option: str) -> None:
     with pytest.raises(SystemExit) as caught:
         explore(late, option)
     assert caught.value.code == BAD_USAGE
+
+
+@pytest.mark.slow
+def test_terminal_shows_the_runs_of_shrinking(late: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown: list[str] = []
+    monkeypatch.setattr(WorkProgress, "show", lambda progress, text: shown.append(text))
+    explore(late, "--for", 0.7, "--policy", "random", "--seeds", 3, "--jobs", 1)
+    assert shown[0].endswith(f" runs, {EVENT}")
+    runs = [re.match(r"shrinking: (\d+) of at most \d+ runs", each) for each in shown]
+    assert [int(run[1]) for run in runs if run is not None] == [*range(1, len(shown) + 1)]
+    shown.clear()
+    explore(late, "--for", 0.7, "--policy", "random", "--seeds", 3, "--jobs", 1, "--quiet")
+    assert shown == []
 
 
 @pytest.mark.slow

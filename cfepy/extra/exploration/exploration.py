@@ -11,7 +11,8 @@ are compared with its results.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable
+import itertools
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, TextIO
 
@@ -26,7 +27,7 @@ from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.progress import make_progress
 from cfepy.extra.exploration.results_file import ResultsFile, keep_failure
 from cfepy.extra.exploration.search import SeededSearch, make_search
-from cfepy.extra.exploration.shrink import SHRINK_S, Shrinker, Shrunk, budget_of
+from cfepy.extra.exploration.shrink import SHRINK_S, NotedFlight, Shrinker, Shrunk, budget_of
 from cfepy.extra.exploration.step_accesses import check_visible
 from cfepy.extra.exploration.timeline import Story, story_of
 from cfepy.extra.exploration.trial import Trial, Tried
@@ -39,6 +40,7 @@ from cfepy.rtos import Policy, Stopwatch
 from cfepy.schedules import Points, Schedule
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
+from cfepy.writing.work_progress import WorkProgress
 
 FROM_OPERATIONAL = 0.0
 BASE = "at"  # fifo as a policy object, so that decisions are counted and options apply
@@ -400,17 +402,36 @@ class Expedition:
         """Return the schedule with the fewest preemptions; None if the failure needs none, or ends its process."""
         if self.shrink == 0 or finding.in_reference or finding.failure.kind == PROCESS_DIED:
             return None
-        if self.progress is not None and self.progress.isatty():
-            print("cfepy: shrinking", finding.failure.title, file=self.progress, flush=True)
         probed = trial.probe() if finding.failure.kind == STALLED else trial
         schedules = [verdict.schedule for verdict in finding.simplest]
         budget = budget_of(flown) if self.shrink is None else self.shrink
-        with contextlib.closing(ForkingNotes()) as forks:
-            shrunk = Shrinker(probed, schedules, finding.failure.group, budget, self.shrink_s, forks.fly).run()
+        with self._noting_flights(finding.failure.title, budget) as fly:
+            shrunk = Shrinker(probed, schedules, finding.failure.group, budget, self.shrink_s, fly).run()
         if shrunk is None:
             return None
         plan = replace(shrunk.trial.plan, stall=trial.plan.stall)
         return replace(shrunk, trial=replace(shrunk.trial, plan=plan))
+
+    @contextlib.contextmanager
+    def _noting_flights(self, title: str, budget: int) -> Iterator[Callable[[Trial, Schedule], NotedFlight]]:
+        """Yield the function that flies for shrinking; a terminal shows the number of flights.
+
+        Args:
+            title: of the failure.
+            budget: most flights.
+        """
+        with contextlib.closing(ForkingNotes()) as forks:
+            if self.progress is None:
+                yield forks.fly
+                return
+            numbers = itertools.count(1)
+
+            def fly(trial: Trial, schedule: Schedule) -> NotedFlight:
+                progress.show(f"shrinking: {next(numbers)} of at most {budget} runs, {title}")
+                return forks.fly(trial, schedule)
+
+            with WorkProgress(Stopwatch().elapsed_ns, self.progress) as progress:
+                yield fly
 
 
 def beside_fifo(bare: Trial, first: Tried, options: Schedule | None) -> Trial:
