@@ -86,14 +86,30 @@ def test_layout_in_a_file_of_ones_own(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def test_tables_of_a_missions_own_apps(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mission = tmp_path / "mission"
+    mission.mkdir()
+    (mission / "limits.py").write_text(APP, encoding="utf-8")
+    (mission / "startup.scr").write_text("CFE_APP, limits, Main, LIMITS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
+    source = tmp_path / "points.yaml"
+    source.write_text("table: LIMITS.Points\nrows:\n- {Low: -1, High: 1}\n", encoding="utf-8")
+    assert main(["tbl", "build", str(source)]) == 2
+    assert main(["tbl", "build", str(source), "--mission", str(mission)]) == 0
+    assert read((tmp_path / "points.tbl").read_bytes()).data == bytes.fromhex("ffff0100") + bytes(12)
+    assert "unknown table LIMITS.Points" in capsys.readouterr().err
+
+
+def test_file_in_a_missions_folder_needs_no_mission_option(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "limits.py").write_text(APP, encoding="utf-8")
     (tmp_path / "startup.scr").write_text("CFE_APP, limits, Main, LIMITS, 50, 8192, 0, 0;\n!\n", encoding="utf-8")
     source = tmp_path / "points.yaml"
     source.write_text("table: LIMITS.Points\nrows:\n- {Low: -1, High: 1}\n", encoding="utf-8")
-    assert main(["tbl", "build", str(source)]) == 2
-    assert main(["tbl", "build", str(source), "--mission", str(tmp_path)]) == 0
-    assert read((tmp_path / "points.tbl").read_bytes()).data == bytes.fromhex("ffff0100") + bytes(12)
-    assert "unknown table LIMITS.Points" in capsys.readouterr().err
+    assert main(["tbl", "build", str(source)]) == 0
+    assert main(["tbl", "show", str(tmp_path / "points.tbl")]) == 0
+    assert re.search(r"^ +0 +-1 +1$", capsys.readouterr().out, re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    assert main(["tbl", "diff", "points.tbl", "points.yaml"]) == 0
 
 
 def test_an_unknown_table_gets_the_nearest_known_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -51,7 +51,11 @@ def _add_action(
     actions: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str, example: str
 ) -> argparse.ArgumentParser:
     action = add_action(actions, name, text, f"tbl {name} {example}", TBL_STATUS)
-    add_mission(action, "--mission", help=f"take the tables' layouts from this mission: {MISSION_HELP}")
+    add_mission(
+        action,
+        "--mission",
+        help=f"take the tables' layouts from this mission, instead of the folder of a file: {MISSION_HELP}",
+    )
     action.add_argument("--layout", metavar="FILE.yaml", help="take a table's layout from a YAML file that has one")
     action.set_defaults(module="cfepy.cli.files.tbl")
     return action

@@ -25,6 +25,7 @@ from cfepy.ground.cfe_files.table_file import (
     is_zero,
     take_apart,
 )
+from cfepy.mission import is_mission_folder
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import TABLE_BYTES
 from cfepy.reading.marked_yaml import load
@@ -51,13 +52,21 @@ def run(arguments: argparse.Namespace) -> int:
 def _find(arguments: argparse.Namespace) -> Find:
     """Make the lookup of table types of the mission, of shipped apps, and of `--layout`."""
     problems: list[str] = []
-    known = table_types(arguments.mission, problems)
+    known = table_types(arguments.mission or _mission_around(arguments), problems)
     for problem in problems:
         print(f"cfepy: {problem}", file=sys.stderr)
     if arguments.layout is not None:
         own = _own_type(Path(arguments.layout))
         known[own.name] = own
     return KnownTables(known)
+
+
+def _mission_around(arguments: argparse.Namespace) -> str | None:
+    """Return the mission in whose folder one of the command's files lies; None if there is none."""
+    given = vars(arguments)
+    files = [*given.get("files", ()), *(given.get(name) for name in ("file", "other", "output"))]
+    folders = (Path(file).parent for file in files if file)
+    return next((str(folder) for folder in folders if is_mission_folder(folder)), None)
 
 
 def _own_type(path: Path) -> TableType:
