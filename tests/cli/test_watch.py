@@ -1,7 +1,4 @@
-"""`cfepy run --watch`: a run for each change, its short result, and the files that count.
-
-recipes.md, ground_tools.md and other pages show it.
-"""
+"""`cfepy run --watch` (docs/how_to/recipes.md): a run for each change, its short result, and the files that count."""
 
 from __future__ import annotations
 

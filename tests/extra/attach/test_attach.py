@@ -1,7 +1,4 @@
-"""Attaching to a running flight: the flight's socket, `live:` of the commands, and their limits.
-
-recipes.md, ground_tools.md and other pages show it.
-"""
+"""Attaching to a running flight: its socket, `live:` of the commands (docs/how_to/ground_tools.md), and their limits."""
 
 from __future__ import annotations
 
