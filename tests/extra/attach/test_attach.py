@@ -1,4 +1,4 @@
-"""Attaching to a running flight: its socket, `live:` of the commands (docs/how_to/ground_tools.md), and their limits."""
+"""Attaching to a running flight: its socket, `live:` of commands (docs/how_to/ground_tools.md), and their limits."""
 
 from __future__ import annotations
 
