@@ -15,6 +15,7 @@ import os
 import socket
 import stat
 import tempfile
+from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -32,6 +33,8 @@ SUFFIX = ".sock"
 MOST_BYTES = 1 << 27  # of a message
 ANSWER_S = 10.0  # wall time for an answer; a flight answers between two parts of its run
 CONNECT_S = 1.0
+LOOK_S = 0.25  # longest time for which Ctrl-C may wait
+LEAST_S = 1e-4
 CHUNK = 1 << 16
 
 
@@ -169,7 +172,7 @@ class LiveFlight:
     def __init__(self, plug: socket.socket) -> None:
         self._plug = plug
         self._frames = LiveFrames()
-        self._early: list[dict[str, Any]] = []
+        self._unread: deque[dict[str, Any]] = deque()
         self.lost = 0
         hello = self.ask({"op": "hello"})
         self.mission, self.script, self.pid = str(hello["mission"]), str(hello["script"]), int(hello["pid"])
@@ -201,7 +204,7 @@ class LiveFlight:
                 if message.get("of") == request["op"]:
                     answer = message
                 else:
-                    self._early.append(message)
+                    self._unread.append(message)
         if "error" in answer:
             raise UsageError(str(answer["error"]))
         return answer
@@ -235,16 +238,23 @@ class LiveFlight:
         """
         watch = Stopwatch()
         with contextlib.suppress(KeyboardInterrupt, ConnectionError):
-            early, self._early = self._early, []
-            yield from filter(None, map(self._message, early))
             while seconds is None or watch.elapsed_ns() < seconds * NS_PER_S:
-                rest_s = 0.25 if seconds is None else max(0.001, min(0.25, seconds - watch.elapsed_ns() / NS_PER_S))
-                self._plug.settimeout(rest_s)
-                try:
-                    received = self._received()
-                except TimeoutError:
-                    continue
-                yield from filter(None, map(self._message, received))
+                rest_s = LOOK_S if seconds is None else min(LOOK_S, seconds - watch.elapsed_ns() / NS_PER_S)
+                message = self.receive(rest_s)
+                if message is not None:
+                    yield message
+
+    def receive(self, seconds: float) -> TopicMessage | tuple[bytes, int] | None:
+        """Return the next message or packet; None if none comes in this wall time.
+
+        Raises:
+            ConnectionError: if the flight has ended.
+        """
+        if not self._unread:
+            self._plug.settimeout(max(seconds, LEAST_S))
+            with contextlib.suppress(TimeoutError):
+                self._unread += self._received()
+        return self._message(self._unread.popleft()) if self._unread else None
 
     def _message(self, message: Mapping[str, Any]) -> TopicMessage | tuple[bytes, int] | None:
         self.lost = message.get("lost", self.lost)

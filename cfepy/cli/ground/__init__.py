@@ -12,6 +12,7 @@ from cfepy.cli.csv_cells import add_quote_formulas
 from cfepy.cli.flight_options import add_pace, add_recording
 from cfepy.cli.options import (
     LOOK_STATUS,
+    MISSION_HELP,
     VALUES_HELP,
     add_count,
     add_drawing,
@@ -122,7 +123,7 @@ def _add_console(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
         epilog="exit status: 0 well, 1 a step or a line failed, or an application died; 2 bad usage; 130 ended by "
         "Ctrl-C, SIGTERM or SIGHUP",
     )
-    add_mission(console, nargs="?")
+    add_mission(console, nargs="?", help=f"live:, the running flight of another terminal; or {MISSION_HELP}")
     console.add_argument("--udp", metavar="HOST[:PORT]", help="a flight computer: where CI_LAB listens (port: 1234)")
     console.add_argument("--listen", metavar="HOST[:PORT]", help="where telemetry arrives (default: any, port 1235)")
     console.add_argument(

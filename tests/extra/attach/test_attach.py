@@ -309,3 +309,23 @@ def test_too_many_programs_are_turned_away(flown: Flown) -> None:
         plug.close()
     flown.server.exchange()
     assert flown.attended(lambda: live_flight("")).mission == "demo"
+
+
+def test_console_commands_a_flight(
+    flown: Flown, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    typed = tmp_path / "typed.txt"
+    typed.write_text("CFE_ES_NOOP\nexpect event CFE_ES 3\nrun 0.1\nquit\n", encoding="utf-8")
+    with open(typed, encoding="utf-8") as lines:
+        monkeypatch.setattr("sys.stdin", lines)
+        assert flown.commanded("console", "live:demo", "--plain", "--save-script", str(tmp_path / "s.txt")) == 0
+    shown = capsys.readouterr().out
+    assert "attached to demo; commands go to its Software Bus" in shown
+    assert "CFE_ES 3 INFORMATION: No-op" in shown
+    assert "send CFE_ES_NOOP" in (tmp_path / "s.txt").read_text(encoding="utf-8")
+
+
+def test_console_refuses_options_of_other_targets(flown: Flown, capsys: pytest.CaptureFixture[str]) -> None:
+    for option in (["--listen", "1235"], ["--enable"], ["--seed", "3"], ["--realtime"]):
+        assert flown.commanded("console", "live:", "--plain", *option) == 2
+        assert f"{option[0]}: only valid " in capsys.readouterr().err

@@ -28,12 +28,13 @@ from cfepy.cli.text_table import show_tables
 from cfepy.cli.user_notes import check_writable, note, tell
 from cfepy.cli.watched_host import Interrupts
 from cfepy.ground import CI_PORT, TO_PORT, dictionary_of, packet_of
-from cfepy.io import TypedLines, own_address, send
+from cfepy.io import TypedLines, live_flight, live_name, own_address, send
 from cfepy.mission import MissionSpec, read_mission
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from cfepy.cli.ground.console.flown_craft import FlownCraft
+    from cfepy.cli.ground.console.remote import ComputerLink
     from cfepy.pilot import Flown, RunPlan
 
 ANY_ADDRESS = "0.0.0.0"
@@ -76,7 +77,13 @@ class Opening:
         Raises:
             UsageError: the options do not allow a session.
         """
-        with self._remote() if self._arguments.udp is not None else self._flown(note) as session:
+        arguments = self._arguments
+        live = None if arguments.mission is None else live_name(arguments.mission)
+        if live is not None:
+            opened = self._attached(live)
+        else:
+            opened = self._remote() if arguments.udp is not None else self._flown(note)
+        with opened as session:
             yield session
 
     # -- a mission -----------------------------------------------------------------------------------------------------
@@ -151,18 +158,45 @@ class Opening:
 
     @contextlib.contextmanager
     def _remote(self) -> Iterator[ConsoleSession]:
-        from cfepy.cli.ground.console.remote import RemoteCraft
+        from cfepy.cli.ground.console.remote import UdpLink
 
         arguments = self._arguments
         host = host_of(arguments.udp, CI_PORT) or RemoteHost(arguments.udp, CI_PORT)
         listen = _listening(arguments.listen)
         spec: MissionSpec | None = None if arguments.names is None else read_mission(arguments.names)
+        link = UdpLink(host, listen)
+
+        def greet(session: ConsoleSession) -> None:
+            session.say(REPLY, f"commands go to {host}, telemetry comes to port {link.port}")
+            self._enable(session, host)
+
+        with self._linked(link, spec, greet) as session:
+            yield session
+
+    @contextlib.contextmanager
+    def _attached(self, name: str) -> Iterator[ConsoleSession]:
+        """Open a session with the flight of another terminal."""
+        from cfepy.cli.ground.console.remote import LiveLink
+
+        flight = live_flight(name)
+        spec = read_mission(self._arguments.names or flight.script)
+        greeting = f"attached to {flight.mission}; commands go to its Software Bus"
+        with self._linked(LiveLink(flight), spec, lambda session: session.say(REPLY, greeting)) as session:
+            yield session
+
+    @contextlib.contextmanager
+    def _linked(
+        self, link: ComputerLink, spec: MissionSpec | None, greet: Callable[[ConsoleSession], object]
+    ) -> Iterator[ConsoleSession]:
+        """Open a session over a connection, which it closes; `greet` begins it."""
+        from cfepy.cli.ground.console.remote import RemoteCraft
+
+        arguments = self._arguments
         dictionary = dictionary_of(spec)
         saved = SavedScript(dictionary)
-        with RemoteCraft(host, listen, spec, dictionary, saved, self._interrupts) as craft:
+        with RemoteCraft(link, spec, dictionary, saved, self._interrupts) as craft:
             session = ConsoleSession(craft, PacketBoard(dictionary), saved, stop_on_failure=arguments.stop_on_failure)
-            session.say(REPLY, f"commands go to {host}, telemetry comes to port {craft.port}")
-            self._enable(session, host)
+            greet(session)
             if arguments.script is not None:
                 session.load(arguments.script)
             yield session
@@ -245,17 +279,19 @@ _NOT_OF_A_COMPUTER = (
 def _check(arguments: argparse.Namespace) -> None:
     if (arguments.mission is None) == (arguments.udp is None):
         raise UsageError("requires one target: cfepy console MISSION, or cfepy console --udp HOST:PORT")
-    if arguments.udp is not None:
-        why = f"only valid for a mission, and {arguments.udp} is a remote target; leave it out"
+    is_live = arguments.mission is not None and live_name(arguments.mission) is not None
+    if arguments.udp is not None or is_live:
+        why = f"only valid for a mission, and {arguments.udp or arguments.mission} is a remote target; leave it out"
         refuse_run_options(arguments, why, but=["script", "stop_on_failure"])
         for name, option in (*_NOT_OF_A_COMPUTER, *flight_add_ons.options()):
             if getattr(arguments, name):
                 raise UsageError(why, field=option)
-        return
+        if not is_live:
+            return
     for name in ("listen", "enable"):
         if getattr(arguments, name) is not None:
             raise UsageError("only valid with --udp; leave it out", field=f"--{name}")
-    if arguments.names is not None:
+    if arguments.names is not None and not is_live:
         raise UsageError("only valid with --udp; a local mission brings its own names", field="--mission")
     check_pace(arguments)
 
