@@ -79,9 +79,6 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
 }
 """Of each option that more than one command has: the name of its value, and what its help says everywhere."""
 
-OTHER_MEANINGS = {("convert", "--profile"): "the profile of C++ code; a command that flies nothing has no profiler"}
-"""Options of a command whose name means something else there, with the reason."""
-
 OTHER_NAMES = {
     "--count": ("--number", "--num", "--limit", "--max", "--messages", "--packets"),
     "--for": ("--duration", "--seconds", "--time", "--length"),
@@ -119,7 +116,7 @@ def own_parsers() -> dict[str, argparse.ArgumentParser]:
 @pytest.mark.parametrize("words", own_parsers())
 def test_an_option_means_one_thing(words: str) -> None:
     for action in options(parsers()[words]):
-        if key(action) not in MEANINGS or (words, key(action)) in OTHER_MEANINGS:
+        if key(action) not in MEANINGS:
             continue
         metavar, core = MEANINGS[key(action)]
         assert action.metavar == metavar, key(action)
