@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from typing import Any, Literal, TextIO
 
 from cfepy.cli.user_notes import check_writable, writing
+from cfepy.status import UsageError
 from cfepy.writing.escapes import for_data
 
 STDOUT = "-"
@@ -29,11 +30,16 @@ def standard_output(arguments: argparse.Namespace) -> Iterator[None]:
             unchanged as to a file, except that a terminal gets no control characters.
     """
     arguments.stdout = for_data(sys.stdout)
-    if not any(getattr(arguments, name, None) == STDOUT for name in _MAY_BE_STDOUT):
+    if not _takes_stdout(arguments):
         yield
         return
     with open(os.devnull, "w", encoding="utf-8", errors="replace") as nowhere, contextlib.redirect_stdout(nowhere):
         yield
+
+
+def _takes_stdout(arguments: argparse.Namespace) -> bool:
+    """Return whether an option was given as `-`."""
+    return any(getattr(arguments, name, None) == STDOUT for name in _MAY_BE_STDOUT)
 
 
 def check_json(arguments: argparse.Namespace) -> None:
@@ -50,8 +56,11 @@ def check_ci_outputs(arguments: argparse.Namespace) -> None:
     """Check before a run that the files for continuous integration can be written; see `cfepy.cli.ci_outputs`.
 
     Raises:
-        UsageError: one cannot be written.
+        UsageError: one cannot be written, or two outputs go to standard output.
     """
+    if arguments.github and _takes_stdout(arguments):
+        text = "cannot be combined with `-` of another option; both go to standard output"
+        raise UsageError(text, field="--github")
     for name in ("junit", "sarif"):
         file = getattr(arguments, name)
         if file not in (None, STDOUT):

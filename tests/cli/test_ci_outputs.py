@@ -224,6 +224,14 @@ def test_standard_output_can_be_the_file(tmp_path: Path, capsys: pytest.CaptureF
     assert ElementTree.fromstring(capsys.readouterr().out.encode()).tag == "testsuites"
 
 
+def test_annotations_and_a_file_cannot_share_standard_output(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mission(tmp_path / "m")
+    assert main(["run", "m", "--for", "1", "--json", "-", "--github"]) == 2
+    assert "--github: cannot be combined with `-` of another option" in capsys.readouterr().err
+
+
 # -- the verdict -------------------------------------------------------------------------------------------------------
 
 VERDICT = re.compile(re.search(r"^\^verdict.*\$$", PAGE.read_text(encoding="utf-8"), re.MULTILINE)[0])  # type: ignore[index]

@@ -79,6 +79,8 @@ def test_other_files_on_disk_are_told_and_not_used(tmp_path: Path, capsys: pytes
     adder(tmp_path / "mission", 2)
     capsys.readouterr()
     assert main(["replay", "a.cfepy", "--quiet"]) == 0
+    assert capsys.readouterr().err == "cfepy: the same run as a.cfepy\n"
+    assert main(["replay", "a.cfepy", "--no-console"]) == 0
     assert f"on this computer others are now: {tmp_path}/mission/adder.py" in capsys.readouterr().err
     assert main(["replay", "a.cfepy", "--quiet", "--from-disk"]) == 1
     said = capsys.readouterr().err
@@ -135,7 +137,7 @@ def test_another_version_is_warned_of(tmp_path: Path, capsys: pytest.CaptureFixt
         writer.write(kind, body)
     writer.close()
     capsys.readouterr()
-    assert main(["replay", "b.cfepy", "--quiet"]) == 0
+    assert main(["replay", "b.cfepy", "--no-console"]) == 0
     said = capsys.readouterr().err
     assert "recorded with cfepy 0.0.7, this is" in said
     assert "recorded with Python 3.99.1, this is" in said

@@ -22,7 +22,7 @@ def test_run_on_greenlets_is_replayed_on_threads_when_greenlet_is_missing(
     again = replay(read_journal(journal))
     assert again.verdict.same
     assert (again.flown.mission.tasks, again.flown.trace) == ("thread", flown.trace)
-    assert main(["replay", str(journal), "--quiet"]) == 0
+    assert main(["replay", str(journal), "--no-console"]) == 0
     assert "greenlet is not installed: replayed on threads" in capsys.readouterr().err
     assert main(["replay", str(journal), "--quiet", "--tasks", "greenlet"]) == 2
     assert "pip install 'cfepy[fast]'" in capsys.readouterr().err

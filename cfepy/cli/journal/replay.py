@@ -115,7 +115,7 @@ def replaying(arguments: argparse.Namespace, journal: Journal) -> Iterator[Repla
         path = getattr(arguments, name)
         setattr(arguments, name, None if path is None else os.path.abspath(path))
     with staged(journal, arguments.from_disk) as stage:
-        for note in stage.notes:
+        for note in () if arguments.quiet else stage.notes:
             print(f"cfepy: {note}", file=sys.stderr, flush=True)
         begins_there = (arguments.step or _looks_into(arguments)) and not arguments.stops
         until_ns = None if arguments.until is None or begins_there else round(arguments.until * NS_PER_S)
