@@ -10,6 +10,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 from cfepy.interpreter.cached import CachedProperty
@@ -31,8 +32,7 @@ class Packages:
     """The packages that a program can see, each by its first place.
 
     They are searched at first use: near the program, then along ROS_PACKAGE_PATH, then in the share folders of
-    CMAKE_PREFIX_PATH. A package included in cfepy is found by its name if there is no other; it is in no list, so a
-    program that lists packages gets the same as on ROS.
+    CMAKE_PREFIX_PATH. A package that is in none of them may be included in cfepy.
 
     Args:
         script: the program's file; None leaves out packages near it.
@@ -61,7 +61,7 @@ class Packages:
 
     def folders(self, name: str) -> list[Path]:
         """Return all folders of a package by precedence; a built package may have a `share` folder as well."""
-        return self._found.get(name) or _included(name)
+        return self._found.get(name) or included().get(name, [])
 
     def package_of(self, file: Path) -> str | None:
         """Return the name of the package that a file belongs to (rospkg.get_package_name)."""
@@ -93,10 +93,10 @@ class Packages:
         return [Path(self._resolve(each)) for each in self._environ.get(variable, "").split(os.pathsep) if each]
 
 
-def _included(name: str) -> list[Path]:
-    """Return the folder of a package that is included in cfepy."""
-    folder = shipped("ros_packages") / name
-    return [folder] if is_package_name(name) and has_manifest(folder) else []
+@cache
+def included() -> dict[str, list[Path]]:
+    """Return the packages included in cfepy, by name, each with its folder."""
+    return {name_of(folder): [folder] for folder in crawl(shipped("ros_packages"))}
 
 
 def _code_roots(package: Path) -> list[str]:

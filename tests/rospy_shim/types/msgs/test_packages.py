@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Packages, check_package_name
 from rospy_shim.types.msgs.packages import name_of
@@ -138,3 +139,11 @@ def test_too_large_manifest_is_ignored(tmp_path: Path) -> None:
         file.write(b"<package><name>other</name>")
         file.truncate(1 << 40)
     assert name_of(folder) == "here"
+
+
+def test_included_package_is_found_unless_there_is_another(tmp_path: Path) -> None:
+    packages = Packages(tmp_path / "node.py", {})
+    assert packages.names() == []
+    assert packages.path("cfepy_plant") == shipped("ros_packages") / "cfepy_plant"
+    own = make_package(tmp_path / "cfepy_plant", "cfepy_plant")
+    assert Packages(tmp_path / "node.py", {}).folders("cfepy_plant") == [own]
