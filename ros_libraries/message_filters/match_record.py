@@ -65,7 +65,7 @@ class MatchRecord:
         return None if slop is None else int(slop.to_nsec())
 
     def count(self, index: int | None, stamp: Any, queues: Sequence[Mapping[Any, Any]]) -> None:
-        """Count a message, and see how near those of the other inputs are."""
+        """Count a message, and measure how near the other inputs are."""
         if index is None:
             return
         self.counts[index] += 1

@@ -24,7 +24,7 @@ def param(name: str, default: float) -> float:
 
 
 class Battery:
-    """The node: what the robot uses, and what is left."""
+    """The node: the power that the robot uses, and the energy that is left."""
 
     def __init__(self) -> None:
         self._model = BatteryModel(
@@ -56,7 +56,7 @@ class Battery:
             before = now
 
     def _mean_power(self) -> float:
-        """Return the mean of the motors' power since the last call; without a message, what it was."""
+        """Return the mean of the motors' power since the last call; without a message, the mean before."""
         powers, self._powers = self._powers, []
         if powers:
             self._power = sum(powers) / len(powers)

@@ -15,7 +15,7 @@ class BatteryModel:
         resistance: inner resistance in ohm.
 
     Attributes:
-        energy: what is left, in Wh.
+        energy: the energy that is left, in Wh.
         current: that it gave in the last step, in A.
     """
 

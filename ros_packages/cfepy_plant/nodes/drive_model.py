@@ -114,7 +114,7 @@ class DriveModel:
 
 
 class WheelEncoders:
-    """Odometry: the pose that follows from what the wheels' encoders count.
+    """Odometry: the pose that follows from the counts of the wheels' encoders.
 
     Args:
         separation: distance between the wheels in m.
