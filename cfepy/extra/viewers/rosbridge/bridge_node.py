@@ -410,10 +410,10 @@ class BridgeNode:
 
     def _put(self, topic: str, publisher: str, payload: bytes) -> None:
         """Keep a message for the clients."""
-        self._waiting += len(payload)
-        if self._waiting > MOST_WAITING:
+        if self._waiting + len(payload) > MOST_WAITING:
             self._lost(topic, "too much between two pieces of the run")
         else:
+            self._waiting += len(payload)
             self._messages.append((topic, publisher, payload))
 
     def _deliver(self, topic: str, publisher: str, payload: bytes) -> None:
