@@ -91,9 +91,9 @@ class OsTimeBase(OsObject):
         self.task: Task | None = None
 
     def set(self, start_us: int, interval_us: int) -> None:
-        """Start to tick, first after `start_us`."""
+        """Start to tick, first after `start_us`; 0 stops the ticks, as a POSIX timer does."""
         self.base = self.freerun()
-        self.start_us = start_us or interval_us
+        self.start_us = start_us
         self.interval_us = interval_us
         self.first_ns = self.kernel.now + self.start_us * NS_PER_US
         self.poke()
@@ -203,7 +203,7 @@ class TimeBaseApi(Core):
 
         Args:
             timebase_id: the time base.
-            start_time: us until the first tick; 0 for one interval.
+            start_time: us until the first tick; with 0 it never ticks, as on NASA's Linux.
             interval_time: us between ticks; 0 for one tick only.
 
         Raises:
@@ -349,7 +349,8 @@ class TimerApi(TimeBaseApi):
 
         Args:
             timer_id: the timer.
-            start_time: us until the first expiry, rounded up to a tick; 0 for one interval.
+            start_time: us until the first expiry, rounded up to a tick. With 0, a timer from `timer_create` never
+                expires, as on NASA's Linux; one from `timer_add` does after one interval.
             interval_time: us between expiries; 0 for one expiry only.
 
         Raises:

@@ -98,6 +98,33 @@ def test_single_timer_has_its_own_time_base(bench: Bench) -> None:
     assert not bench.kernel.tasks
 
 
+def test_timer_of_its_own_that_starts_at_0_never_expires(bench: Bench) -> None:
+    timer_id = bench.os.timer_create("T", lambda timer_id: bench.log.append(bench.kernel.now // MS))
+    bench.os.timer_set(timer_id, 0, 10_000)
+    bench.kernel.run(100 * MS)
+    assert bench.log == []
+    bench.os.timer_set(timer_id, 20_000, 10_000)
+    bench.kernel.run(135 * MS)
+    assert bench.log == [120, 130]
+
+
+def test_time_base_that_starts_at_0_stops(bench: Bench, master: int) -> None:
+    timer_id = bench.os.timer_add("T", master, _noter(bench))
+    bench.os.timer_set(timer_id, 10_000, 10_000)
+    bench.kernel.run(25 * MS)
+    bench.os.time_base_set(master, 0, 10_000)
+    bench.kernel.run(100 * MS)
+    assert bench.log == [10, 20]
+    assert bench.os.time_base_get_free_run(master) == 20_000
+
+
+def test_timer_on_a_time_base_that_starts_at_0_expires_after_one_interval(bench: Bench, master: int) -> None:
+    timer_id = bench.os.timer_add("T", master, _noter(bench))
+    bench.os.timer_set(timer_id, 0, 30_000)
+    bench.kernel.run(70 * MS)
+    assert bench.log == [30, 60]
+
+
 def test_the_argument_of_a_timer(bench: Bench, master: int) -> None:
     timer_id = bench.os.timer_add("T", master, lambda timer_id, argument: bench.log.append(argument), "argument")
     bench.os.timer_set(timer_id, 1, 0)
