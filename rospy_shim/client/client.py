@@ -58,7 +58,7 @@ class Client:
             tcpros_port: accepted.
 
         Raises:
-            ValueError: an empty name, or one with a namespace.
+            ValueError: an empty name, or one with a namespace; outside of the main thread, unless signals are disabled.
             ROSException: called before with other arguments.
         """
         node = self._node
@@ -78,10 +78,10 @@ class Client:
                 )
             return
         self._arguments = arguments
-        node.names.give(self._base_name(name, anonymous))
-        self._uri = f"http://{node.universe.host_name}:{node.universe.pid}/"
         if not disable_signals:
             node.life.register_signals()
+        node.names.give(self._base_name(name, anonymous))
+        self._uri = f"http://{node.universe.host_name}:{node.universe.pid}/"
         node.clock.set_rostime_initialized(True)
         self._load_params(argv)
         node.logs.configure(log_level, not disable_rosout)

@@ -42,12 +42,27 @@ class SignalTable:
         self._handlers: dict[int, Any] = {int(signal.SIGINT): signal.default_int_handler}
 
     def set(self, number: int, handler: Any) -> Any:
-        """`signal.signal`: returns the former handler."""
+        """`signal.signal`: returns the former handler.
+
+        Raises:
+            ValueError: the caller is not the node's main thread, as CPython has it.
+            TypeError: that is not a handler.
+        """
+        self._check_thread("signal")
         if not callable(handler) and handler not in (signal.SIG_DFL, signal.SIG_IGN):
             raise TypeError("signal handler must be signal.SIG_IGN, signal.SIG_DFL, or a callable object")
         former = self.get(number)
         self._handlers[int(number)] = handler
         return former
+
+    def set_wakeup_fd(self, fd: int, **options: Any) -> int:
+        """`signal.set_wakeup_fd`: has no effect, because no signal comes from the host; raises as `set` does."""
+        self._check_thread("set_wakeup_fd")
+        return -1
+
+    def _check_thread(self, function: str) -> None:
+        if self._universe.kernel.current is not self._universe.main_task:
+            raise ValueError(f"{function} only works in main thread of the main interpreter")
 
     def get(self, number: int) -> Any:
         """`signal.getsignal`."""
@@ -80,7 +95,7 @@ def signal_module(universe: Universe) -> ModuleType:
         getsignal=table.get,
         pause=lambda: universe.clock.wait(None),
         raise_signal=table.deliver,
-        set_wakeup_fd=lambda fd, **options: -1,
+        set_wakeup_fd=table.set_wakeup_fd,
         signal=table.set,
     )
 

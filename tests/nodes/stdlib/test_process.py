@@ -158,6 +158,35 @@ def test_print_and_streams_reach_the_console(run, capsys):
     assert sys.stdout is not program.universe.stdout
 
 
+def test_signal_handlers_are_set_in_the_main_thread_only(run):
+    program = run(
+        """
+        import signal, threading
+        def attempt(function, *args):
+            try:
+                function(*args)
+            except (ValueError, RuntimeError) as error:
+                print(type(error).__name__, error)
+            else:
+                print("done")
+        def all_of():
+            attempt(signal.signal, signal.SIGTERM, signal.SIG_IGN)
+            attempt(signal.set_wakeup_fd, -1)
+            attempt(signal.getsignal, signal.SIGTERM)
+        all_of()
+        thread = threading.Thread(target=all_of)
+        thread.start()
+        thread.join()
+        """
+    )
+    assert program.lines == [
+        *["done"] * 3,
+        "ValueError signal only works in main thread of the main interpreter",
+        "ValueError set_wakeup_fd only works in main thread of the main interpreter",
+        "done",
+    ]
+
+
 def test_signals_are_the_nodes_own(run):
     import signal
 

@@ -50,6 +50,41 @@ attempt(rospy.wait_for_message, "/nope", String, timeout=0.2)
     ]
 
 
+def test_init_node_in_another_thread_fails_with_signals_and_works_without(tmp_path: Path) -> None:
+    lines = printed(
+        tmp_path,
+        """
+import threading
+def begin(*names, **options):
+    for name in names:
+        try:
+            rospy.init_node(name, **options)
+        except Exception as error:
+            print(type(error).__name__, error)
+def in_thread(*names, **options):
+    thread = threading.Thread(target=begin, args=names, kwargs=options)
+    thread.start()
+    thread.join()
+    print(rospy.core.is_initialized())
+in_thread("probe")
+begin("other")
+""",
+    )
+    assert lines[:2] == ["ValueError signal only works in main thread of the main interpreter", "False"]
+    assert lines[2].startswith("ROSException rospy.init_node() has already been called with different arguments: ")
+    lines = printed(
+        tmp_path,
+        """
+import threading
+thread = threading.Thread(target=rospy.init_node, args=("probe",), kwargs={"disable_signals": True})
+thread.start()
+thread.join()
+print(rospy.core.is_initialized())
+""",
+    )
+    assert lines == ["True"]
+
+
 def test_topics_made_before_init_node_work_after_it(tmp_path: Path) -> None:
     lines = printed(
         tmp_path,
