@@ -253,7 +253,7 @@ class Service:
         self.__node__.logs.logerr("Error processing request: %s\n%s", error, traceback_parts(error))
 
     def shutdown(self, reason: str = "") -> None:
-        """Stop offering the service; callers whose requests wait get an error."""
+        """Stop offering the service. A handler that runs still answers its caller; requests that wait get an error."""
         if self.__done:
             return
         self.__done = True
@@ -334,15 +334,17 @@ class Service:
         request = self.__pieces.add(number, packet)
         if request is None:
             return
-        self.__busy += 1
         self.__entry.serving[number] = (self.__node__.kernel.current,)
         try:
-            self.__attend_waiting()
-            good, body = self.__result(number, request)
+            self.__busy += 1
+            try:
+                self.__attend_waiting()
+                good, body = self.__result(number, request)
+            finally:
+                self.__busy -= 1
+            self.__answer(number, good, body)
         finally:
-            self.__busy -= 1
             self.__entry.serving.pop(number, None)  # the ground may have sent a second request of that number
-        self.__answer(number, good, body)
 
     def __result(self, number: int, data: bytes) -> tuple[bool, bytes]:
         """Call the handler. Returns True and the serialised response, or False and the error's text."""

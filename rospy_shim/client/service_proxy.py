@@ -253,7 +253,8 @@ class ServiceProxy:
         bus = self.__node__.cfe.sb
         for packet in request_packets(entry.request_id, number, body, bus.config.sb_max_msg_size):
             while not entry.service.has_room(packet):
-                self.__check_both(entry)
+                if (error := self.__end(entry, number)) is not None:
+                    raise error
                 entry.service.attend()
                 self.__node__.kernel.delay(PACE_NS)
             bus.transmit_msg(packet)
@@ -264,19 +265,24 @@ class ServiceProxy:
         while True:
             packet = receive(pipe, LOOK_MS)
             if packet is None:
-                self.__check_both(entry)
-                continue
+                error = self.__end(entry, number)
+                if error is None:
+                    continue
+                packet = receive(pipe, POLL)  # the answer may have come just before the end
+                if packet is None:
+                    raise error
             answered, good = call_of_answer(packet)
             answer = pieces.add(answered, packet) if answered == number else None
             if answer is not None:
                 return good, answer
 
-    def __check_both(self, entry: ServiceEntry) -> None:
-        """Check that both nodes still exist to go on with a call."""
+    def __end(self, entry: ServiceEntry, number: int) -> ServiceException | ROSInterruptException | None:
+        """Return the error of a call if a node or the service has ended; a service answers the calls it works on."""
         if self.__node__.life.over:
-            raise ROSInterruptException("node shutdown interrupted service call")
-        if self.__node__.graph.services.get(self.resolved_name) is not entry:
-            raise ServiceException("transport error completing service call: the service has ended")
+            return ROSInterruptException("node shutdown interrupted service call")
+        if self.__node__.graph.services.get(self.resolved_name) is entry or number in entry.serving:
+            return None
+        return ServiceException("transport error completing service call: the service has ended")
 
     def close(self) -> None:
         """End a persistent connection; on ROS, calls fail then."""

@@ -140,6 +140,28 @@ def test_service_that_ends_during_a_call(tmp_path: Path) -> None:
     ]
 
 
+def test_service_that_is_shut_down_answers_the_calls_in_its_handler(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+import threading
+def once(request):
+    service.shutdown("one shot")
+    return 1
+def slow(request):
+    threading.Thread(target=other.shutdown).start()
+    rospy.sleep(0.7)
+    return 2
+service = rospy.Service("once", AddTwoInts, once)
+attempt(rospy.ServiceProxy("once", AddTwoInts), 1, 1)
+attempt(rospy.ServiceProxy("once", AddTwoInts), 1, 1)
+other = rospy.Service("slow", AddTwoInts, slow)
+attempt(rospy.ServiceProxy("slow", AddTwoInts), 1, 1)
+""",
+    )
+    assert lines == ["sum: 1", "ServiceException service [/once] unavailable", "sum: 2"]
+
+
 def test_service_calls_another_service_and_publishes_errors(tmp_path: Path) -> None:
     lines = run(
         tmp_path,
