@@ -31,7 +31,11 @@ Makers = dict[str, Callable[[], Any]]
 Live = dict[str, tuple[object, str]]
 INNER = Path(__file__).parents[1] / "rospy_modules"
 """Modules of rospy that are ordinary code of nodes, executed afresh in each universe."""
-_SUBMODULES = ("logger_level_service_caller", "rosconsole", "service")  # modules in INNER that `import rospy` shows
+_SHOWN = (
+    *("client", "core", "exceptions", "impl", "msg", "msproxy", "names", "rostime", "service", "timer"),
+    "topics",
+)
+"""Modules that `import rospy` shows; a node has to import others itself."""
 _IMPORTED = (
     "roscpp.msg",
     "roscpp.srv",
@@ -91,19 +95,12 @@ class ModuleTables:
 
     def client(self) -> NameTable:
         """Return the names of `rospy.client` that are in `rospy`, too."""
-        own = (
-            "init_node",
-            "get_published_topics",
-            "load_command_line_node_params",
-            "myargv",
-            "wait_for_message",
-        )
+        own = ("init_node", "get_published_topics", "myargv", "wait_for_message")
         life = self._node.life
         return {
             **pick(self._node.client, own),
             **self.params(),
             **pick(logs, ("DEBUG", "INFO", "WARN", "ERROR", "FATAL")),
-            "TIMEOUT_READY": 15.0,
             "get_master": self._get_master,
             "on_shutdown": life.add_client_shutdown_hook,
             "spin": life.spin,
@@ -111,7 +108,13 @@ class ModuleTables:
 
     def client_module(self) -> NameTable:
         """Return the names of `rospy.client`."""
-        return {**self.client(), "_Unspecified": params.Unspecified, "_unspecified": params.UNSPECIFIED}
+        return {
+            **self.client(),
+            "TIMEOUT_READY": 15.0,
+            "load_command_line_node_params": self._node.client.load_command_line_node_params,
+            "_Unspecified": params.Unspecified,
+            "_unspecified": params.UNSPECIFIED,
+        }
 
     def params(self) -> NameTable:
         """Return the functions for parameters."""
@@ -130,7 +133,6 @@ class ModuleTables:
         """Return the names of `rospy.core` that are in `rospy`, too."""
         return {
             **pick(self._node.logs, _LOG_FUNCTIONS),
-            "logerror": self._node.logs.logerr,
             "logout": self._node.logs.loginfo,
             "get_node_uri": self._node.client.get_node_uri,
             **pick(self._node.life, ("is_shutdown", "signal_shutdown")),
@@ -155,6 +157,7 @@ class ModuleTables:
             **pick(logs, ("LoggingIdentical", "LoggingOnce")),
             "MASTER_NAME": "master",
             "ROSRPC": "rosrpc://",
+            "logerror": node.logs.logerr,
             "is_topic": names.NameValidators(node.names.resolve_name).is_topic,
             "md5": hashlib.md5,
         }
@@ -218,8 +221,12 @@ class ModuleTables:
         return pick(self._node.clock, functions)
 
     def timer(self) -> NameTable:
+        """Return the names of `rospy.timer` that are in `rospy`, too."""
+        return {"Rate": self._node.Rate, "sleep": self._node.clock.sleep}
+
+    def timer_module(self) -> NameTable:
         """Return the names of `rospy.timer`."""
-        return {"Rate": self._node.Rate, "TimerEvent": timer.TimerEvent, "sleep": self._node.clock.sleep}
+        return {**self.timer(), "TimerEvent": timer.TimerEvent}
 
     def topics(self) -> NameTable:
         """Return the names of `rospy.topics` that are in `rospy`, too."""
@@ -329,7 +336,7 @@ class RosModules:
             "names": tables.names,
             "numpy_msg": lambda: {"numpy_msg": cache(message.numpy_msg)},
             "rostime": tables.rostime,
-            "timer": tables.timer,
+            "timer": tables.timer_module,
             "topics": tables.topics_module,
             "impl._node": tables.bridge,
             "impl.rosout": lambda: pick(node.logs, ("RosOutHandler", "init_rosout", "load_rosout_handlers")),
@@ -427,8 +434,7 @@ class RosModules:
     def _submodules(self) -> Makers:
         """Return the modules that `import rospy` shows; they are loaded at first use."""
         load = self._node.universe.importer.load
-        names = [*(part for part in self._tables if "." not in part), *_SUBMODULES]
-        return {part: partial(load, f"rospy.{part}") for part in names}
+        return {part: partial(load, f"rospy.{part}") for part in _SHOWN}
 
     def _submodules_of_impl(self) -> Makers:
         """Return the modules that `rospy.impl` shows; they are loaded at first use."""

@@ -74,6 +74,27 @@ def test_names_and_arguments(tmp_path: Path) -> None:
     assert found["wrong"] == {}
 
 
+def test_rospy_has_no_name_that_ros_lacks(tmp_path: Path) -> None:
+    source = """
+    import rospy, types
+    names = [name for name in dir(rospy) if not name.startswith("_")]
+    modules = [name for name in names if isinstance(getattr(rospy, name), types.ModuleType)]
+    print(*modules)
+    print(*sorted(set(names) - set(modules)))
+    print(rospy.timer.TimerEvent.__name__, rospy.core.logerror == rospy.logerr, rospy.client.TIMEOUT_READY)
+    import rospy.numpy_msg
+    print(callable(rospy.numpy_msg.numpy_msg))
+    """
+    result = run_nodes(tmp_path, {"NODE": textwrap.dedent(source)})
+    recorded = json.loads(RECORD.read_text(encoding="utf-8"))["rospy"]
+    assert result.printed["NODE"] == [
+        "client core exceptions impl msg msproxy names rostime service timer topics",
+        " ".join(sorted(recorded)),
+        "TimerEvent True 15.0",
+        "True",
+    ]
+
+
 def test_import_of_rospy_imports_its_message_packages(tmp_path: Path) -> None:
     source = """
     import rospy, std_msgs, roscpp, rosgraph_msgs
