@@ -22,7 +22,7 @@ from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission import Mission, MissionSpec, endless_waits
 from cfepy.pilot.plan import RunPlan
 from cfepy.pilot.problems import RunProblem, problems_of
-from cfepy.pilot.results import Mark, Results, never_happened
+from cfepy.pilot.results import Mark, Results, never_happened, rules_without_input
 from cfepy.pilot.run_loop import BROKEN_OFF, INTERRUPTED, OVER, STALLED, Course
 from cfepy.rtos import LastResort, Policy
 from cfepy.status import CfeError, StallError, UsageError
@@ -94,6 +94,8 @@ class Flown:
         outcome: the result of its script; None without one.
         reason: how it ended (`cfepy.pilot.run_loop`).
         known: notes for the user from before the run.
+        never_judged: rules of the mission file without input. They are determined at the end of the run, because a
+            replay's files disappear after it.
     """
 
     mission: Mission
@@ -102,13 +104,14 @@ class Flown:
     outcome: Outcome | None
     reason: str = OVER
     known: tuple[str, ...] = ()
+    never_judged: Sequence[str] = ()
 
     @CachedProperty
     def results(self) -> Results:
         """Return its numbers, computed on demand, because a search over thousands of runs does not need them
         for each.
         """
-        return Results.of(self.mission, self.at, self.trace, self.problems)
+        return Results.of(self.mission, self.at, self.trace, self.problems, self.never_judged)
 
     @CachedProperty
     def problems(self) -> list[RunProblem]:
@@ -118,7 +121,7 @@ class Flown:
     @property
     def notes(self) -> tuple[str, ...]:
         """Notes for the user: those from before the run, and the parts of its plan that never happened."""
-        return (*self.known, *never_happened(self.mission))
+        return (*self.known, *never_happened(self.mission, self.never_judged))
 
     @property
     def stall(self) -> StallError | None:
@@ -245,7 +248,8 @@ class LiveRun:
     def flown(self) -> Flown:
         """Return the end state, after the mission was closed."""
         assert self._digest is not None
-        return Flown(self.mission, self.course.at, self._digest, self.course.outcome, self.reason, self.notes)
+        at, outcome, unjudged = self.course.at, self.course.outcome, rules_without_input(self.mission)
+        return Flown(self.mission, at, self._digest, outcome, self.reason, self.notes, unjudged)
 
 
 class TakeoffOptions(TypedDict, total=False):

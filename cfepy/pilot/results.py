@@ -242,7 +242,14 @@ class Results:
     problems: list[str]
 
     @classmethod
-    def of(cls, mission: Mission, at: Mark, trace: str, problems: Sequence[RunProblem] | None = None) -> Results:
+    def of(
+        cls,
+        mission: Mission,
+        at: Mark,
+        trace: str,
+        problems: Sequence[RunProblem] | None = None,
+        never_judged: Sequence[str] | None = None,
+    ) -> Results:
         """Return the results of a closed mission.
 
         Args:
@@ -250,6 +257,7 @@ class Results:
             at: the result of `mark`.
             trace: the digest of the run, from before the tasks were ended.
             problems: its problems; None determines them.
+            never_judged: its rules without input; None determines them.
         """
         virtual_s, wall_s = at.now_ns / NS_PER_S, at.wall_ns / NS_PER_S
         record = mission.record
@@ -284,7 +292,7 @@ class Results:
             script_problems=startup_problems(mission),
             endless_waits=[wait.text for wait in at.endless.alone],
             missed_moves=_missed_moves(mission),
-            never_judged=_never_judged(mission),
+            never_judged=rules_without_input(mission) if never_judged is None else list(never_judged),
             loose_ends=[*_loose_ends(mission), *at.idle_nodes],
             missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
@@ -306,13 +314,22 @@ class Results:
         return asdict(self)
 
 
-def never_happened(mission: Mission) -> list[str]:
-    """Return `Results.never_happened` of a mission that may still fly."""
-    return [*_never_happened(mission.record.rows("faults"), _missed_moves(mission)), *_never_judged(mission)]
+def never_happened(mission: Mission, never_judged: Sequence[str] | None = None) -> list[str]:
+    """Return `Results.never_happened` of a mission that may still fly.
+
+    Args:
+        mission: the mission.
+        never_judged: its rules without input; None determines them.
+    """
+    unjudged = rules_without_input(mission) if never_judged is None else never_judged
+    return [*_never_happened(mission.record.rows("faults"), _missed_moves(mission)), *unjudged]
 
 
-def _never_judged(mission: Mission) -> list[str]:
-    """Return the rules without input; only a mission with rules loads the code for it."""
+def rules_without_input(mission: Mission) -> list[str]:
+    """Return the rules without input; only a mission with rules loads the code for it.
+
+    This reads files of the mission, so they must still exist.
+    """
     if not mission.spec.demands:
         return []
     from cfepy.pilot.never_judged import never_judged

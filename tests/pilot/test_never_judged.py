@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.journal import read_journal, record, replay
 from cfepy.pilot import RunPlan, fly
 from cfepy.writing.markup import escaped
 from tests.mission.flights import write_mission
@@ -112,3 +113,47 @@ def test_page_reports_an_invariant_that_was_never_judged(tmp_path: Path) -> None
     text = page.read_text(encoding="utf-8")
     assert "No problems" in text
     assert f"<li>{escaped(DEMANDS[demands])}</li>" in text
+
+
+@pytest.fixture
+def recorded(tmp_path: Path) -> Path:
+    """A journal of a mission whose rules need a file: an invariant that is never judged, and a result."""
+    folder = tmp_path / "mission"
+    folder.mkdir()
+    rules = """
+        def small(heard):
+            return heard.msg.data < 3
+    """
+    demands = "invariants: {few: {topic: /enrgy, file: rules.py, function: small}}\nresults: {/cf/rules.py: file}\n"
+    write_mission(folder, STARTUP, talker=TALKER, rules=rules, mission_yaml=demands)
+    record(RunPlan((str(folder),), seconds=1), tmp_path / "run.cfepy")
+    return tmp_path / "run.cfepy"
+
+
+UNJUDGED = "invariant 'few' (mission.yaml:1) was never judged: no message of /enrgy was sent; did you mean /energy?"
+
+
+def test_replay_has_the_notes_of_the_run_after_its_files_disappeared(recorded: Path) -> None:
+    flown = replay(read_journal(recorded)).flown
+    assert list(flown.notes) == [UNJUDGED]
+    assert flown.results.never_judged == [UNJUDGED]
+
+
+@pytest.mark.parametrize(
+    "words", [["trace"], ["report", "-o", "page.html"], ["export", "csv"]], ids=lambda words: words[0]
+)
+def test_journal_of_rules_in_a_file_can_be_looked_at(
+    words: list[str], recorded: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(recorded.parent)
+    assert main([*words, "run.cfepy", *(["/energy"] if words[0] == "export" else [])]) == 0
+    assert capsys.readouterr().err == f"cfepy: {UNJUDGED}\n"
+
+
+def test_finished_run_keeps_its_results_when_a_file_of_its_rules_is_deleted(tmp_path: Path) -> None:
+    (tmp_path / "rules.py").write_text("def small(heard): return heard.msg.data < 3", encoding="utf-8")
+    flown = fly(
+        RunPlan((str(mission(tmp_path, "invariants: {few: {topic: /energy, file: rules.py, function: small}}")),), 1)
+    )
+    (tmp_path / "rules.py").unlink()
+    assert flown.results.never_judged == []
