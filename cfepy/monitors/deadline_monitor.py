@@ -55,6 +55,7 @@ class TaskState:
 class DeadlineMonitor(Observer):
     """Measures deadlines while the mission is OPERATIONAL, until the end of the run.
 
+    A time that began earlier is not measured, such as the latency of a message from before.
     The mission's record gets the checks, and the first overruns of each.
 
     Args:
@@ -114,7 +115,12 @@ class DeadlineMonitor(Observer):
 
     @property
     def _measures(self) -> bool:
-        return self._processor.booted is not None and not self._is_over
+        return self._measures_from(self._kernel.now)
+
+    def _measures_from(self, begin_ns: int) -> bool:
+        """Return whether a time that began then is measured: the mission was OPERATIONAL, and the run is not over."""
+        booted = self._processor.booted
+        return booted is not None and booted <= begin_ns and not self._is_over
 
     # -- applications ------------------------------------------------------------------------------------------------
 
@@ -125,7 +131,7 @@ class DeadlineMonitor(Observer):
             return
         began, state.woken_ns = state.woken_ns, None
         state.waits, state.due_ns = True, self._timer_of(task)
-        if began is None or not self._measures:
+        if began is None or not self._measures_from(began):
             return
         for check in state.checks:
             if check.kind == "response":
@@ -147,8 +153,7 @@ class DeadlineMonitor(Observer):
     def _wakes(self, state: TaskState, task: Task, woken_ns: int, at_ns: int) -> None:
         state.waits, state.woken_ns = False, woken_ns
         before, state.before_ns = state.before_ns, woken_ns
-        booted = self._processor.booted
-        if before is None or booted is None or self._is_over or before < booted:
+        if before is None or not self._measures_from(before):
             return
         for check in state.checks:
             if check.kind == "period" and self._is_paced(task, check.owner):
@@ -204,7 +209,7 @@ class DeadlineMonitor(Observer):
 
     def on_receive(self, sent: Sent | None, pipe: Pipe, task: Task, at_ns: int) -> None:
         """A message arrives."""
-        if sent is None or not self._measures:
+        if sent is None or not self._measures_from(sent.at_ns):
             return
         for state in self._states_of(sent.msg_id):
             check = state.checks.get("latency")

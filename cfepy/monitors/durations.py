@@ -183,5 +183,5 @@ class LongestWatch(DeadlineMonitor):
 
     def _saw_ready(self, task: Task, at_ns: int) -> None:
         since = self._ready.pop(task, None)
-        if since is not None and self._measures:
+        if since is not None and self._measures_from(since):
             self._saw(at_ns - since, at_ns, f"until {task.name} ran", task.name)

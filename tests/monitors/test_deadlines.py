@@ -8,6 +8,7 @@ import pytest
 
 from cfepy.mission import read_mission
 from cfepy.monitors.deadlines import AppDeadline, Check, DeadlineResult, TopicDeadline
+from cfepy.monitors.durations import LongestWatch, Measure
 from cfepy.monitors.record import DeadlineRecord
 from cfepy.monitors.run_rules import demands_of
 from cfepy.pilot import pilot
@@ -234,6 +235,42 @@ def test_response_includes_the_wait_for_a_mutex(tmp_path: Path) -> None:
     assert worst(result) == pytest.approx(0.03, abs=0.011)
 
 
+ACROSS_OPERATIONAL = """\
+    def WORKER_AppMain(cfe):
+        cfe.es.run_loop()
+        cfe.os.task_delay(10)
+        while cfe.es.kernel.now < 700_000_000:
+            cfe.psp.compute(10)
+        while cfe.es.run_loop():
+            cfe.os.task_delay(10)
+"""
+
+
+def test_response_that_began_before_operational_is_not_measured(tmp_path: Path) -> None:
+    flown = fly(tmp_path, "deadlines: {apps: {WORKER: {response: 1 ms}}}\n", worker=ACROSS_OPERATIONAL)
+    result = only(flown)
+    assert flown.results.booted_s is not None
+    assert 0.1 < flown.results.booted_s < 0.7, "the long response ends after OPERATIONAL"
+    assert result.checked > 100
+    assert result.overruns == 0
+
+
+def test_wait_that_began_before_operational_is_not_measured(tmp_path: Path) -> None:
+    waiter = """\
+    def WAITER_AppMain(cfe):
+        cfe.es.run_loop()
+        cfe.os.task_delay(20)
+        while cfe.es.run_loop():
+            cfe.os.task_delay(10)
+    """
+    startup = WORKER + "CFE_APP, /cf/waiter.so, WAITER_AppMain, WAITER, 60, 16384, 0x0, 0;\n"
+    watch = LongestWatch(Measure.parse("wait:WAITER"))
+    folder = mission(tmp_path, "", startup, worker=ACROSS_OPERATIONAL, waiter=waiter)
+    pilot.fly(RunPlan((folder,), seconds=2.0), attachments=[watch])
+    assert watch.longest is not None
+    assert watch.longest.time_ns < 10_000_000
+
+
 # -- topics ------------------------------------------------------------------------------------------------------------
 
 
@@ -243,6 +280,22 @@ def test_latency_is_the_time_from_sending_to_receiving(tmp_path: Path) -> None:
     result = only(flown)
     assert result.overruns > 3
     assert worst(result) > 0.06
+
+
+def test_latency_of_a_message_from_before_operational_is_not_measured(tmp_path: Path) -> None:
+    sender = BURSTS.replace("    cfe.es.wait_for_startup_sync(1000)\n", "    cfe.es.run_loop()\n") % 20
+    flown = fly(
+        tmp_path,
+        'deadlines: {topics: {"0x0A00": {latency: 1 ms}}}\n',
+        WORKER + SENDER,
+        worker=READER % (0, 0),
+        sender=sender,
+    )
+    result = only(flown)
+    sent = next(row.sent for row in flown.results.topics if row.msg_id == 0x0A00)
+    assert 100 < result.checked < sent
+    assert result.overruns == 0
+    assert worst(result) < 0.001
 
 
 def test_late_message_is_an_overrun_at_its_due_time(tmp_path: Path) -> None:
