@@ -8,8 +8,6 @@ from each other, so a run counts for the first of them that the reference run do
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field, fields
-from itertools import pairwise
-from statistics import median
 from typing import Any
 
 from cfepy.extra.exploration.steps import TaskStep
@@ -60,6 +58,7 @@ RESULTS = FailureKind.RESULTS
 LONGEST = FailureKind.LONGEST
 STARVED = FailureKind.STARVED
 LIVELOCK = FailureKind.LIVELOCK
+NO_DECIMALS = 9.95  # of the ratio of schedules to failures, from here on
 SIMPLEST = 3  # runs that are kept of each finding, to be shrunk
 
 
@@ -186,11 +185,15 @@ class Finding:
         """Whether the default schedule shows it as well."""
         return self.number is None
 
-    @property
-    def median_schedules(self) -> float | None:
-        """The median number of schedules until it shows, and shows again; None if no schedule showed it."""
-        starts = [-1, *self.numbers]
-        return median(b - a for a, b in pairwise(starts)) if self.numbers else None
+    def frequency(self, done: int) -> str:
+        """Return how often it showed, for the user: "2 of 60 schedules, first number 4; one in 30".
+
+        Args:
+            done: number of schedules that were tried, at least one of which showed it.
+        """
+        ratio = done / len(self.numbers)
+        rounded = f"{ratio:,.0f}" if ratio >= NO_DECIMALS else f"{ratio:.1f}".removesuffix(".0")
+        return f"{len(self.numbers)} of {done} schedules, first number {self.numbers[0]}; one in {rounded}"
 
     def to_dict(self) -> dict[str, Any]:
         """Return plain data; times in ns."""
@@ -205,7 +208,6 @@ class Finding:
             "schedules": len(self.numbers),
             "first_number": self.number,
             "first_schedule": self.verdict.schedule.text(),
-            "median_schedules": self.median_schedules,
         }
 
 

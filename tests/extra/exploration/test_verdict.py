@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, fields
 
-from cfepy.extra.exploration.verdict import DIED, EVENT, INVARIANT, RESULTS, Failure, Findings, Verdict
+import pytest
+
+from cfepy.extra.exploration.verdict import DIED, EVENT, INVARIANT, RESULTS, Failure, Finding, Findings, Verdict
 from cfepy.schedules import Schedule
 
 
@@ -59,8 +61,23 @@ def test_failure_is_found_once_with_its_first_schedule() -> None:
     assert findings.take(2, bad)
     assert findings.take(7, bad)
     (finding,) = findings.all()
-    assert (finding.number, finding.numbers, finding.median_schedules) == (2, [2, 7], 4)
+    assert (finding.number, finding.numbers) == (2, [2, 7])
     assert finding.others == ("results differ: /total: other",)
+
+
+@pytest.mark.parametrize(
+    ("numbers", "done", "text"),
+    [
+        ([4, 6], 60, "2 of 60 schedules, first number 4; one in 30"),
+        ([3], 8, "1 of 8 schedules, first number 3; one in 8"),
+        (list(range(54)), 100, "54 of 100 schedules, first number 0; one in 1.9"),
+        ([0, 1], 2, "2 of 2 schedules, first number 0; one in 1"),
+        ([9], 12_345, "1 of 12345 schedules, first number 9; one in 12,345"),
+    ],
+)
+def test_frequency_counts_the_schedules_after_the_last_failure(numbers: list[int], done: int, text: str) -> None:
+    finding = Finding(died("x"), numbers[0], Verdict(Schedule()), numbers)
+    assert finding.frequency(done) == text
 
 
 def test_runs_with_the_fewest_preemptions_are_shrunk() -> None:

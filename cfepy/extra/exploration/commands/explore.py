@@ -136,9 +136,7 @@ def _how_often(report: Report, finding: Finding) -> Iterator[str]:
     if finding.in_reference:
         yield "under the default schedule, fifo, already"
     if finding.numbers:
-        median = finding.median_schedules
-        count = f"{len(finding.numbers)} of {report.tally.done} schedules"
-        yield f"{count}, first number {finding.numbers[0]}; one in {median:g} in the median"
+        yield finding.frequency(report.tally.done)
 
 
 def run(arguments: argparse.Namespace) -> int:
