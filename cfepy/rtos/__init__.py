@@ -39,6 +39,7 @@ if TYPE_CHECKING:
         Policy,
         Question,
         Settings,
+        missed_notes,
     )
     from cfepy.rtos.queue import EMPTY, Queue
     from cfepy.rtos.realtime import Pacer, Stopwatch
@@ -101,6 +102,7 @@ __all__ = [
     "circles",
     "endless",
     "has_greenlets",
+    "missed_notes",
     "task_kind",
     "wrapping",
 ]
@@ -148,6 +150,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "Policy",
                 "Question",
                 "Settings",
+                "missed_notes",
             ),
             ".queue": (
                 "EMPTY",

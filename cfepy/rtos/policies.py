@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from random import Random
 from typing import Any
 
-from cfepy.rtos.policy import AskingPolicy, Decision, Policy, Question
+from cfepy.rtos.policy import AskingPolicy, Decision, Policy, Question, missed_notes
 from cfepy.rtos.task import Task
 from cfepy.rtos.task_starters import StartersFirst
 
@@ -172,10 +172,20 @@ class Deviations(Policy):
         points: str = "",
     ) -> None:
         super().__init__(any_priority, hold_ns, connect_ns, points)
-        self._choices = dict(choices)
+        self._count = len(choices)
+        self._left = dict(choices)
 
     def choose(self, decision: Decision) -> int:
-        return min(self._choices.get(decision.number, 0), decision.width - 1)
+        return min(self._left.pop(decision.number, 0), decision.width - 1)
+
+    @property
+    def missed(self) -> tuple[str, ...]:
+        """The deviations at decisions that did not come."""
+        return tuple(f"{number}={choice}" for number, choice in self._left.items())
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        return missed_notes("deviations", self._count, self.missed)
 
 
 class InOrder(Policy):

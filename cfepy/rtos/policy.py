@@ -127,6 +127,20 @@ class Policy:
         return ()
 
 
+def missed_notes(parts: str, count: int, missed: Sequence[str]) -> tuple[str, ...]:
+    """Return the notes about a schedule whose parts were not all possible; empty if they were.
+
+    Args:
+        parts: the name of its parts, such as "moves".
+        count: number of all parts.
+        missed: the parts that were not possible, as text.
+    """
+    if not missed:
+        return ()
+    made = f"{count - len(missed)} of {count} {parts} of the schedule were possible"
+    return (f"{made}; not possible: {', '.join(missed)}",)
+
+
 class AskingPolicy(Policy):
     """Answers as another policy does; the base class of policies that observe or overrule another one.
 

@@ -31,7 +31,7 @@ from typing import NamedTuple
 from urllib.parse import quote, unquote
 
 from cfepy.interpreter.own_code import is_own_code
-from cfepy.rtos import HOLD, Decision, Policy, Settings, Task
+from cfepy.rtos import HOLD, Decision, Policy, Settings, Task, missed_notes
 from cfepy.units import NS_PER_MS
 
 NEXT = "next"
@@ -257,11 +257,7 @@ class MovePolicy(Policy):
 
     @property
     def notes(self) -> tuple[str, ...]:
-        missed, count = self.missed, self._moves.count
-        if not missed:
-            return ()
-        made = f"{count - len(missed)} of {count} moves of the schedule were possible"
-        return (f"{made}; not possible: {', '.join(missed)}",)
+        return missed_notes("moves", self._moves.count, self.missed)
 
 
 def _place(decision: Decision, frame: FrameType | None) -> str:

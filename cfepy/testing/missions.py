@@ -78,6 +78,10 @@ class Conditions:
                 self.failures = tuple(first.values())
 
 
+class ScheduleWarning(pytest.PytestWarning):
+    """A part of the schedule that the command line or the test gives was not possible, so it is another schedule."""
+
+
 @contextmanager
 def reported_progress(config: pytest.Config) -> Iterator[None]:
     """Write a line every five seconds of long work, also while pytest captures the output; a context manager.
@@ -136,6 +140,7 @@ class Missions:
         self._config = config
         self._current = current
         self._fixtures: list[pytest.FixtureRequest] = []  # fixtures that are being set up
+        self._warned: set[str] = set()  # warnings about schedules in this test
         self._fixed = 0  # number of flown missions that were booted by fixtures: the first ones
         folder = config.getoption("--cfepy-record")
         self._journals = None if folder is None else _journals(folder)
@@ -205,7 +210,8 @@ class Missions:
         if journal is not None:
             journal.flight = flight
         if self._fixtures:
-            self._fixtures[-1].addfinalizer(flight.close)
+            wide = self._fixtures[-1].node if self._is_wide else None
+            self._fixtures[-1].addfinalizer(lambda: self._close(flight, wide))
         if not self._is_wide:
             self.flown.append(flight)
             self._fixed += bool(self._fixtures)
@@ -352,6 +358,7 @@ class Missions:
         finally:
             self._fixed = 0
             self._end_from(0)
+            self._warned.clear()
             if self._journals is not None:
                 self._journals.end_test()
 
@@ -377,10 +384,26 @@ class Missions:
     def _end_from(self, first: int) -> None:
         """End the missions of the test, or those that its body has booted."""
         for flight in reversed(self.flown[first:]):
-            flight.close()
+            self._close(flight, None if self._conditions is not None else self._item)
         del self.flown[first:]
         if self._journals is not None:
             self._journals.drop(first)
+
+    def _close(self, flight: Flight, node: pytest.Item | pytest.Collector | None) -> None:
+        """End a mission, and warn once if its schedule was not possible.
+
+        Args:
+            flight: the mission.
+            node: the test or the collection to which the warning belongs; None for no warning.
+        """
+        flight.close()
+        policy = flight.mission.kernel.policy
+        if node is None or policy is None:
+            return
+        for note in policy.notes:
+            if note not in self._warned:
+                self._warned.add(note)
+                node.warn(ScheduleWarning(visible(note)))
 
 
 def _journals(folder: str) -> FlightJournals:

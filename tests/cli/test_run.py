@@ -334,3 +334,18 @@ def start(*arguments: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-u", "-m", "cfepy", *arguments], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
+
+
+@pytest.mark.parametrize(
+    ("schedule", "note"),
+    [
+        ("moves:NO=ONE", "0 of 1 moves of the schedule were possible; not possible: NO=ONE"),
+        ("at:999999=1", "0 of 1 deviations of the schedule were possible; not possible: 999999=1"),
+    ],
+)
+@pytest.mark.parametrize("output", ["--quiet", "--no-console"])
+def test_impossible_schedule_is_reported_with_every_output(
+    make_mission: Write, capsys: pytest.CaptureFixture[str], output: str, schedule: str, note: str
+) -> None:
+    assert main(["run", str(make_mission("Quiet")), "--for", "1", output, "--schedule", schedule]) == 0
+    assert capsys.readouterr().err.count(f"cfepy: {note}\n") == 1

@@ -115,6 +115,14 @@ def test_impossible_moves_are_reported() -> None:
     assert note.startswith("1 of 3 moves of the schedule were possible; not possible: ODOMETER.left@5=")
 
 
+@pytest.mark.parametrize("options", ["", ":fair=30"])
+def test_deviations_at_decisions_that_do_not_come_are_reported(options: str) -> None:
+    policy = NotingPolicy(Schedule.parse(f"at:0=1,4000=1,5000=2{options}").policy())
+    flown(two_calls, policy)
+    assert policy.missed == ("4000=1", "5000=2")
+    assert policy.notes == ("1 of 3 deviations of the schedule were possible; not possible: 4000=1, 5000=2",)
+
+
 class Naming(AskingPolicy):
     """Keeps the moves that another policy makes."""
 

@@ -343,3 +343,41 @@ def test_short_work_is_not_reported(suite: Suite) -> None:
 def test_time_to_shrink_must_be_positive(seconds: float) -> None:
     with pytest.raises(UsageError, match=r"shrink_time: invalid time .*; expected more than 0 s"):
         explore(shrink_time=seconds)
+
+
+IMPOSSIBLE = "moves:NOBODY.x@550/add.get_time=NOONE"
+NOT_POSSIBLE = f"*0 of 1 moves of the schedule were possible; not possible: {IMPOSSIBLE.removeprefix('moves:')}"
+
+
+def test_impossible_schedule_of_the_command_line_is_a_warning(suite: Suite) -> None:
+    test = """
+        from cfepy.testing import explore
+
+        @explore(seeds=3)
+        def test_it(mission):
+            mission("talk").run_for(0.7)
+        """
+    result = suite(test, "--cfepy-schedule", IMPOSSIBLE)
+    result.assert_outcomes(passed=1, warnings=1)
+    result.stdout.fnmatch_lines(["*test_it.py:*: ScheduleWarning: " + NOT_POSSIBLE[1:]])
+    suite(test, "--cfepy-schedule", "random:3").assert_outcomes(passed=1)
+
+
+def test_impossible_schedule_of_a_test_or_a_wider_fixture_is_a_warning(suite: Suite) -> None:
+    result = suite(
+        f"""
+        import pytest
+
+        @pytest.fixture(scope="module")
+        def flight(mission):
+            return mission("talk", schedule="at:999999=1")
+
+        def test_wide(flight):
+            flight.run_for(0.7)
+
+        def test_own(mission):
+            mission("talk", schedule="{IMPOSSIBLE}").run_for(0.7)
+        """
+    )
+    result.assert_outcomes(passed=2, warnings=2)
+    result.stdout.fnmatch_lines_random([NOT_POSSIBLE, "*0 of 1 deviations of the schedule were possible*: 999999=1"])

@@ -71,7 +71,7 @@ class View:
         """
         if self.quiet:
             print("".join(f"{line}\n" for line in report.failed_steps(flown)), end="")
-            tell(told_problems(flown))
+            tell((*told_problems(flown), *flown.results.missed_moves))
             outputs.save_files(flown, quiet=True)
         else:
             self.report(flown)

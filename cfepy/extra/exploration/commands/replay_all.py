@@ -47,8 +47,9 @@ def _lines(each: ReplayedFailure) -> Iterator[str]:
     if each.verdict.trouble:
         yield f"  an error in cfepy itself; please report it: {each.verdict.trouble.splitlines()[-1]}"
     if each.state == NOT_POSSIBLE:
-        count, missed = len(each.verdict.schedule.moves), each.verdict.missed
-        yield f"  {count - len(missed)} of its {count} moves were possible; not possible: {', '.join(missed)}"
+        schedule, missed = each.verdict.schedule, each.verdict.missed
+        parts, count = ("moves", len(schedule.moves)) if schedule.moves else ("deviations", len(schedule.deviations))
+        yield f"  {count - len(missed)} of its {count} {parts} were possible; not possible: {', '.join(missed)}"
     for other in each.others:
         yield f"  but under its schedule: {other}"
     if each.state == STILL_THERE or each.others:
