@@ -7,6 +7,7 @@ arrived, at the requested rate.
 
 from __future__ import annotations
 
+import re
 import traceback
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -98,6 +99,7 @@ class PointNumbers:
         trace: digest of the run.
         trouble: traceback of an error of cfepy itself, which is not an error of the mission.
         values: the measured values of fields, in their order.
+        loose_end: the first topic that connects to nothing, as a run reports it; empty for none.
     """
 
     board: str = ""
@@ -109,6 +111,7 @@ class PointNumbers:
     trace: str = ""
     trouble: str = ""
     values: tuple[FieldValue, ...] = ()
+    loose_end: str = ""
 
     @property
     def sent(self) -> tuple[TopicNumbers, ...]:
@@ -135,7 +138,9 @@ class PointNumbers:
         unmeasured = next((each for each in self.values if each.value is None), None)
         if unmeasured is not None:
             return f"no value of {unmeasured.name}: {unmeasured.why}"
-        return "" if self.topics or self.values or not needs_messages else "no message came"
+        if self.topics or self.values or not needs_messages:
+            return ""
+        return f"no message came; {self.loose_end}" if self.loose_end else "no message came"
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +175,7 @@ class Sweep(Lot[Point, PointNumbers]):
             _first_problem(results),
             flown.trace,
             values=tuple(each.value_in(recorded[0]) for each in self.fields),
+            loose_end=next(iter(results.loose_ends), ""),
         )
 
     def died(self, subject: Point, fate: str, words: str) -> PointNumbers:
@@ -188,7 +194,8 @@ class Sweep(Lot[Point, PointNumbers]):
         for name in names:
             topic = by_name.get(name)
             if topic is None:
-                yield TopicNumbers(name, 0, 0, 0, 0, 0.0, 0.0, 0.0, sent.why_not([name]))
+                hint = sent.why_not([name]) or _loose_end_of(name, results.loose_ends)
+                yield TopicNumbers(name, 0, 0, 0, 0, 0.0, 0.0, 0.0, hint)
                 continue
             pipes = list(watch.arrivals.get(topic.msg_id, {}).values()) or [Arrivals()]
             count = sum(each.count for each in pipes)
@@ -201,7 +208,14 @@ class Sweep(Lot[Point, PointNumbers]):
                 round(min(each.rate_hz(watch.end_ns) for each in pipes), 3),
                 round(sum(each.latency_ns for each in pipes) / count / _US, 3) if count else 0.0,
                 round(max(each.longest_ns for each in pipes) / _US, 3),
+                "" if watch.sent[topic.msg_id] else _loose_end_of(name, results.loose_ends),
             )
+
+
+def _loose_end_of(name: str, loose_ends: Sequence[str]) -> str:
+    """Return the end of a sentence about a topic without messages: why it connects to nothing; empty if it does."""
+    named = re.compile(rf"(?<!\S){re.escape(name)}(?![\w/])")
+    return next((f"; {each}" for each in loose_ends if named.search(each)), "")
 
 
 def _first_problem(results: Results) -> str:

@@ -15,6 +15,7 @@ from cfepy.extra.exploration.sweep_points import points_of
 from cfepy.extra.exploration.worker_pools import make_crew
 from cfepy.mission import read_mission
 from cfepy.pilot.plan import RunPlan
+from tests.mission.flights import write_mission
 
 TOPICS = ("/left_to_right", "/right_to_left")
 
@@ -58,6 +59,53 @@ def test_topic_without_messages_is_not_the_slowest(capsys: pytest.CaptureFixture
     show_tables([table_of([found])], sys.stdout)
     assert "50.0" in capsys.readouterr().out
     assert found.why_not_clean == "no message of /b was measured"
+
+
+TALKER = """
+    import rospy
+    from std_msgs.msg import Int8
+
+    rospy.init_node("talker")
+    talk = rospy.Publisher("talk", Int8, queue_size=9)
+    while not rospy.is_shutdown():
+        talk.publish()
+        rospy.sleep(0.1)
+"""
+TALKERS = "CFE_APP, talker, __main__, TALKER, 100, 16384, 0, 0;\n"
+LISTENER = """
+    import rospy
+    from std_msgs.msg import {kind}
+
+    rospy.init_node("listener")
+    rospy.Subscriber("{topic}", {kind}, print)
+    rospy.spin()
+"""
+
+
+@pytest.mark.parametrize("topics", [(), ("/talk",)])
+@pytest.mark.parametrize(
+    ("listens", "loose_end"),
+    [
+        ("", "published without a subscriber: /talk of /talker"),
+        ("/talks", "/talks: /listener subscribed, but no node publishes; did you mean /talk?"),
+        (
+            "/talk",
+            "/talk: /listener has the type std_msgs/Empty, but the topic has std_msgs/Int8, so it is not connected",
+        ),
+    ],
+)
+def test_topic_without_subscriber_is_the_reason_why_no_message_came(
+    tmp_path: Path, listens: str, loose_end: str, topics: tuple[str, ...], capsys: pytest.CaptureFixture[str]
+) -> None:
+    nodes = {"talker": TALKER}
+    if listens:
+        nodes["listener"] = LISTENER.format(topic=listens, kind="Empty" if listens == "/talk" else "Int8")
+    startup = TALKERS + (TALKERS.replace("talker", "listener").replace("TALKER", "LISTENER") if listens else "")
+    found = Sweep(RunPlan((write_mission(tmp_path, startup + "!", **nodes),), seconds=1.5), topics).judge(Point())
+    said = "no message of /talk was measured" if topics else "no message came"
+    assert found.why_not_clean(10) == f"{said}; {loose_end}"
+    show_tables([table_of([SweepRow(Point(), found, ())])], sys.stdout)
+    assert " us" not in capsys.readouterr().out, "no latency was measured"
 
 
 def test_a_point_of_the_board_mission() -> None:

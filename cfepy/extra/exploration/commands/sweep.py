@@ -184,7 +184,7 @@ def table_of(rows: Sequence[SweepRow]) -> Table:
         rate = "" if row.point.rate_hz is None else f"{row.point.rate_hz:g}"
         came = f"{min(each.delivered_hz for each in topics):.1f}" if topics else ""
         mean, longest = (
-            seconds_text(max((getattr(each, name) for each in topics), default=0.0))
+            seconds_text(max(getattr(each, name) for each in topics)) if topics else ""
             for name in ("latency_mean_us", "latency_max_us")
         )
         table.add(
@@ -193,8 +193,8 @@ def table_of(rows: Sequence[SweepRow]) -> Table:
             *(varied.get(name, "") for name in names),
             row.point.seed,
             came,
-            sum(each.lost for each in topics),
-            sum(each.held_back for each in topics),
+            sum(each.lost for each in topics) if topics else "",
+            sum(each.held_back for each in topics) if topics else "",
             mean,
             longest,
             f"{row.numbers.cpu:.2%}",
