@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     )
     from cfepy.extra.exploration.sweep_picture import SweepLine, picture_of_sweep
     from cfepy.extra.exploration.sweep_points import numbers_of, points_of, seeds_of, values_of
-    from cfepy.extra.exploration.timeline import WIDTH, Story, story_of, story_of_run
+    from cfepy.extra.exploration.timeline import WIDTH, Story, story_of, story_of_run, story_width
     from cfepy.extra.exploration.trial import Trial, Tried
     from cfepy.extra.exploration.verdict import Failure, Finding, Verdict
     from cfepy.extra.exploration.worker_pools import make_crew
@@ -99,6 +99,7 @@ __all__ = [
     "ship",
     "story_of",
     "story_of_run",
+    "story_width",
     "sweep_table",
     "values_of",
 ]
@@ -162,6 +163,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Story",
                 "story_of",
                 "story_of_run",
+                "story_width",
             ),
             ".trial": (
                 "Trial",

@@ -72,9 +72,24 @@ class Evidence:
         return one is not None and other is not None and other < one
 
 
-def cause_of(evidence: Evidence) -> str:
-    """Return the sentence, or an empty string if no pattern matches."""
-    sentences: tuple[Callable[[Evidence], str], ...] = (
+class Cause(NamedTuple):
+    """The cause of a failure.
+
+    Attributes:
+        text: the sentence; empty if the cause is not known.
+        deeds: the deeds that the sentence names.
+    """
+
+    text: str = ""
+    deeds: tuple[Deed, ...] = ()
+
+
+NO_CAUSE = Cause()
+
+
+def cause_of(evidence: Evidence) -> Cause:
+    """Return the cause; it has no text if no pattern matches."""
+    sentences: tuple[Callable[[Evidence], Cause], ...] = (
         _deadlock,
         _late,
         _lost_update,
@@ -88,35 +103,43 @@ def cause_of(evidence: Evidence) -> str:
         _order,
         _one_switch,
     )
-    return next((text for text in (sentence(evidence) for sentence in sentences) if text), "")
+    return next((cause for cause in (sentence(evidence) for sentence in sentences) if cause.text), NO_CAUSE)
 
 
 # -- deadlock --------------------------------------------------------------------------------------------------------
 
 
-def _deadlock(evidence: Evidence) -> str:
-    """Return text if each task of a cycle holds the lock that the task before it wants."""
+def _deadlock(evidence: Evidence) -> Cause:
+    """Return a cause if each task of a cycle holds the lock that the task before it wants."""
     if evidence.failure.kind != DEADLOCK:
-        return ""
+        return NO_CAUSE
     waits = [(found["task"], found["what"], found["holder"]) for found in _HELD.finditer(evidence.failure.text)]
     wanted = {task: evidence.names.get(what, what) for task, what, _ in waits}
     held = {holder: evidence.names.get(what, what) for _, what, holder in waits}
     if len(waits) < 2 or wanted.keys() != held.keys():
-        return ""
-    return "; ".join(f"{task} holds {held[task]} and waits for {wanted[task]}" for task in wanted)
+        return NO_CAUSE
+    text = "; ".join(f"{task} holds {held[task]} and waits for {wanted[task]}" for task in wanted)
+    deeds = [_last_of(evidence.deeds, task, do.HAS, held[task]) for task in wanted]
+    deeds += [_last_of(evidence.deeds, task, do.WANTS, wanted[task]) for task in wanted]
+    return Cause(text, tuple(deed for deed in deeds if deed is not None))
+
+
+def _last_of(deeds: Sequence[Deed], task: str, verb: str, thing: str) -> Deed | None:
+    """Return the last deed of a task of this kind to this object."""
+    return next((deed for deed in reversed(deeds) if (deed.task, deed.verb, deed.thing) == (task, verb, thing)), None)
 
 
 # -- time ------------------------------------------------------------------------------------------------------------
 
 
-def _late(evidence: Evidence) -> str:
-    """Return text if another task ran for longer than usual in the span of a missed deadline."""
+def _late(evidence: Evidence) -> Cause:
+    """Return a cause if another task ran for longer than usual in the span of a missed deadline."""
     span_ns = evidence.failure.span_ns
     task = "" if span_ns is None else longest_more(evidence.ran, evidence.usually_ran, span_ns)
     if span_ns is None or not task:
-        return ""
+        return NO_CAUSE
     ran, usual, span = (time_text(each) for each in (evidence.ran[task], evidence.usually_ran[task], span_ns))
-    return f"{task} ran for {ran} of the {span} before the missed deadline; under fifo it runs for {usual}"
+    return Cause(f"{task} ran for {ran} of the {span} before the missed deadline; under fifo it runs for {usual}")
 
 
 # -- accesses --------------------------------------------------------------------------------------------------------
@@ -154,22 +177,23 @@ _DO_NOT_GO_TOGETHER = {
 }
 
 
-def _lost_update(evidence: Evidence) -> str:
-    """Return text if a task overwrites a value that another task wrote after the first task's read."""
+def _lost_update(evidence: Evidence) -> Cause:
+    """Return a cause if a task overwrites a value that another task wrote after the first task's read."""
     return _told(evidence, _is_lost_update, _update_text)
 
 
-def _torn(evidence: Evidence) -> str:
-    """Return text if another task accesses a variable between two accesses of a task."""
+def _torn(evidence: Evidence) -> Cause:
+    """Return a cause if another task accesses a variable between two accesses of a task."""
     return _told(evidence, lambda torn: True, _torn_text)
 
 
-def _told(evidence: Evidence, is_meant: Callable[[Torn], bool], text: Callable[[Torn], str]) -> str:
-    """Return the text of the first case after the last switch that let another task in and that fifo does not show."""
+def _told(evidence: Evidence, is_meant: Callable[[Torn], bool], text: Callable[[Torn], str]) -> Cause:
+    """Return the first case after the last switch that let another task in and that fifo does not show."""
     usual = {torn.key for torn in _torn_in(evidence.usual)}
     found = [each for each in _torn_in(evidence.deeds) if each.switch and each.key not in usual and is_meant(each)]
     last = max((torn.switch for torn in found), default=0)
-    return next((text(torn) for torn in found if torn.switch == last), "")
+    chosen = next((torn for torn in found if torn.switch == last), None)
+    return NO_CAUSE if chosen is None else Cause(text(chosen), (chosen.first, chosen.other, chosen.last))
 
 
 @dataclass(slots=True)
@@ -250,11 +274,11 @@ def _torn_text(torn: Torn) -> str:
     return f"{other.task} {_did(other)} {other.thing} at {other.place}, between {first.task}'s {between}"
 
 
-def _raised(evidence: Evidence) -> str:
-    """Return text if another task changed a value that a line had read when the line raised an exception."""
+def _raised(evidence: Evidence) -> Cause:
+    """Return a cause if another task changed a value that a line had read when the line raised an exception."""
     place = _PLACE.search(evidence.failure.text)
     if evidence.failure.kind not in (RAISED, DIED) or place is None:
-        return ""
+        return NO_CAUSE
     task = evidence.failure.task
     begun = max(
         (at for at, deed in _of(evidence.deeds, do.GIVES_WAY) if deed.task == task), default=len(evidence.deeds)
@@ -262,23 +286,25 @@ def _raised(evidence: Evidence) -> str:
     read = [deed for deed in evidence.deeds[:begun] if (deed.task, deed.place, deed.verb) == (task, place[1], do.READS)]
     for deed in evidence.deeds[begun:]:
         if deed.verb == do.WRITES and deed.task != task and any(each.is_of_same(deed) for each in read[-1:]):
-            return (
+            text = (
                 f"{deed.task} {_did(deed)} {deed.thing} at {deed.place}, between {task}'s read at {place[1]} and the "
                 "exception there"
             )
-    return ""
+            return Cause(text, (read[-1], deed))
+    return NO_CAUSE
 
 
-def _order(evidence: Evidence) -> str:
-    """Return text if a read and a write have another order than under fifo, for one variable only."""
+def _order(evidence: Evidence) -> Cause:
+    """Return a cause if a read and a write have another order than under fifo, for one variable only."""
     found = list(_flipped_accesses(evidence))
     if len({later.thing for _, later in found}) != 1:
-        return ""
+        return NO_CAUSE
     earlier, later = found[0]
-    return (
+    text = (
         f"{earlier.task} {_did(earlier)} {later.thing} at {earlier.place} before {later.task} {_did(later)} it at "
         f"{later.place}; under fifo the order is reversed"
     )
+    return Cause(text, (earlier, later))
 
 
 def _flipped_accesses(evidence: Evidence) -> Iterator[tuple[Deed, Deed]]:
@@ -311,41 +337,43 @@ def _did(deed: Deed) -> str:
 # -- wake-ups --------------------------------------------------------------------------------------------------------
 
 
-def _lost_wake_up(evidence: Evidence) -> str:
-    """Return text if a task waits in vain because the object was set or notified before the wait."""
+def _lost_wake_up(evidence: Evidence) -> Cause:
+    """Return a cause if a task waits in vain because the object was set or notified before the wait."""
     for at in _vain_waits(evidence.deeds):
-        text = _notified_early(evidence, at) or _set_and_cleared(evidence, at)
-        if text:
-            return text
-    return ""
+        for cause in (_notified_early(evidence, at), _set_and_cleared(evidence, at)):
+            if cause.text:
+                return cause
+    return NO_CAUSE
 
 
-def _notified_early(evidence: Evidence, at: int) -> str:
+def _notified_early(evidence: Evidence, at: int) -> Cause:
     wait = evidence.deeds[at]
     last = _last(evidence.deeds[:at], wait, do.NOTIFIES)
     if last is None or evidence.deeds[last].note != NOBODY or not evidence.is_flipped(last, at):
-        return ""
+        return NO_CAUSE
     deed = evidence.deeds[last]
-    return f"{deed.task}'s notify at {deed.place} came before {wait.task}'s wait at {wait.place}: no task was waiting"
+    text = f"{deed.task}'s notify at {deed.place} came before {wait.task}'s wait at {wait.place}: no task was waiting"
+    return Cause(text, (deed, wait))
 
 
-def _set_and_cleared(evidence: Evidence, at: int) -> str:
-    """Return text if an event was set while the task that clears it was delayed."""
+def _set_and_cleared(evidence: Evidence, at: int) -> Cause:
+    """Return a cause if an event was set while the task that clears it was delayed."""
     wait = evidence.deeds[at]
     cleared_at = _last(evidence.deeds[:at], wait, do.CLEARS)
     set_at = None if cleared_at is None else _last(evidence.deeds[:cleared_at], wait, do.SETS)
     if cleared_at is None or set_at is None:
-        return ""
+        return NO_CAUSE
     cleared, was_set = evidence.deeds[cleared_at], evidence.deeds[set_at]
     own = (each for each in reversed(range(cleared_at)) if evidence.deeds[each].task == cleared.task)
     before = next(own, cleared_at)
     gave_way = evidence.deeds[before].verb == do.GIVES_WAY and before < set_at
     if was_set.task == cleared.task or not (gave_way or evidence.is_flipped(set_at, cleared_at)):
-        return ""
-    return (
+        return NO_CAUSE
+    text = (
         f"{was_set.task} set {wait.thing} at {was_set.place}, then {cleared.task} cleared it at {cleared.place}; "
         f"{wait.task} waits for it at {wait.place} in vain"
     )
+    return Cause(text, (was_set, cleared, wait))
 
 
 def _vain_waits(deeds: Sequence[Deed]) -> list[int]:
@@ -372,43 +400,46 @@ def _last(deeds: Sequence[Deed], like: Deed, verb: str) -> int | None:
 # -- messages --------------------------------------------------------------------------------------------------------
 
 
-def _overflow(evidence: Evidence) -> str:
-    """Return text if a message did not fit into a pipe, although all messages fit under fifo."""
+def _overflow(evidence: Evidence) -> Cause:
+    """Return a cause if a message did not fit into a pipe, although all messages fit under fifo."""
     usual = {(deed.thing, deed.note) for deed in evidence.usual if deed.verb == do.LOSES}
     for deed in evidence.deeds:
         if deed.verb == do.LOSES and (deed.thing, deed.note) not in usual:
             app, _, depth = deed.note.partition(", ")
             where = f" at {deed.place}" if deed.place else ""
             full = f"full, with {depth} {'message' if depth == '1' else 'messages'}"
-            return (
+            text = (
                 f"a message {deed.thing} that {deed.task} sent{where} was lost: the pipe of {app} was {full}; "
                 "under fifo no message is lost there"
             )
-    return ""
+            return Cause(text, (deed,))
+    return NO_CAUSE
 
 
-def _late_subscription(evidence: Evidence) -> str:
-    """Return text if a message was sent before a task subscribed to it."""
+def _late_subscription(evidence: Evidence) -> Cause:
+    """Return a cause if a message was sent before a task subscribed to it."""
     for at, subscription in _of(evidence.deeds, do.SUBSCRIBES):
         for sent_at, sending in _of(evidence.deeds[:at], do.SENDS):
             if sending.thing == subscription.thing and evidence.is_flipped(sent_at, at):
-                return (
+                text = (
                     f"{sending.task} sent {sending.thing} at {sending.place} before {subscription.task} subscribed to "
                     f"it at {subscription.place}; under fifo the order is reversed"
                 )
-    return ""
+                return Cause(text, (sending, subscription))
+    return NO_CAUSE
 
 
-def _deleted(evidence: Evidence) -> str:
-    """Return text if a task tried to receive from a deleted pipe."""
+def _deleted(evidence: Evidence) -> Cause:
+    """Return a cause if a task tried to receive from a deleted pipe."""
     usual = {deed.thing for _, deed in _received_late(evidence.usual)}
     for deletion, receiving in _received_late(evidence.deeds):
         if receiving.thing not in usual:
-            return (
+            text = (
                 f"{deletion.task} deleted {deletion.thing} at {deletion.place} before {receiving.task} tried to "
                 f"receive from it at {receiving.place}; under fifo no task does so after the deletion"
             )
-    return ""
+            return Cause(text, (deletion, receiving))
+    return NO_CAUSE
 
 
 def _received_late(deeds: Sequence[Deed]) -> Iterator[tuple[Deed, Deed]]:
@@ -423,37 +454,38 @@ def _received_late(deeds: Sequence[Deed]) -> Iterator[tuple[Deed, Deed]]:
             deleted.pop(f"pipe {deed.note}", None)
 
 
-def _message_order(evidence: Evidence) -> str:
-    """Return text if an application that the schedule affects received two messages in another order."""
+def _message_order(evidence: Evidence) -> Cause:
+    """Return a cause if an application that the schedule affects received two messages in another order."""
     apps = {deed.app for deed in evidence.deeds for move in evidence.moves if deed.task in (move.task, move.chosen)}
     got = [(at, deed) for at, deed in _of(evidence.deeds, do.GETS) if deed.app in apps]
     for number, (at, later) in enumerate(got):
         for earlier_at, earlier in reversed(got[:number]):
             if earlier.app == later.app and earlier.thing != later.thing and evidence.is_flipped(earlier_at, at):
-                return f"{earlier.app} got {earlier.thing} before {later.thing}; under fifo it gets {later.thing} first"
-    return ""
+                text = f"{earlier.app} got {earlier.thing} before {later.thing}; under fifo it gets {later.thing} first"
+                return Cause(text, (earlier, later))
+    return NO_CAUSE
 
 
 # -- other causes ------------------------------------------------------------------------------------------------------
 
 
-def _one_switch(evidence: Evidence) -> str:
-    """Return text if the schedule differs from fifo by a single switch."""
+def _one_switch(evidence: Evidence) -> Cause:
+    """Return a cause if the schedule differs from fifo by a single switch."""
     moves = [at for at, row in enumerate(evidence.rows) if row.kind in (PREEMPTED, ORDERED)]
     if len(evidence.moves) != 1 or evidence.moves[0].question or len(moves) != 1:
-        return ""
+        return NO_CAUSE
     row = evidence.rows[moves[0]]
     before = (each.text for each in reversed(evidence.rows[: moves[0]]) if each.task == row.task and each.kind == AT)
     place = ":".join(next(before, "").split(":")[:2])
     if row.kind == ORDERED:
-        return (
+        return Cause(
             f"{row.text} continued before {row.task}, which was ready first; without this change the run does not fail"
         )
     if not place:
-        return ""
+        return NO_CAUSE
     if row.text == HOLD:
-        return f"{row.task} was delayed at {place}; without this delay the run does not fail"
-    return f"{row.text} preempted {row.task} at {place}; without this preemption the run does not fail"
+        return Cause(f"{row.task} was delayed at {place}; without this delay the run does not fail")
+    return Cause(f"{row.text} preempted {row.task} at {place}; without this preemption the run does not fail")
 
 
 def _of(deeds: Sequence[Deed], verb: str) -> Iterator[tuple[int, Deed]]:

@@ -26,6 +26,7 @@ from cfepy.extra.exploration import (
     budget_of,
     seeded_kinds,
     story_of,
+    story_width,
 )
 from cfepy.pilot import RunPlan
 from cfepy.rtos import Policy, Stopwatch
@@ -267,7 +268,9 @@ class ExploredTest:
         failure = next((each for each in failures if each.group != group), failures[0] if failures else None)
         if failure is None:
             return []
-        lines = story_of(self, shrunk.verdict, failure, shrunk.moves).lines()
+        reporter = self._item.config.pluginmanager.get_plugin("terminalreporter")
+        width = story_width(reporter is not None and reporter.isatty)
+        lines = story_of(self, shrunk.verdict, failure, shrunk.moves).lines(width)
         self._last = self._once(Conditions(shrunk.verdict.schedule))  # the reports are those of this run
         return lines
 

@@ -7,8 +7,8 @@ deeds are for a comparison with another run (`cfepy.extra.exploration.cause`).
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from pathlib import PurePath
 from types import FrameType
 from typing import Any
@@ -27,6 +27,7 @@ from cfepy.rtos import TIMEOUT, AskingPolicy, Decision, Kernel, Policy, Task, wr
 from cfepy.sb import PEND_FOREVER, Pipe, Route, SoftwareBus
 from cfepy.schedules import ExploringKernel
 from cfepy.status import CfeError
+from cfepy.writing.escapes import visible_line
 
 AT, WAITS, SENDS, DOES, PREEMPTED, ORDERED, ANSWERS = "at", "waits", "sends", "does", "preempted", "ordered", "answers"
 TOUCHES = "touches"
@@ -61,12 +62,14 @@ class Row:
             decides.
         text: the line, object, message or operation; for TOUCHES first the line of source, then the operation in a
             second line.
+        is_of_cause: whether the cause of the failure names this operation, so the row is always shown.
     """
 
     at_ns: int
     task: str
     kind: str
     text: str
+    is_of_cause: bool = False
 
 
 class TaskLook(Attachment):
@@ -87,6 +90,9 @@ class TaskLook(Attachment):
     def __init__(self, spec: MissionSpec, first: int = 0, is_over: Callable[[], bool] = lambda: False) -> None:
         self.rows: list[Row] = []
         self.deeds: list[Deed] = []
+        self._rows_before: list[int] = []  # number of rows before each deed
+        self._row_of: dict[int, int] = {}  # by the identity of a deed: the row that shows it
+        self._sources: dict[str, str] = {}  # by place: the place with its line of source
         self.wanting: dict[str, Deed] = {}
         self.names: dict[str, str] = {}
         self.is_on = first <= 0
@@ -172,17 +178,44 @@ class TaskLook(Attachment):
         if text:
             self._keep(task.name, AT, text)
 
-    def _keep(self, task: str, kind: str, text: str) -> None:
+    def _keep(self, task: str, kind: str, text: str, deed: Deed | None = None) -> None:
+        """Keep a row, which shows a deed if one is given."""
         assert self._mission is not None
-        row = Row(self._mission.kernel.now, task, kind, text)
-        if not self.rows or (self.rows[-1].task, self.rows[-1].kind, self.rows[-1].text) != (task, kind, text):
+        row = Row(self._mission.kernel.now, task, kind, text if kind == TOUCHES else visible_line(text))
+        if not self.rows or (self.rows[-1].task, self.rows[-1].kind, self.rows[-1].text) != (task, kind, row.text):
             self.rows.append(row)
+        if deed is not None:
+            self._row_of[id(deed)] = len(self.rows) - 1
+
+    def rows_with(self, deeds: Sequence[Deed]) -> list[Row]:
+        """Return the rows, with the rows of some deeds marked: the cause of the failure names them.
+
+        A deed without a row gets one here, with the line of source before it.
+        """
+        wanted = {id(deed) for deed in deeds}
+        rows: list[Row] = []
+        shown = {at for ident, at in self._row_of.items() if ident in wanted}
+        marked = [replace(row, is_of_cause=True) if at in shown else row for at, row in enumerate(self.rows)]
+        begun = 0
+        for deed, before in zip(self.deeds, self._rows_before, strict=True):
+            if id(deed) in wanted and id(deed) not in self._row_of:
+                rows += marked[begun:before]
+                begun = before
+                if deed.place:
+                    rows.append(Row(deed.at_ns, deed.task, AT, self._sources.get(deed.place, deed.place)))
+                rows.append(Row(deed.at_ns, deed.task, DOES, f"{deed.verb} {deed.thing}", is_of_cause=True))
+        return rows + marked[begun:]
 
     def _done(self, task: Task, verb: str, thing: str, frame: FrameType | None, note: str = "") -> Deed:
         """Record a deed."""
         assert self._mission is not None
-        place = ":".join(place_text(frame).split(":")[:2])
-        deed = Deed(self._mission.kernel.now, task.name, task.owner.name, verb, thing, place, note)
+        source = place_text(frame)
+        place = ":".join(source.split(":")[:2])
+        self._sources[place] = source
+        return self._noted(Deed(self._mission.kernel.now, task.name, task.owner.name, verb, thing, place, note))
+
+    def _noted(self, deed: Deed) -> Deed:
+        self._rows_before.append(len(self.rows))
         self.deeds.append(deed)
         return deed
 
@@ -190,7 +223,7 @@ class TaskLook(Attachment):
         """Record a row for a deed."""
         if self.is_on:
             self._keep_place(task, frame)
-            self._keep(task.name, DOES, f"{deed.verb} {deed.thing}{more}")
+            self._keep(task.name, DOES, f"{deed.verb} {deed.thing}{more}", deed)
 
     # -- calls, which are scheduling points ---------------------------------------------------------------------------
 
@@ -306,21 +339,23 @@ class TaskLook(Attachment):
         if self.is_on:
             self._keep_place(task, frame)
         waits = task.waits
-        deed = None
+        deed: Deed | None = None
+        shown: Deed | None = None
         if waits is None:
             text = "sleeps"
         elif task.name in self.wanting:
             holders = " and ".join(holder.name for holder in waits.holders())
             thing = self.wanting[task.name].thing
             text = f"wants {thing}, which {holders} has" if holders else f"waits for {thing}"
+            shown = self.wanting[task.name]
         else:
             use = use_of(None, "", frame) if "lock " in waits.what else None
             name = "" if use is None else self._awaited(use)
             text = f"waits for {name or self._of_pipe(waits.what)}"
             if name and use is not None and use.call not in (START, JOIN):
-                deed = self._done(task, do.AWAITS, name, frame)
+                shown = deed = self._done(task, do.AWAITS, name, frame)
         if self.is_on:
-            self._keep(task.name, WAITS, text)
+            self._keep(task.name, WAITS, text, shown)
         return deed
 
     def _awaited(self, use: Use) -> str:
@@ -364,7 +399,7 @@ class TaskLook(Attachment):
         note = f"{pipe.app_name}, {pipe.depth}" if verb == do.LOSES else pipe.name
         deed = self._done(task, verb, self._message_name(msg_id), frame, note)
         if verb == do.LOSES and self.is_on:
-            self._keep(task.name, DOES, f"{deed.thing} is lost: the pipe of {pipe.app_name} is full")
+            self._keep(task.name, DOES, f"{deed.thing} is lost: the pipe of {pipe.app_name} is full", deed)
 
     def _message_name(self, msg_id: int) -> str:
         ros = None if self._mission is None else self._mission.ros
@@ -378,7 +413,7 @@ class TaskLook(Attachment):
         if task is None or self._closed:
             return
         frame = _outside(sys._getframe(1))
-        self._done(task, do.SENDS, heard.topic, frame)
+        deed = self._done(task, do.SENDS, heard.topic, frame)
         if not self.is_on:
             return
         try:
@@ -386,7 +421,7 @@ class TaskLook(Attachment):
         except Exception as error:  # the type of its messages is not known
             values = {"?": str(error)}
         self._keep_place(task, frame)
-        self._keep(task.name, SENDS, _sending(heard.topic, values))
+        self._keep(task.name, SENDS, _sending(heard.topic, values), deed)
 
     def _take_touch(self, touch: Touch) -> None:
         """Record an access to a variable. Accesses long before the first move are not kept, because they are many."""
@@ -399,8 +434,8 @@ class TaskLook(Attachment):
         deed = Deed(
             self._mission.kernel.now, task.name, task.owner.name, verb, touch.name, place, touch.file, touch.thing, key
         )
-        self.deeds.append(deed)
-        self._keep(task.name, TOUCHES, f"{place_text(_outside(sys._getframe(1)))}\n{verb} {touch.name}")
+        source = place_text(_outside(sys._getframe(1)))
+        self._keep(task.name, TOUCHES, f"{source}\n{verb} {touch.name}", self._noted(deed))
 
     def _look_at_parameters(self, ros: Any) -> None:
         """Watch the parameters of ROS, which has just started on a processor that may not be the first."""

@@ -8,13 +8,14 @@ drawn as plain text.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator, Mapping, Sequence
+import shutil
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from textwrap import wrap
 from typing import Protocol
 
 from cfepy.attachment import Attachment
-from cfepy.extra.exploration.cause import Evidence, cause_of
+from cfepy.extra.exploration.cause import NO_CAUSE, Evidence, cause_of
 from cfepy.extra.exploration.failure_kinds import FailureWatch
 from cfepy.extra.exploration.made_moves import MadeMove, MoveNotingPolicy
 from cfepy.extra.exploration.mission_transfer import PlanElsewhere
@@ -39,7 +40,9 @@ from cfepy.schedules import Schedule
 from cfepy.units import NS_PER_S
 
 WIDTH = 100
-"""Width of a story in a file, a pipe, a test: always the same, so that stories can be compared."""
+"""Width of a story in a file or a pipe: always the same, so that stories can be compared."""
+LEAST_WIDTH = 60
+"""Width of a story in a terminal that is narrower than this."""
 
 TIME_WIDTH = 12
 LEAST_COLUMN = 26  # characters: there are as many columns as fit
@@ -51,8 +54,9 @@ MOST_ROWS = 16  # rows of a group
 FEW = 2  # rows: a group of this size is folded only when it comes three times
 BETWEEN = " ... "  # between the first and the last of merged messages
 CAUSE = "cause: "
-MOST_OF_A_PAGE = 6  # tasks that have a column on a page of any width
+MOST_OF_A_PAGE = 6  # tasks on a page of any width, and in a story that is too narrow for columns
 MOVES = (PREEMPTED, ORDERED, ANSWERS)
+_Kind = tuple[str, str, str]  # of a row; rows of a kind are merged
 _MADE_AT = re.compile(r" \((?:line |[\w.]+:)\d+\)")  # after the name of a lock; left out first without room
 
 
@@ -75,15 +79,18 @@ class Story:
     end_ns: int | None = None
 
     def lines(self, width: int = WIDTH) -> list[str]:
-        """Return the story as text.
+        """Return the story as text: a column for each task, or a list if the columns would be too narrow.
 
         Args:
             width: characters of a line.
         """
-        most = max(1, (width - TIME_WIDTH) // (LEAST_COLUMN + GAP))
-        tasks = self._tasks(most)
+        of_cause = {row.task for row in self.rows if row.is_of_cause}
+        most = (width - TIME_WIDTH) // (LEAST_COLUMN + GAP)
+        is_wide = most >= min(len(self.tasks), max(2, len(of_cause)))
+        tasks = self._tasks(most if is_wide else max(MOST_OF_A_PAGE, len(of_cause)))
+        events = drawn(self.rows, tasks, width) if is_wide else listed(self.rows, tasks, width)
         cause = wrap(CAUSE + self.cause, width, subsequent_indent=" " * len(CAUSE)) if self.cause else []
-        return [*cause, *([""] if cause else []), *drawn(self.rows, tasks, width), *self._last_lines(width)]
+        return [*cause, *([""] if cause else []), *events, *self._last_lines(width)]
 
     def table(self) -> tuple[tuple[str, ...], list[tuple[int | None, str, str, bool]]]:
         """Return the story as a table: the tasks that have a column, and the rows.
@@ -91,7 +98,8 @@ class Story:
         A row has its virtual time in ns, its task, its text, and whether it is a move of the schedule. Time and task
         are None and empty if the row stands for others.
         """
-        tasks = self._tasks(MOST_OF_A_PAGE)
+        of_cause = {row.task for row in self.rows if row.is_of_cause}
+        tasks = self._tasks(max(MOST_OF_A_PAGE, len(of_cause)))
         groups = _folded(_moving([row for row in self.rows if row.task in tasks]))
         rows: list[tuple[int | None, str, str, bool]] = []
         before = -1
@@ -156,12 +164,20 @@ def story_of(trial: Retellable, verdict: Verdict, failure: Failure, moves: Seque
     culprit = failure.task or sender
     ran, usually_ran = (each.between(end_ns - (failure.span_ns or 0), end_ns) for each in (times, usual_times))
     evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names, ran, usually_ran)
-    cause = "" if known is not None or failure.kind == LONGEST else cause_of(evidence)
-    rows = tuple(_without_touches(rows, {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause}))
+    cause = NO_CAUSE if known is not None or failure.kind == LONGEST else cause_of(evidence)
+    rows = tuple(row for row in look.rows_with(cause.deeds) if row.at_ns <= end_ns)
+    touched = {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause.text}
+    rows = tuple(_without_touches(rows, touched))
     title, text = (_named(each, look.names) for each in (failure.title, failure.text))
     what, title = ("LONGEST", f"{failure.who} {text}") if failure.kind == LONGEST else ("FAILURE", title)
     end = f"{what}{f' in {culprit}:' if culprit else ''} {title}"
-    return Story(rows, important(rows, moves, culprit, f"{cause} {text}"), cause, end, failure.at_ns)
+    tasks = important(rows, moves, culprit, f"{cause.text} {text}")
+    return Story(rows, tasks, cause.text, end, failure.at_ns)
+
+
+def story_width(is_terminal: bool, indent: int = 0) -> int:
+    """Return the width of a story's lines: the terminal's width without the indent; always the same elsewhere."""
+    return max(LEAST_WIDTH, shutil.get_terminal_size().columns - indent) if is_terminal else WIDTH
 
 
 def story_of_run(plan: RunPlan, root: str = "") -> Story | None:
@@ -194,9 +210,9 @@ def _named(text: str, names: Mapping[str, str]) -> str:
 def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "", text: str = "") -> tuple[str, ...]:
     """Return the tasks that may have a column, the most important first.
 
-    These are the task of the failure, the tasks of the moves (the last move first), and the tasks of questions. Tasks
-    that the failure and its cause name also count. If these are fewer than two, or a task was delayed and others ran in
-    the meantime, the last active tasks are added.
+    These are the tasks whose operations the cause names, then the task of the failure, the tasks of the moves (the last
+    move first), and the tasks of questions. Tasks that the failure and its cause name also count. If these are fewer
+    than two, or a task was delayed and others ran in the meantime, the last active tasks are added.
 
     Args:
         rows: the events of all tasks.
@@ -208,7 +224,10 @@ def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "",
     moved = [name for move in moves if not move.question for name in (move.task, move.chosen)]
     moved += [row.task for row in rows if row.kind == ANSWERS]
     acting = list(dict.fromkeys(row.task for row in reversed(rows)))
-    wanted = dict.fromkeys([culprit, *reversed(moved), *(task for task in reversed(acting) if task in words)])
+    of_cause = [row.task for row in rows if row.is_of_cause]
+    wanted = dict.fromkeys(
+        [*of_cause, culprit, *reversed(moved), *(task for task in reversed(acting) if task in words)]
+    )
     for no_task in ("", HOLD):
         wanted.pop(no_task, None)
     at_least = 3 if HOLD in moved else 2
@@ -216,25 +235,56 @@ def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "",
 
 
 def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list[str]:
-    """Return a line for each row, in its task's column; rows far from every move and from the end are left out."""
+    """Return a line for each row, in its task's column.
+
+    Rows far from every move, from the end, and from what the cause names are left out. A file that has all lines of a
+    task is named once, above its column.
+    """
     if not tasks:
         return []
-    file, rows = _without_file(_moving([row for row in rows if row.task in tasks]))
-    groups = _folded(rows)
-    shown = _shown(groups)
-    widths = _widths([_need(task, [groups[at] for at in shown]) for task in tasks], width - TIME_WIDTH)
+    rows = _moving([row for row in rows if row.task in tasks])
+    files = {task: _only_file(row for row in rows if row.task == task) for task in tasks}
+    common = _only_file(rows)
+    groups = _folded([_short(row, common or files[row.task]) for row in rows])
+    heads = ["" if common or not files[task] else f"lines of {files[task]}" for task in tasks]
+    shown = [groups[at] for at in _shown(groups)]
+    needs = [max(_need(task, shown), len(head)) for task, head in zip(tasks, heads, strict=True)]
+    widths = _widths(needs, width - TIME_WIDTH)
+    lines = [f"lines of {common}", ""] if common else []
+    lines.append(_line("time, s", tasks, widths))
+    lines += [_line("", heads, widths)] if any(heads) else []
+    lines.append(_line("", ["-" * each for each in widths], widths))
+    return [*lines, *_events(groups, lambda row: _row_line(row, tasks, widths))]
+
+
+def listed(rows: Sequence[Row], tasks: Sequence[str], width: int) -> list[str]:
+    """Return a line for each row that `drawn` shows, with the name of its task, for a terminal without room."""
+    if not tasks:
+        return []
+    rows = _moving([row for row in rows if row.task in tasks])
+    file = _only_file(rows)
+    names = max(map(len, ("task", *tasks)))
+    widths = [names, width - TIME_WIDTH - GAP - names]
     lines = [f"lines of {file}", ""] if file else []
-    lines += [_line("time, s", tasks, widths), _line("", ["-" * each for each in widths], widths)]
+    lines += [_line("time, s", ["task", "operation"], widths), _line("", ["-" * each for each in widths], widths)]
+
+    def line(row: Row) -> str:
+        return _line(f"{row.at_ns / NS_PER_S:.6f}", [row.task, _cell(row, widths[1])], widths)
+
+    return [*lines, *_events(_folded([_short(row, file) for row in rows]), line)]
+
+
+def _events(groups: Sequence[_Group], line: Callable[[Row], str]) -> Iterator[str]:
+    """Yield the lines of the groups that are shown, with "..." in place of the others."""
     before = -1
-    for at in shown:
+    for at in _shown(groups):
         if at != before + 1:
-            lines.append("...")
+            yield "..."
         before = at
-        lines += [_row_line(row, tasks, widths) for row in groups[at].rows]
+        yield from map(line, groups[at].rows)
         if groups[at].times > 1:
             until = _until(groups[at])
-            lines.append(_line(f"x {groups[at].times}", [until], [len(until)]))
-    return lines
+            yield _line(f"x {groups[at].times}", [until], [len(until)])
 
 
 def _without_touches(rows: Sequence[Row], but: Collection[str]) -> Iterator[Row]:
@@ -243,7 +293,7 @@ def _without_touches(rows: Sequence[Row], but: Collection[str]) -> Iterator[Row]
         place, _, text = row.text.partition("\n")
         if row.kind != TOUCHES:
             yield row
-        elif text.partition(" ")[2] in but:
+        elif row.is_of_cause or text.partition(" ")[2] in but:
             yield replace(row, kind=AT, text=place)
             yield replace(row, kind=DOES, text=text)
 
@@ -267,26 +317,32 @@ def _moving(rows: Sequence[Row]) -> list[Row]:
     return kept
 
 
-def _without_file(rows: Sequence[Row]) -> tuple[str, Sequence[Row]]:
-    """Return the file of all places, and the rows without its name; "" if there are several files, or none."""
+def _only_file(rows: Iterable[Row]) -> str:
+    """Return the file of all places; "" if there are several files, or none."""
     files = {row.text.partition(":")[0] for row in rows if row.kind == AT}
-    if len(files) != 1:
-        return "", rows
-    file = files.pop()
-    return file, [replace(row, text=_short(row, file)) for row in rows]
+    return files.pop() if len(files) == 1 else ""
 
 
-def _short(row: Row, file: str) -> str:
-    if row.kind == AT:
-        return row.text[len(file) + 1 :]
-    return row.text.replace(f" ({file}:", " (line ") if row.kind in (DOES, WAITS) else row.text
+def _short(row: Row, file: str) -> Row:
+    """Return a row without the name of the file of all places, if there is one."""
+    if not file or row.kind not in (AT, DOES, WAITS):
+        return row
+    text = row.text[len(file) + 1 :] if row.kind == AT else row.text.replace(f" ({file}:", " (line ")
+    return replace(row, text=text)
 
 
 def _shown(groups: Sequence[_Group]) -> list[int]:
-    """Return the groups of rows that are shown."""
+    """Return the groups of rows that are shown: those near a move and the end, and all that the cause names."""
     moves = [at for at, group in enumerate(groups) if any(row.kind in MOVES for row in group.rows)]
-    near = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
-    return [at for at in range(len(groups)) if at in near or at >= len(groups) - LAST]
+    shown = {each for at in moves for each in range(at - AROUND, at + AROUND + 1)}
+    places: dict[str, int] = {}  # by task, the group with its last line of source
+    for at, group in enumerate(groups):
+        for row in group.rows:
+            if row.kind == AT:
+                places[row.task] = at
+            elif row.is_of_cause:
+                shown |= {at, places.get(row.task, at)}
+    return [at for at in range(len(groups)) if at in shown or at >= len(groups) - LAST]
 
 
 def _need(task: str, groups: Sequence[_Group]) -> int:
@@ -361,20 +417,22 @@ def _folded(rows: Sequence[Row]) -> list[_Group]:
         if _saved((length, times)) == 0:
             length, times = 1, 1
         end = at + length * times
-        last = rows[end - length : end]
-        both = zip(rows[at : at + length], last, strict=True)
-        groups.append(_Group(tuple(_merged(*each) for each in both), times, rows[end - 1].at_ns))
+        merged = tuple(_merged(rows[first:end:length]) for first in range(at, at + length))
+        groups.append(_Group(merged, times, rows[end - 1].at_ns))
         at = end
     return groups
 
 
-def _kind(row: Row) -> tuple[str, str, str]:
-    """Return the key by which rows are merged: for messages the topic, for others everything except the time."""
-    text = row.text.partition(":")[0] if row.kind == SENDS else row.text
+def _kind(row: Row) -> _Kind:
+    """Return the key by which rows are merged: everything except the time.
+
+    For messages it is the topic, unless the cause names the message: then its values are shown.
+    """
+    text = row.text.partition(":")[0] if row.kind == SENDS and not row.is_of_cause else row.text
     return row.task, row.kind, text
 
 
-def _times(kinds: Sequence[tuple[str, str, str]], at: int, length: int) -> int:
+def _times(kinds: Sequence[_Kind], at: int, length: int) -> int:
     """Return how often a group of rows repeats."""
     group, times = kinds[at : at + length], 1
     while len(group) == length and kinds[at + times * length : at + (times + 1) * length] == group:
@@ -388,7 +446,8 @@ def _saved(folding: tuple[int, int]) -> int:
     return length * (times - 1) if times > 2 or (times == 2 and length > FEW) else 0
 
 
-def _merged(first: Row, last: Row) -> Row:
-    if first.text == last.text:
-        return first
-    return replace(first, text=first.text + BETWEEN + last.text.partition(": ")[2])
+def _merged(rows: Sequence[Row]) -> Row:
+    """Return the row that stands for its repetitions."""
+    first, last = rows[0], rows[-1]
+    text = first.text if first.text == last.text else first.text + BETWEEN + last.text.partition(": ")[2]
+    return replace(first, text=text, is_of_cause=any(row.is_of_cause for row in rows))

@@ -46,7 +46,7 @@ def told(
 ) -> str:
     """Return the reported cause for deeds."""
     names = {"lock 5 of A": "left (a.py:3)"}
-    return cause_of(Evidence(failure, moves, rows, list(map(deed, failing)), list(map(deed, usual)), names))
+    return cause_of(Evidence(failure, moves, rows, list(map(deed, failing)), list(map(deed, usual)), names)).text
 
 
 def test_cause_is_empty_without_deeds() -> None:
@@ -71,7 +71,7 @@ LATE = Failure("deadline", "/pose", "at_least_every 100 ms was missed", 500 * MS
 )
 def test_late_task_names_the_task_that_ran_longer(ran: dict[str, int], usual: dict[str, int], cause: str) -> None:
     times = [Counter({task: ms * MS for task, ms in each.items()}) for each in (ran, usual)]
-    assert cause_of(Evidence(LATE, NO_MOVES, [], [], [], {}, *times)) == cause
+    assert cause_of(Evidence(LATE, NO_MOVES, [], [], [], {}, *times)).text == cause
 
 
 def accesses(text: str) -> list[str]:

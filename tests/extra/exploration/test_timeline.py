@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
+
 from cfepy.extra.exploration.task_look import AT, DOES, PREEMPTED, SENDS, WAITS, Row
-from cfepy.extra.exploration.timeline import WIDTH, Story, drawn, important
+from cfepy.extra.exploration.timeline import WIDTH, Story, drawn, important, story_of_run, story_width
+from cfepy.pilot import RunPlan
 from cfepy.rtos import HOLD
+from cfepy.schedules import Schedule
 from tests.extra.exploration.made import moved
 
 
@@ -37,8 +43,8 @@ def test_as_many_tasks_have_a_column_as_fit() -> None:
 
 
 def test_a_wide_terminal_shows_whole_lines() -> None:
-    source = "a.py:7: " + "x" * 90
-    rows = (Row(0, "A", AT, source), Row(0, "B", AT, "b.py:1: pass"))
+    source = "7: " + "x" * 90
+    rows = (Row(0, "A", AT, f"a.py:{source}"), Row(0, "B", AT, "b.py:1: pass"))
     assert source not in "\n".join(Story(rows, ("A", "B")).lines())
     assert source in "\n".join(Story(rows, ("A", "B")).lines(180))
 
@@ -79,7 +85,11 @@ def test_file_name_is_shown_once_when_it_is_the_only_one() -> None:
     rows = [Row(0, "A", AT, "a.py:7: go()"), Row(1, "A", WAITS, "sleeps"), Row(2, "B", AT, "b.py:1: stop()")]
     assert drawn(rows, ("A",))[0] == "lines of a.py"
     assert drawn(rows, ("A",))[4].split() == ["0.000000", "7:", "go()"]
-    assert "a.py:7: go()" in "\n".join(drawn(rows, ("A", "B")))
+    assert drawn(rows, ("A", "B"))[1].endswith(" lines of b.py")
+    assert drawn(rows, ("A", "B"))[3].split() == ["0.000000", "7:", "go()"]
+    two_files = [*rows, Row(3, "B", AT, "a.py:9: go()")]
+    assert "b.py:1: stop()" in "\n".join(drawn(two_files, ("A", "B")))
+    assert "a.py:9: go()" in "\n".join(drawn(two_files, ("A", "B")))
 
 
 def test_rows_far_from_moves_and_end_are_omitted() -> None:
@@ -107,3 +117,82 @@ def test_long_texts_are_cut_to_the_column() -> None:
 
 def test_timeline_is_empty_without_tasks() -> None:
     assert drawn([], ()) == []
+
+
+def of_cause(width: int) -> list[str]:
+    """Return the lines of a story in which the cause names operations that are far from the moves and the end."""
+    rows = [Row(0, "M", PREEMPTED, "A"), *(Row(at, "M", AT, f"a.py:{at}") for at in range(1, 12))]
+    rows += [Row(12, "A", AT, "a.py:90: total = 1"), Row(13, "A", DOES, "writes total", is_of_cause=True)]
+    rows += [Row(at, "M", AT, f"a.py:{at}") for at in range(14, 28)]
+    rows += [Row(28, "B", AT, "a.py:91: total = 2"), Row(29, "B", DOES, "writes total", is_of_cause=True)]
+    rows += [Row(30 + at, "M", DOES, f"reads x{at}") for at in range(30)]
+    return Story(tuple(rows), important(rows, [moved("M", "C")], "F")).lines(width)
+
+
+@pytest.mark.parametrize("width", [60, 80, 100, 120])
+def test_rows_of_the_cause_are_shown_at_any_width(width: int) -> None:
+    lines = of_cause(width)
+    assert max(map(len, lines)) <= width
+    shown = [" ".join(line.split()[-5:]) for line in lines]
+    for source in ("90: total = 1", "91: total = 2"):
+        at = next(number for number, line in enumerate(shown) if line.endswith(source))
+        assert shown[at + 1].endswith("writes total")
+
+
+def test_a_narrow_terminal_shows_a_list_with_the_names_of_tasks() -> None:
+    lines = of_cause(60)
+    assert lines[2].split() == ["time,", "s", "task", "operation"]
+    assert any(line.split() == ["0.000000", "A", "writes", "total"] for line in lines)
+
+
+ACC = """
+import threading, rospy
+total = 0
+def add():
+    global total
+    before = total
+    rospy.get_time()
+    total = before + 1
+rospy.init_node("acc")
+threads = [threading.Thread(target=add) for _ in range(2)]
+for t in threads: t.start()
+for t in threads: t.join()
+rospy.set_param("/total", total)
+rospy.spin()
+"""
+
+
+def test_story_of_a_lost_update_shows_the_write_that_loses_it(tmp_path: Path) -> None:
+    (tmp_path / "acc.py").write_text(ACC)
+    (tmp_path / "check.txt").write_text("at 1 expect param /total == 2\n")
+    (tmp_path / "mission.yaml").write_text("{}\n")
+    (tmp_path / "startup.scr").write_text("CFE_APP, acc.py, __main__, ACC, 100, 65536, 0x0, 0;\n!\n")
+    moves = "moves:ACC.acc.1@550/add.get_time=ACC,ACC.acc.1@550/next=ACC.acc.2"
+    plan = RunPlan((str(tmp_path),), script=str(tmp_path / "check.txt"), schedule=Schedule.parse(moves))
+    story = story_of_run(plan)
+    assert story is not None
+    assert "ACC.acc.1.1's write at acc.py:8" in story.cause
+    written = [(row.task, row.is_of_cause) for row in story.rows if row.text == "writes acc.total"]
+    assert ("ACC.acc.1.1", True) in written
+    assert sum("writes acc.total" in line for line in story.lines()) == 2
+    (at,) = (at for at, row in enumerate(story.table()[1]) if row[1:3] == ("ACC.acc.1.1", "writes acc.total"))
+    assert story.table()[1][at - 1][2].endswith("acc.py:8: total = before + 1")
+
+
+def test_message_of_the_cause_is_not_merged_with_others() -> None:
+    rows = [Row(at, "A", SENDS, f"sends /a: {at}", is_of_cause=at == 2) for at in range(6)]
+    assert any(line.endswith("sends /a: 2") for line in drawn(rows, ("A",)))
+
+
+def test_repetitions_are_shown_when_the_cause_names_one_of_them() -> None:
+    for is_of_cause in (True, False):
+        rows = [Row(at, "A", DOES, f"has {'ab'[at % 2]}", is_of_cause=is_of_cause and at == 3) for at in range(8)]
+        rows += [Row(8 + at, "A", DOES, f"reads x{at}") for at in range(20)]
+        assert ("has b" in "\n".join(drawn(rows, ("A",)))) is is_of_cause
+
+
+def test_story_has_the_width_of_the_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    for columns, width in (("40", 60), ("80", 78), ("120", 118)):
+        monkeypatch.setenv("COLUMNS", columns)
+        assert story_width(True, 2) == width
+        assert story_width(False, 2) == WIDTH

@@ -6,7 +6,6 @@ Each failure is reported once, with the command that replays it and its timeline
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -16,7 +15,7 @@ from cfepy.cli.json_output import check_ci_outputs, check_json, wants_ci_outputs
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.user_notes import tell
-from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Told, Worst
+from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Told, Worst, story_width
 from cfepy.extra.exploration.commands import DEFAULT_SEEDS
 from cfepy.pilot import RunPlan
 from cfepy.schedules import Schedule
@@ -36,14 +35,15 @@ def show(report: Report, stream: TextIO, quiet: bool = False) -> None:
         stream: the output.
         quiet: print only the failures and the summary.
     """
+    width = story_width(stream.isatty(), INDENT)
     for number, told in enumerate(report.findings, 1):
         seen = "failure" if told.repeats else "seen once and not again: failure"
         print(f"{seen} {number}: {told.finding.failure.title}", file=stream)
-        for line in _about(report, told, _width_of(stream)):
+        for line in _about(report, told, width):
             print(f"{' ' * INDENT}{line}".rstrip(), file=stream)
         print(file=stream)
     if report.worst is not None:
-        for line in _longest(report, report.worst, _width_of(stream)):
+        for line in _longest(report, report.worst, width):
             print(line.rstrip(), file=stream)
         print(file=stream)
     for trouble in report.troubles[:1]:
@@ -74,11 +74,6 @@ def summary(report: Report) -> str:
     kinds = len(report.findings)
     found = "no failure" if not kinds else "1 distinct failure" if kinds == 1 else f"{kinds} distinct failures"
     return f"{', '.join(parts)}: {found}"
-
-
-def _width_of(stream: TextIO) -> int:
-    """Return the width of a story's line: the terminal's width if that is larger; always the same for other streams."""
-    return max(WIDTH, shutil.get_terminal_size().columns - INDENT) if stream.isatty() else WIDTH
 
 
 def _about(report: Report, told: Told, width: int) -> Iterator[str]:
