@@ -46,7 +46,11 @@ def add_outputs(parser: argparse.ArgumentParser) -> None:
     )
     run.add_argument("--trace", metavar="FILE", help="write all records of the run to a file, a line each")
     run.add_argument("--no-console", action="store_true", help="print only the report, no console and no status line")
-    run.add_argument("--quiet", action="store_true", help="print only the problems and the verdict")
+    run.add_argument(
+        "--quiet",
+        action="store_true",
+        help="print only the problems, the rules and moves that never applied, and the verdict",
+    )
 
 
 def add_recording(parser: argparse.ArgumentParser) -> None:

@@ -268,7 +268,7 @@ def test_run_ends_with_a_verdict(
 
 
 def test_quiet_run_prints_only_problems_and_the_verdict(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    mission(tmp_path / "m", rules="results: {/ram/none: file}\n")
+    mission(tmp_path / "m")
     Path("steps.txt").write_text("at 1 send CFE_ES_NOOP\nat 1.1 expect app NONE RUNNING\n", encoding="utf-8")
     assert main(["run", "m", "--script", "steps.txt", "--quiet", "--save-files", "saved"]) == 1
     shown = capsys.readouterr()
@@ -281,6 +281,19 @@ def test_quiet_run_prints_only_problems_and_the_verdict(tmp_path: Path, capsys: 
     shown = capsys.readouterr()
     assert VERDICT.fullmatch(shown.out.rstrip("\n"))
     assert shown.err == ""
+
+
+def test_quiet_outputs_report_rules_and_moves_that_never_applied(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mission(tmp_path / "m", rules='invariants:\n  never: {packet: CFE_TBL_REG_TLM, holds: "msg.Size < 0"}\n')
+    never = "invariant 'never' (mission.yaml:2) was never judged: no message of CFE_TBL_REG_TLM was sent\n"
+    moves = "moves:NOBODY.x@550/add.get_time=NOONE"
+    assert main(["run", "m", "--for", "1", "--quiet", "--schedule", moves]) == 0
+    note = f"0 of 1 moves of the schedule were possible; not possible: {moves[6:]}"
+    assert capsys.readouterr().err == f"cfepy: {note}\ncfepy: {never}"
+    assert main(["explore", "m", "--for", "1", "--seeds", "2", "--jobs", "1", "--quiet"]) == 0
+    assert capsys.readouterr().out == f"2 schedules, 0 failed: no failure\n  {never}"
 
 
 def test_quiet_exploration_prints_only_the_summary(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -59,7 +59,7 @@ class View:
         report.show(flown.results, sys.stdout)
 
     def end(self, flown: Flown, outputs: Outputs, longer: str) -> int:
-        """Print the report and all messages after a run, or only the problems and the verdict.
+        """Print the report and all messages after a run; if quiet, only the problems, the doubts and the verdict.
 
         Args:
             flown: the run.
@@ -71,7 +71,7 @@ class View:
         """
         if self.quiet:
             print("".join(f"{line}\n" for line in report.failed_steps(flown)), end="")
-            tell((*told_problems(flown), *flown.results.missed_moves))
+            tell((*told_problems(flown), *flown.results.never_happened))
             outputs.save_files(flown, quiet=True)
         else:
             self.report(flown)

@@ -59,6 +59,8 @@ def test_replayed_failures_are_reported_as_present_gone_or_not_possible(
     lost = "BANK.bank.1@550/pay.get_time/3=BANK, BANK.bank.1@550/next=BANK.bank.2"
     assert told[1] == f"  0 of its 2 moves were possible; not possible: {lost}"
     assert told[-1] == "3 failures: 3 whose schedule no longer applies"
+    assert main(["explore", "--replay-all", str(path), "--jobs", "1", "--quiet"]) == 0
+    assert capsys.readouterr().out.splitlines() == told
     plain = json.loads((tmp_path / "f.json").read_text(encoding="utf-8"))["failures"]
     assert [each["state"] for each in plain] == [NOT_POSSIBLE] * 3
 

@@ -138,7 +138,9 @@ def _add_outputs(explore: argparse.ArgumentParser) -> None:
     explore.add_argument(
         "--shrink-time", type=seconds_of, default=60.0, metavar="S", help="most wall time to shrink one (default: 60)"
     )
-    explore.add_argument("--quiet", action="store_true", help="print only the failures and the summary")
+    explore.add_argument(
+        "--quiet", action="store_true", help="print only the failures, the summary and the notes that make it doubtful"
+    )
 
 
 def _add_sweep(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -33,7 +33,7 @@ def show(report: Report, stream: TextIO, quiet: bool = False) -> None:
     Args:
         report: the report.
         stream: the output.
-        quiet: print only the failures and the summary.
+        quiet: print only the failures, the summary and the notes.
     """
     width = story_width(stream.isatty(), INDENT)
     for number, told in enumerate(report.findings, 1):
@@ -50,11 +50,9 @@ def show(report: Report, stream: TextIO, quiet: bool = False) -> None:
         print(f"an error in cfepy itself, under {trouble.schedule}; please report it:", file=stream)
         print(trouble.trouble, file=stream)
     print(summary(report), file=stream)
-    if quiet:
-        return
     for note in report.notes:
         print(f"  {note}", file=stream)
-    if report.is_steady and (not report.findings or report.breadth.seen is not None):
+    if not quiet and report.is_steady and (not report.findings or report.breadth.seen is not None):
         for line in report.breadth.lines():
             print(f"  {line}", file=stream)
 

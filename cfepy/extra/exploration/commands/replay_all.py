@@ -30,7 +30,7 @@ def run(arguments: argparse.Namespace) -> int:
     found = []
     for each in replay_all(path, arguments.mission, arguments.jobs, arguments.longest):
         found.append(each)
-        if not arguments.quiet or each.state == STILL_THERE or each.verdict.trouble:
+        if not arguments.quiet or each.state != GONE or each.verdict.trouble:
             print("\n".join(_lines(each)), flush=True)
     if wants_ci_outputs(arguments):
         from cfepy.extra.exploration.commands.explored_cases import write_replayed
