@@ -2,7 +2,8 @@
 
 Imports are read, not executed. They are followed into modules beside the script and on its ROS_PACKAGE_PATH. A package
 that a run replaces, such as rospy, counts as installed. An import that the code itself expects to fail, in a `try` with
-a handler for it, is not a problem, and one within a function is a warning, because a run may never call the function.
+a handler for it, is not a problem, nor is one for another version of Python. One within a function is a warning,
+because a run may never call the function.
 """
 
 from __future__ import annotations
@@ -11,10 +12,10 @@ import ast
 import importlib.util
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from importlib.machinery import PathFinder
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission import tree_of
@@ -71,6 +72,15 @@ OF_ROS = frozenset({
 """ROS packages with Python code that pip does not offer."""
 CATCHING = ("ImportError", "ModuleNotFoundError", "Exception", "BaseException")
 KINDS = ("msg", "srv")
+_OF_VERSION: dict[str, Any] = {
+    "version_info": tuple(sys.version_info),
+    "version": sys.version,
+    "hexversion": sys.hexversion,
+    "PY2": False,  # of six and similar modules
+    "PY3": True,
+}
+_PARTS = ("major", "minor", "micro")  # of `version_info`
+_SYS = ("sys", "_sys")
 
 
 class Import(NamedTuple):
@@ -212,13 +222,16 @@ def imports_of(file: Path, folders: Sequence[str]) -> list[Import]:
 def _import_statements(tree: ast.Module) -> Iterator[tuple[ast.Import | ast.ImportFrom, bool]]:
     """Yield the imports that nothing guards, and whether a function makes them."""
     waiting: list[tuple[ast.AST, bool]] = [(node, False) for node in tree.body]
+    versions = _PythonVersions(tree)
     while waiting:
         node, is_late = waiting.pop()
         if isinstance(node, ast.Import | ast.ImportFrom):
             yield node, is_late
         elif isinstance(node, ast.Try) and _catches_missing(node):
             waiting += [(each, is_late) for each in (*node.orelse, *node.finalbody)]
-        elif not _is_for_type_checkers(node):
+        elif isinstance(node, ast.If):
+            waiting += [(each, is_late) for each in versions.branches(node) if not _is_for_type_checkers(node)]
+        else:
             is_function = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
             waiting += [(each, is_late or is_function) for each in ast.iter_child_nodes(node)]
 
@@ -256,5 +269,97 @@ def _catches_missing(node: ast.Try) -> bool:
     return False
 
 
-def _is_for_type_checkers(node: ast.AST) -> bool:
-    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+def _is_for_type_checkers(node: ast.If) -> bool:
+    return "TYPE_CHECKING" in ast.dump(node.test)
+
+
+class _PythonVersions:
+    """The conditions of a file on the version of Python: which branch of an `if` runs.
+
+    `sys.version_info.major == 2`, `sys.version[0] >= "3"`, `six.PY2`, and names with such values are computed for the
+    Python that runs cfepy. The code itself is not executed.
+
+    Args:
+        tree: the file.
+    """
+
+    def __init__(self, tree: ast.Module) -> None:
+        self._names: dict[str, Any] = {"PY2": False, "PY3": True}
+        for node in tree.body:
+            if isinstance(node, ast.ImportFrom) and node.module == "sys":
+                given = [(each.asname or each.name, each.name) for each in node.names]
+                self._names |= {name: _OF_VERSION[own] for name, own in given if own in _OF_VERSION}
+            elif isinstance(node, ast.Assign) and len(node.targets) == 1 and isinstance(node.targets[0], ast.Name):
+                self._assign(node.targets[0].id, node.value)
+
+    def branches(self, node: ast.If) -> list[ast.stmt]:
+        """Return the statements of an `if` that may run: those of both branches if the version does not decide."""
+        decided = self._decide(node.test)
+        if decided is None:
+            return [*node.body, *node.orelse]
+        return node.body if decided else node.orelse
+
+    def _assign(self, name: str, value: ast.expr) -> None:
+        self._names.pop(name, None)
+        found = _value(value, self._names)
+        if found:
+            self._names[name] = found[0]
+
+    def _decide(self, test: ast.expr) -> bool | None:
+        """Return the truth of a condition; None if the version alone does not decide it."""
+        if isinstance(test, ast.BoolOp):
+            parts = [self._decide(each) for each in test.values]
+            ends_it = isinstance(test.op, ast.Or)  # the value of one part that decides the whole
+            return ends_it if ends_it in parts else None if None in parts else not ends_it
+        if isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
+            decided = self._decide(test.operand)
+            return None if decided is None else not decided
+        found = _value(test, self._names)
+        return bool(found[0]) if found else None
+
+
+def _value(node: ast.expr, names: Mapping[str, Any]) -> tuple[Any, ...]:
+    """Return the value of an expression that depends on the version, in a tuple; an empty one for any other."""
+    from rospy_shim.types.expression import value_of
+
+    tree = _Versions(names)
+    try:
+        text = ast.unparse(tree.visit(ast.parse(ast.unparse(node), mode="eval")))
+        return (value_of(text, tree.values),) if tree.values else ()
+    except Exception:  # another name, a function, or an error of the expression itself: the version does not decide it
+        return ()
+
+
+class _Versions(ast.NodeTransformer):
+    """Replaces what has the version by plain names.
+
+    Args:
+        names: names of the file with values that depend on the version.
+
+    Attributes:
+        values: by name, the values of the names that the expression has then.
+    """
+
+    def __init__(self, names: Mapping[str, Any]) -> None:
+        self.values: dict[str, Any] = {}
+        self._names = names
+
+    def visit_Attribute(self, node: ast.Attribute) -> ast.AST:
+        """Replace `sys.version_info`, its parts, and flags of other modules."""
+        self.generic_visit(node)
+        value, name = node.value, node.attr
+        if not isinstance(value, ast.Name):
+            return node
+        if value.id in self.values and name in _PARTS:
+            return self._named(f"{value.id}_{name}", self.values[value.id][_PARTS.index(name)])
+        if name in _OF_VERSION and (value.id in _SYS or name.startswith("PY")):
+            return self._named(f"{value.id}_{name}", _OF_VERSION[name])
+        return node
+
+    def visit_Name(self, node: ast.Name) -> ast.AST:
+        """Note the value of a name."""
+        return self._named(node.id, self._names[node.id]) if node.id in self._names else node
+
+    def _named(self, name: str, value: Any) -> ast.Name:
+        self.values[name] = value
+        return ast.Name(name, ast.Load())

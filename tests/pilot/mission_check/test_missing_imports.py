@@ -34,6 +34,7 @@ def texts(node: str, folder: Path, modules: Mapping[str, str] = MappingProxyType
         ("import nonesuch.part as n", "the package nonesuch is not installed; pip install nonesuch"),
         ("from nonesuch.part import *", "the package nonesuch is not installed; pip install nonesuch"),
         ("import Queue", "Queue is a module of Python 2; import queue"),
+        ("import sys\nif sys.version_info.major == 2:\n    import urllib2", ""),
         ("import smach", "the ROS package smach is not installed; put its source on ROS_PACKAGE_PATH"),
         ("if 1 > 0:\n    import nonesuch", "the package nonesuch is not installed; pip install nonesuch"),
         ("class A:\n    import nonesuch", "the package nonesuch is not installed; pip install nonesuch"),
@@ -55,6 +56,62 @@ def test_import_of_a_node(line: str, problem: str, tmp_path: Path) -> None:
     found = texts(f"{line}\n", tmp_path)
     assert len(found) == bool(problem)
     assert not problem or problem in found[0]
+
+
+PYTHON_2 = (
+    "sys.version_info.major == 2",
+    "sys.version_info[0] < 3",
+    "sys.version_info < (3,)",
+    "sys.version_info[:2] <= (2, 7)",
+    "version_info[0] == 2",
+    "sys.version[0] == '2'",
+    "int(sys.version[0]) < 3",
+    "sys.version.startswith('2.')",
+    "sys.hexversion < 0x03000000",
+    "six.PY2",
+    "not six.PY3",
+    "PY2",
+    "IS_OLD",
+    "six.PY2 and unknown",
+    "unknown and six.PY2",
+)
+PYTHON_3 = (*(f"not ({each})" for each in PYTHON_2), "sys.version_info >= (3, 0)", "six.PY3", "PY3", "unknown or PY3")
+HEAD = "import sys\nfrom sys import version_info\nIS_OLD = version_info[0] == 2\n"
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        *(f"if {each}:\n    import urllib2\nelse:\n    import urllib" for each in PYTHON_2),
+        *(f"if {each}:\n    import urllib\nelse:\n    import urllib2" for each in PYTHON_3),
+        *(f"if unknown:\n    pass\nelif {each}:\n    import urllib2" for each in PYTHON_2[:3]),
+        *(f"if {each}:\n    pass\nelif unknown:\n    import urllib2" for each in PYTHON_3[-4:]),
+        "def fetch():\n    if sys.version_info[0] == 2:\n        import urllib2",
+    ],
+)
+def test_import_for_python_2_alone_is_accepted(source: str, tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(f"{HEAD}{source}\n", encoding="utf-8")
+    assert "urllib2" not in {each.name for each in imports_of(path, [])}
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        *(f"if {each}:\n    import urllib2" for each in PYTHON_3),
+        *(f"if {each}:\n    pass\nelse:\n    import urllib2" for each in PYTHON_2),
+        *(
+            f"if {each}:\n    import urllib2"
+            for each in ("unknown", "len(sys.argv) > 1", "sys.version_info[0] == 2 or unknown", "sys.version_info[9]")
+        ),
+        "PY2 = unknown()\nif PY2:\n    import urllib2",
+        "DEBUG = False\nif DEBUG:\n    import urllib2",
+    ],
+)
+def test_import_that_may_run_is_reported(source: str, tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(f"{HEAD}{source}\n", encoding="utf-8")
+    assert "urllib2" in {each.name for each in imports_of(path, [])}
 
 
 def test_import_within_a_function_is_a_warning(tmp_path: Path) -> None:
