@@ -70,11 +70,16 @@ def tell_briefly(notes: Iterable[str]) -> None:
     `cfepy check`, `run` and `launch` give the reasons.
     """
     lines = list(notes)
-    left_out = {each: found[1] for each in lines if (found := _LEFT_OUT.search(each)) is not None}
-    tell(each for each in lines if each not in left_out)
-    if left_out:
-        names = ", ".join(dict.fromkeys(left_out.values()))
-        tell([f"left out: {names}; `cfepy check` gives the reasons"])
+    tell(each for each in lines if _LEFT_OUT.search(each) is None)
+    names = left_out_nodes(lines)
+    if names:
+        tell([f"left out: {', '.join(names)}; `cfepy check` gives the reasons"])
+
+
+def left_out_nodes(notes: Iterable[str]) -> list[str]:
+    """Return the names of the nodes of launch files that a mission does not have, by its notes."""
+    found = (_LEFT_OUT.search(each) for each in notes)
+    return list(dict.fromkeys(each[1] for each in found if each is not None))
 
 
 def note(text: str) -> None:

@@ -57,7 +57,10 @@ def test_what_cannot_run_is_left_out_with_a_note(write_launch: Launch, capsys: p
     missing = '<node pkg="demo" type="driver" name="driver"/>\n<node pkg="absent" type="x" name="other"/>'
     file = write_launch(f"{TALKER.format('', COUNT.format(1))}{missing}")
     assert main(["launch", file, "--quiet"]) == 0
-    said = capsys.readouterr().err
+    shown = capsys.readouterr()
+    said = shown.err
+    assert shown.out.splitlines()[-1].startswith("verdict: passed; ")
+    assert shown.out.splitlines()[-1].endswith(", others 0; left out: /driver, /other")
     assert (
         f"{file}:1: node /driver is left out: package 'demo' has no file 'driver': a C++ node, or a missing one" in said
     )

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, TextIO
 
 from cfepy.cli.text_table import Table, show_paragraph, show_tables
+from cfepy.cli.user_notes import left_out_nodes
 from cfepy.pilot import FailureKind, Flown, Results, RunProblem
 from cfepy.plugins import Hook
 from cfepy.units import NS_PER_S, time_text
@@ -48,11 +49,11 @@ def outcome_of(flown: Flown) -> str:
 
 
 def verdict_of(flown: Flown) -> dict[str, Any]:
-    """Return the outcome of a run, and the numbers of its problems by kind."""
+    """Return the outcome of a run, the numbers of its problems by kind, and the nodes that are left out."""
     counts = dict.fromkeys((*_COUNTED, _OTHERS), 0)
     for problem in flown.problems:
         counts[_kind_of(problem)] += 1
-    return {"outcome": outcome_of(flown), **counts}
+    return {"outcome": outcome_of(flown), **counts, "left_out": left_out_nodes(flown.known)}
 
 
 def _kind_of(problem: RunProblem) -> str:
@@ -63,10 +64,12 @@ def _kind_of(problem: RunProblem) -> str:
 
 
 def verdict_line(flown: Flown) -> str:
-    """Return the verdict in one line, always of the same form."""
+    """Return the verdict in one line, always of the same form; nodes that are left out are named at its end."""
     verdict = verdict_of(flown)
-    outcome = verdict.pop("outcome")
-    return f"verdict: {outcome}; {', '.join(f'{name} {count}' for name, count in verdict.items())}"
+    outcome, left_out = verdict.pop("outcome"), verdict.pop("left_out")
+    counts = ", ".join(f"{name} {count}" for name, count in verdict.items())
+    missing = f"; left out: {', '.join(left_out)}" if left_out else ""
+    return f"verdict: {outcome}; {counts}{missing}"
 
 
 def failed_steps(flown: Flown) -> list[str]:
