@@ -63,7 +63,7 @@ def output_of(command: Sequence[str], typed: str = "", status: int = 0) -> str:
 def own_tools() -> None:
     """The spacecraft, and cfepy's own tools."""
     [fly] = blocks("The spacecraft")[0].commands
-    [[tlm, noop, display, console]] = [block.commands for block in blocks("cfepy's own tools")]
+    tlm, noop, display, console = blocks("cfepy's own tools")[-1].commands
     with flying(fly) as craft:
         assert len(output_of(tlm).splitlines()) == 5
         craft.says(ENABLED)
@@ -78,7 +78,7 @@ def recorded() -> None:
     """Fly with commands through the port, and replay the run without any network."""
     _, record = blocks("The spacecraft")
     fly, replay = record.commands
-    noop = blocks("cfepy's own tools")[0].commands[1]
+    noop = blocks("cfepy's own tools")[-1].commands[1]
     with flying(fly) as craft:
         output_of(noop)
         craft.says(NOOP)
