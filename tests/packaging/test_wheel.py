@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import venv
@@ -119,4 +120,7 @@ def test_engine_kernel_and_bus_are_compiled_on_request(home: Path, tmp_path: Pat
     assert cfepy(home, "--version") == f"cfepy {__version__} (kernel and bus interpreted)\n"
     assert cfepy(tmp_path, "--version") == f"cfepy {__version__} (kernel and bus compiled)\n"
     flights = [cfepy(each, "run", "capture", "--for", "1", "--no-console") for each in (home, tmp_path)]
-    assert flights[0].splitlines()[-1] == flights[1].splitlines()[-1]
+    traces = [re.search(r"^trace: \w{32}$", each, re.MULTILINE) for each in flights]
+    assert traces[0] is not None
+    assert traces[1] is not None
+    assert traces[0][0] == traces[1][0]
