@@ -14,7 +14,7 @@ from pathlib import Path
 from cfepy import __version__
 from cfepy.cli.json_output import json_text, write_text
 from cfepy.status import UsageError
-from cfepy.writing.ci_findings import CiFinding, FindingPlace, annotation
+from cfepy.writing.ci_findings import CiFinding, FindingPlace, annotation_lines
 from cfepy.writing.junit import Suite
 from cfepy.writing.sarif_log import SarifRule, sarif_log
 
@@ -53,7 +53,8 @@ def write_ci_outputs(
 def print_annotations(findings: Iterable[CiFinding], base: Path) -> None:
     """Print findings as GitHub's annotations."""
     for each in findings:
-        print(annotation(each, base))
+        for line in annotation_lines(each, base):
+            print(line)
     sys.stdout.flush()
 
 

@@ -14,7 +14,7 @@ from cfepy.interpreter.faces import face
 if TYPE_CHECKING:
     from cfepy.pilot.determinism import RecordReader, RunEndedError
     from cfepy.pilot.determinism_look import place_text
-    from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
+    from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind, name_of_group
     from cfepy.pilot.failure_places import SourcePlaces
     from cfepy.pilot.idleness import idle_nodes
     from cfepy.pilot.mission_check import MissionProblem, check_mission, problem_of, shown_file
@@ -66,6 +66,7 @@ __all__ = [
     "is_reported",
     "loose_ends",
     "mark",
+    "name_of_group",
     "never_happened",
     "no_such_app",
     "place_text",
@@ -95,6 +96,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "LEAVES_OTHERS_WAITING",
                 "Failure",
                 "FailureKind",
+                "name_of_group",
             ),
             ".failure_places": ("SourcePlaces",),
             ".idleness": ("idle_nodes",),

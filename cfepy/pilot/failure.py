@@ -83,6 +83,16 @@ class Failure:
         return f"{self.kind}|{self.who}|{cause}"
 
     @property
+    def name(self) -> str:
+        """A name for display that is the same in all runs: the group, with # for numbers and quoted texts."""
+        return name_of_group(self.group)
+
+    @property
     def title(self) -> str:
         """Kind, subject and text, in one line for display."""
         return f"{self.kind}: {self.who}: {self.text}" if self.who else f"{self.kind}: {self.text}"
+
+
+def name_of_group(group: str) -> str:
+    """Return the name of a failure (`Failure.name`) from its group."""
+    return ": ".join(part for part in group.split("|", 2) if part)

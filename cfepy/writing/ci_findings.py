@@ -6,6 +6,7 @@ Workflow commands for GitHub Actions.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -56,21 +57,27 @@ def relative(file: Path, base: Path) -> Path:
     return file.relative_to(base) if file.is_relative_to(base) else file
 
 
-def annotation(finding: CiFinding, base: Path) -> str:
-    """Return a finding as a line that GitHub shows beside the source file.
+def annotation_lines(finding: CiFinding, base: Path) -> Iterator[str]:
+    """Yield the lines that GitHub shows beside the source files; further places in the repository have a notice.
 
     Args:
         finding: the finding.
         base: the top of the repository; a file below it is named relative to it.
     """
+    places = finding.places
+    yield _annotation(finding, places[0] if places else None, [f"also {each.shown(base)}" for each in places[1:]], base)
+    for each in (place for place in places[1:] if place.file.is_relative_to(base)):
+        yield _annotation(finding._replace(level=NOTE), each, [f"reported at {places[0].shown(base)}"], base)
+
+
+def _annotation(finding: CiFinding, place: FindingPlace | None, more: Sequence[str], base: Path) -> str:
     properties = {}
-    if finding.places:
-        place = finding.places[0]
+    if place is not None:
         properties["file"] = relative(place.file, base).as_posix()
         properties |= {name: str(value) for name, value in (("line", place.line), ("col", place.column)) if value}
     properties["title"] = f"cfepy: {finding.rule}"
     named = ",".join(f"{name}={_escaped(visible_line(value), _IN_PROPERTY)}" for name, value in properties.items())
-    text = "\n".join([finding.text, *(f"also {each.shown(base)}" for each in finding.places[1:])])
+    text = "\n".join([finding.text, *more])
     return f"::{_COMMANDS[finding.level]} {named}::{_escaped(visible(text), _IN_TEXT)}"
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
@@ -11,6 +12,7 @@ from xml.etree import ElementTree
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.pilot import Failure
 from tests.cli.ros_packages import Launch, demo, write_launch
 from tests.mission.flights import write_mission
 
@@ -159,11 +161,14 @@ def test_check_reports_each_mistake_at_its_line(tmp_path: Path, capsys: pytest.C
 
 
 def test_explore_reports_each_failure_with_cause_and_command(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["explore", str(RACE), "--for", "1.3", "--seeds", "4", "--jobs", "1", "--results", "r.results"]
+    shutil.copytree(RACE, "race")
+    words = ["explore", "race", "--for", "1.3", "--seeds", "4", "--jobs", "1", "--results", "r.results"]
     assert main([*words, "--quiet", *OUTPUTS]) == 1
     ((name, case),) = cases(Path("out.xml")).items()
-    assert name == "ended with an error: WHEELS: exit status 1 (node /wheels)"
-    assert case[0].get("message", "").startswith(f"{name}\ncause: an update of Odometer.travelled is lost: ")
+    assert name == "ended with an error: WHEELS: exit status # (node /wheels)"
+    title = name.replace("#", "1")
+    assert case[0].get("message", "").startswith(f"{title}\ncause: an update of Odometer.travelled is lost: ")
+    assert 0.5 < float(case.get("time", "")) <= 1.3
     assert "time, s     ODOMETER.left_tic.1" in (case[0].text or "")
     (found,) = results(Path("out.sarif"))
     lines = [
@@ -173,17 +178,31 @@ def test_explore_reports_each_failure_with_cause_and_command(capsys: pytest.Capt
     assert sorted(lines) == [15, 17]
     assert "replay: cfepy run --for " in found["message"]["text"]
     shown = capsys.readouterr().out
-    assert "::error file=" in shown
+    annotated = re.findall(r"^::(\w+) file=race/odometer\.py,line=(\d+),", shown, re.MULTILINE)
+    assert annotated in ([("error", "15"), ("notice", "17")], [("error", "17"), ("notice", "15")])
     assert "schedules" in shown.splitlines()[-1]
     assert main(["explore", "--replay-all", "r.results", *OUTPUTS]) == 1
-    assert [[each.tag for each in case] for case in cases(Path("out.xml")).values()] == [["failure"]]
+    replayed = cases(Path("out.xml"))
+    assert {name: [each.tag for each in case] for name, case in replayed.items()} == {name: ["failure"]}
+    assert replayed[name][0].get("message") == f"still there: {title}"
+    assert float(replayed[name].get("time", "")) > 0.5
     assert len(results(Path("out.sarif"))) == 1
 
 
 def test_explore_without_a_failure_has_a_passed_case(tmp_path: Path) -> None:
     mission(tmp_path / "m")
     assert main(["explore", "m", "--for", "1", "--seeds", "1", "--jobs", "1", "--quiet", *OUTPUTS]) == 0
-    assert list(cases(Path("out.xml"))) == ["no failure"]
+    ((name, case),) = cases(Path("out.xml")).items()
+    assert (name, case.get("time")) == ("no failure", "1.000")
+
+
+def test_name_of_a_failure_is_the_same_in_runs_with_other_numbers() -> None:
+    texts = [f"job {number} is sent again, but was done at {at}" for number, at in ((4, 2.050040), (17, 1.1))]
+    failures = [Failure("invariant", "not again after done", text) for text in texts]
+    assert {each.name for each in failures} == {
+        "invariant: not again after done: job # is sent again, but was done at #"
+    }
+    assert Failure("data race", "", "x").name == "data race: x"
 
 
 def test_rostest_reports_the_line_of_the_failed_assertion(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from xml.etree import ElementTree
 
-from cfepy.writing.ci_findings import NOTE, WARNING, CiFinding, FindingPlace, annotation
+from cfepy.writing.ci_findings import NOTE, WARNING, CiFinding, FindingPlace, annotation_lines
 from cfepy.writing.junit import ERROR, FAILURE, SKIPPED, Case, Problem, Suite
 from cfepy.writing.sarif_log import SarifRule, sarif_log
 
@@ -13,28 +13,38 @@ BASE = Path("/work/repository")
 ARM = FindingPlace(BASE / "src" / "arm, left.py", 12, 3)
 
 
+def only(finding: CiFinding) -> str:
+    """Return the only annotation of a finding."""
+    (found,) = annotation_lines(finding, BASE)
+    return found
+
+
 def test_annotation_escapes_percent_signs_and_newlines() -> None:
     found = CiFinding("data-race", "100 % lost\r\nreplay: cfepy run ::", (ARM,))
-    assert annotation(found, BASE) == (
+    assert only(found) == (
         "::error file=src/arm%2C left.py,line=12,col=3,title=cfepy%3A data-race::100 %25 lost%0D%0Areplay: cfepy run ::"
     )
 
 
-def test_annotation_names_further_places_in_its_text() -> None:
+def test_annotation_names_further_places_and_each_in_the_repository_has_a_notice() -> None:
     found = CiFinding(
         "data-race", "no order", (ARM, FindingPlace(BASE / "b.py", 4), FindingPlace(Path("/elsewhere/c.py"))), WARNING
     )
-    assert annotation(found, BASE).endswith("::no order%0Aalso b.py:4%0Aalso /elsewhere/c.py")
-    assert annotation(found, BASE).startswith("::warning file=")
+    first, second = annotation_lines(found, BASE)
+    assert first.endswith("::no order%0Aalso b.py:4%0Aalso /elsewhere/c.py")
+    assert first.startswith("::warning file=")
+    assert second == (
+        "::notice file=b.py,line=4,title=cfepy%3A data-race::no order%0Areported at src/arm, left.py:12:3"
+    )
 
 
 def test_annotation_without_a_place_has_no_file() -> None:
-    assert annotation(CiFinding("problem", "no boot", level=NOTE), BASE) == "::notice title=cfepy%3A problem::no boot"
+    assert only(CiFinding("problem", "no boot", level=NOTE)) == "::notice title=cfepy%3A problem::no boot"
 
 
 def test_control_characters_are_escaped_everywhere() -> None:
     found = CiFinding("problem", "a\x1b[2Jb", (FindingPlace(BASE / "a\x1b.py"),))
-    assert "\x1b" not in annotation(found, BASE)
+    assert "\x1b" not in only(found)
     suite = Suite(
         "s\x1b", [Case("c\x00", "n\x1b", problems=(Problem(FAILURE, "t\x1b", detail="d\x08"),))], {"p": "\x1b"}
     )

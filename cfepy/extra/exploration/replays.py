@@ -34,12 +34,14 @@ class ReplayedFailure:
 
     Attributes:
         title: its title in the results file.
+        group: its group there.
         verdict: on the current mission, under the schedule that showed the failure.
         same: the failure if it is still there.
         trial: the trial that was flown.
     """
 
     title: str
+    group: str
     verdict: Verdict
     same: Failure | None
     trial: Trial
@@ -102,7 +104,7 @@ def replay_all(
     with contextlib.closing(crew), contextlib.closing(crew.run(trial, take)) as verdicts:
         found = dict(verdicts)
     for number, (group, (title, _)) in enumerate(failures):
-        yield ReplayedFailure(title, found[number], _same(found[number], group), trial)
+        yield ReplayedFailure(title, group, found[number], _same(found[number], group), trial)
 
 
 def _campaign(path: str) -> tuple[RunPlan, dict[str, Any]]:

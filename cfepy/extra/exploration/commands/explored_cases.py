@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from cfepy.cli.ci_outputs import write_ci_outputs
 from cfepy.cli.run.run_cases import KINDS, rule_of
 from cfepy.extra.exploration import GONE, STILL_THERE, ReplayedFailure, Report, Told, Verdict
-from cfepy.pilot import SourcePlaces
+from cfepy.pilot import Failure, SourcePlaces, name_of_group
+from cfepy.units import NS_PER_S
 from cfepy.writing.ci_findings import ERROR, CiFinding, FindingPlace
 from cfepy.writing.junit import ERROR as ERROR_CASE
 from cfepy.writing.junit import FAILURE, SKIPPED, Case, Problem, Suite
@@ -44,7 +45,7 @@ def write_report(arguments: argparse.Namespace, report: Report, about: Callable[
         place = FindingPlace(spec.script.absolute())
         problem = Problem(ERROR_CASE, text, UNSTEADY)
         found.append((CiFinding(UNSTEADY, text, (place,)), Case(_CLASS, UNSTEADY, problems=(problem,), place=place)))
-    cases = [case for _, case in found] or [Case(_CLASS, "no failure")]
+    cases = [case for _, case in found] or [Case(_CLASS, "no failure", report.reference.end_ns / NS_PER_S)]
     properties = {
         "mission": " ".join(plan.words),
         "seed": str(plan.seed),
@@ -67,7 +68,14 @@ def _failure(
     text = "\n".join([*lines, f"replay: {trial.command(schedule)}"])
     found = CiFinding(rule_of(failure.kind), text, places.of(failure, told.story.cause))
     problem = Problem(FAILURE, "\n".join(lines), found.rule, "\n".join(about(told)))
-    return found, Case(_CLASS, failure.title, problems=(problem,), place=found.places[0])
+    seconds = _seconds(failure, told.finding.verdict)
+    return found, Case(_CLASS, failure.name, seconds, (problem,), found.places[0])
+
+
+def _seconds(failure: Failure | None, verdict: Verdict) -> float:
+    """Return the virtual time of a test case: until the failure, or of the whole run, in s."""
+    at_ns = None if failure is None else failure.at_ns
+    return (verdict.end_ns if at_ns is None else at_ns) / NS_PER_S
 
 
 def _trouble(verdict: Verdict) -> tuple[CiFinding, Case]:
@@ -92,13 +100,17 @@ def write_replayed(arguments: argparse.Namespace, found: Sequence[ReplayedFailur
 
 
 def _replayed_case(each: ReplayedFailure) -> Case:
+    name, seconds = name_of_group(each.group), _seconds(each.same, each.verdict)
     if each.verdict.trouble:
         problem = Problem(ERROR_CASE, "an error in cfepy itself", TROUBLE, each.verdict.trouble)
-        return Case(_CLASS, each.title, problems=(problem,))
+        return Case(_CLASS, name, seconds, (problem,))
     if each.state == GONE:
-        return Case(_CLASS, each.title)
-    kind = FAILURE if each.state == STILL_THERE else SKIPPED
-    return Case(_CLASS, each.title, problems=(Problem(kind, each.state, detail=f"replay: {each.command}"),))
+        return Case(_CLASS, name, seconds)
+    kind, title = (
+        FAILURE if each.state == STILL_THERE else SKIPPED,
+        each.title if each.same is None else each.same.title,
+    )
+    return Case(_CLASS, name, seconds, (Problem(kind, f"{each.state}: {title}", detail=f"replay: {each.command}"),))
 
 
 def _replayed_findings(found: Sequence[ReplayedFailure]) -> Iterator[CiFinding]:
