@@ -7,13 +7,13 @@ action.
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from cfepy.ground.topics import Topic, library_of, topics_of
-from cfepy.ground.values import unknown_field
 from cfepy.mission import CALL, PARAM, PUBLISH, HostCall, Mission
-from cfepy.reading.suggestions import did_you_mean, listed
+from cfepy.reading.suggestions import did_you_mean, expected, listed
 from cfepy.status import UsageError, together
 from cfepy.units import NS_PER_S
 
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
     from rospy_shim.types.msgs import Library
 
 LIKE_IT = 3  # number of similar names to suggest
+_TIMES = ("time", "duration")
+_OF_TIMES = ("secs", "nsecs")
+_BYTES = ("uint8", "char")  # an array of them may be given as text
 
 
 class AbsentError(LookupError):
@@ -141,14 +144,68 @@ def filled(library: Library, kind: str, fields: Mapping[str, Any]) -> Any:
     from rospy_shim.types.genpy.arguments import ArgumentFiller
 
     message = library.message_class(kind)()
-    unknown = [unknown_field(kind, message.__slots__, name) for name in fields if name not in message.__slots__]
-    if unknown:
-        raise together(unknown)
+    misfits = list(_misfits(library, message, fields, ""))
+    if misfits:
+        raise together(misfits)
     try:
         ArgumentFiller(library.message_class).fill_message_args(message, [dict(fields)])
     except Exception as error:  # any error of genpy for values that do not fit
         raise UsageError(f"invalid {kind}: {error}") from None
     return message
+
+
+def _misfits(library: Library, message: Any, values: Mapping[str, Any], prefix: str) -> Iterator[UsageError]:
+    """Yield an error for each field that does not exist, and for each value that cannot be a time, message or array."""
+    for name, value in values.items():
+        if name not in message.__slots__:
+            yield _no_field(message._type, message.__slots__, name, prefix)
+            continue
+        old = getattr(message, name)
+        base, bracket, _ = message._slot_types[message.__slots__.index(name)].partition("[")
+        if not bracket:
+            yield from _misfits_of_value(library, old, value, f"{prefix}{name}")
+        elif base in _BYTES:
+            continue
+        elif not isinstance(value, (list, tuple)):
+            yield UsageError(f"must be a list, not {value!r}", field=f"{prefix}{name}")
+        elif "/" in base or base in _TIMES:
+            for number, each in enumerate(value):
+                yield from _misfits_of_value(library, _item(library, base), each, f"{prefix}{name}[{number}]")
+
+
+def _no_field(kind: str, fields: Sequence[str], name: str, prefix: str) -> UsageError:
+    hint = f"unknown field of {kind}; {expected(name, fields)}" if fields else f"{kind} has no fields"
+    return UsageError(hint, field=f"{prefix}{name}")
+
+
+def _item(library: Library, kind: str) -> Any:
+    """Return an item of an array, with the default value."""
+    from rospy_shim.types.genpy.rostime import Duration, Time
+
+    return library.message_class(kind)() if "/" in kind else {"time": Time, "duration": Duration}[kind]()
+
+
+def _misfits_of_value(library: Library, old: Any, value: Any, path: str) -> Iterator[UsageError]:
+    from rospy_shim.types.genpy.rostime import TVal
+
+    if isinstance(old, TVal):
+        if isinstance(value, Mapping):
+            yield from (_no_field("a time", _OF_TIMES, each, f"{path}.") for each in value if each not in _OF_TIMES)
+        elif isinstance(value, bool) or not isinstance(value, (int, list)):
+            yield UsageError(f"must be a time such as {_time_text(value)}, not {value!r}", field=path)
+    elif hasattr(old, "_slot_types"):
+        if isinstance(value, Mapping):
+            yield from _misfits(library, old, value, f"{path}.")
+        elif not isinstance(value, list):
+            fields = ", ".join(f"{name}: ..." for name in old.__slots__)
+            yield UsageError(f"must be a {old._type} such as {{{fields}}}, not {value!r}", field=path)
+
+
+def _time_text(value: Any) -> str:
+    """Return a time as a script has it; the value in seconds if it is a number."""
+    nanoseconds = round(value * NS_PER_S) if isinstance(value, float) and math.isfinite(value) else NS_PER_S
+    seconds, rest = divmod(nanoseconds, NS_PER_S)
+    return f"{{secs: {seconds}, nsecs: {rest}}}" if rest else f"{{secs: {seconds}}}"
 
 
 def _full(name: str) -> str:
@@ -172,5 +229,8 @@ def _serialized(message: Any) -> bytes:
     if not hasattr(message, "serialize"):
         raise UsageError(f"not a ROS message: {message!r}; give a message, or its fields by name")
     buffer = io.BytesIO()
-    message.serialize(buffer)
+    try:
+        message.serialize(buffer)
+    except Exception as error:  # any error of genpy for values that do not fit
+        raise UsageError(f"invalid {getattr(message, '_type', 'message')}: {error}") from None
     return buffer.getvalue()

@@ -51,7 +51,17 @@ def test_script_publishes_calls_and_sets(folder: Path) -> None:
         ("publish /cmd_vle linear.x=1", 1.0, "unknown topic /cmd_vle (so far); did you mean /cmd_vel?"),
         ("publish /moved linear.x=1", 1.0, "/moved has no subscriber at 1.000 s"),
         ("publish /cmd_vel speed=1", 1.0, "geometry_msgs/Twist"),
-        ("publish /cmd_vel linear.speed=1", 1.0, "invalid geometry_msgs/Twist"),
+        (
+            "publish /cmd_vel linear.speed=1",
+            1.0,
+            "linear.speed: unknown field of geometry_msgs/Vector3; expected x, y or z",
+        ),
+        (
+            "publish /cmd_vel linear=2.5",
+            1.0,
+            "linear: must be a geometry_msgs/Vector3 such as {x: ..., y: ..., z: ...}, not 2.5",
+        ),
+        ("publish /cmd_vel linear.x=fast", 1.0, "invalid geometry_msgs/Twist: "),
         ("call /enable data=false", 1.21, "cannot be disabled"),
         ("call /enable data=true within 0.1", 1.1, "no response came"),
         ("call /enabel data=true", 1.0, "unknown service /enabel; did you mean /enable?"),
