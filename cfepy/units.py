@@ -18,6 +18,11 @@ def time_word(time_ns: int) -> str:
     return f"{time_ns // size}{unit}"
 
 
+def instant_text(at_ns: int) -> str:
+    """Return the virtual time of a failure or another event, in seconds to the microsecond: "1.100024 s"."""
+    return f"{at_ns / NS_PER_S:.6f} s"
+
+
 def time_text(duration_ns: int) -> str:
     """Return a time with its unit, such as "2.5 ms"."""
     unit = next((name for name in ("s", "ms", "us") if duration_ns >= TIME_UNITS[name]), "ns")

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from cfepy.interpreter.own_code import is_own_code
 from cfepy.osal import OsObject
 from cfepy.rtos import Kernel, Task, Wait, circles, endless
-from cfepy.units import NS_PER_S
+from cfepy.units import instant_text
 
 if TYPE_CHECKING:
     from cfepy.mission.mission import Mission
@@ -48,7 +48,7 @@ class EndlessWait(NamedTuple):
         """A one-line description."""
         where = f" at {self.place}" if self.place else ""
         why = f"held by {self.holder}" if self.holder else "no remaining task can end this wait"
-        return f"{self.task} waits forever for {self.what}{where}, since {self.since_ns / NS_PER_S:.6f} s; {why}"
+        return f"{self.task} waits forever for {self.what}{where}, since {instant_text(self.since_ns)}; {why}"
 
 
 class EndlessWaits(NamedTuple):

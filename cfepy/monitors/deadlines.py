@@ -16,7 +16,7 @@ from cfepy.msg import is_valid_msg_id
 from cfepy.reading.marked_yaml import Marked
 from cfepy.reading.mistakes import Mistakes
 from cfepy.reading.suggestions import listed
-from cfepy.units import NS_PER_S, TIME_UNITS, time_text
+from cfepy.units import NS_PER_S, TIME_UNITS, instant_text, time_text
 
 PARTS = ("apps", "topics")
 APP_FIELDS = ("response", "period", "jitter", "task")
@@ -215,7 +215,7 @@ class DeadlineResult:
             return None
         times = f"{self.overruns} time{'s' if self.overruns > 1 else ''}"
         worst = time_text(round(self.worst_s * NS_PER_S))
-        at = f"first at {self.first_at_s:g} s"
+        at = f"first at {instant_text(round(self.first_at_s * NS_PER_S))}"
         return f"{self.owner} missed its deadline {self.kind} {self.limit_text} {times}, at worst with {worst}, {at}"
 
 

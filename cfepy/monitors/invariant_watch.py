@@ -21,7 +21,7 @@ from cfepy.monitors.record import InvariantRecord, InvariantRecords, Violation
 from cfepy.msg import RED, YELLOW, Measurement
 from cfepy.sb import SoftwareBus
 from cfepy.status import UsageError
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, instant_text
 
 Report = Callable[[str, int, str, str], None]
 """Receives a violation: text, virtual time in ns, the sender of the message, more lines."""
@@ -354,7 +354,7 @@ class InvariantWatch(Attachment):
         assert self._mission is not None
         record = self._records[invariant.name]
         record.violated += 1
-        at = f"at {violation.at_ns / NS_PER_S:.6f} s"
+        at = f"at {instant_text(violation.at_ns)}"
         line = f"invariant {invariant.name!r} ({invariant.place}) {at}: {violation.text}"
         if record.first is None:
             record.first = violation

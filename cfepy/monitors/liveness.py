@@ -15,7 +15,7 @@ from cfepy.mission import CORE_APPS, Processor
 from cfepy.monitors.observer import Observer, Sent
 from cfepy.rtos import Task
 from cfepy.sb import Pipe
-from cfepy.units import NS_PER_S, time_text
+from cfepy.units import instant_text, time_text
 
 RUNS = 100  # minimum number of runs of an application's tasks without a message that counts as a livelock
 
@@ -116,7 +116,7 @@ class LivenessWatch(Observer):
             return
         since_ns = max(since_ns, booted)
         other = "" if self._before in (None, task) else f"; {_told(self._before)} ran last"
-        waited = f"ready for {time_text(at_ns - since_ns)} from {since_ns / NS_PER_S:.6f} s on, and did not run"
+        waited = f"ready for {time_text(at_ns - since_ns)} from {instant_text(since_ns)} on, and did not run"
         self._tell(Lack(False, task.owner.name, task.name, since_ns + limit_ns, f"{_told(task)} was {waited}{other}"))
 
     # -- livelocks ---------------------------------------------------------------------------------------------------
@@ -128,9 +128,7 @@ class LivenessWatch(Observer):
         quiet = self._quiet.setdefault(app, _Quiet(booted))
         quiet.runs += 1
         if quiet.runs >= RUNS and at_ns - quiet.since_ns > self._limits.livelock_ns:
-            text = (
-                f"ran {quiet.runs} times from {quiet.since_ns / NS_PER_S:.6f} s on, and neither sent nor took a message"
-            )
+            text = f"ran {quiet.runs} times from {instant_text(quiet.since_ns)} on, and neither sent nor took a message"
             self._tell(Lack(True, app, task.name, at_ns, text))
 
     def on_send(self, sent: Sent, packet: bytes | bytearray) -> None:

@@ -15,7 +15,7 @@ from cfepy.mission import CORE_APPS, EndlessWait, EndlessWaits, FailedCode, Miss
 from cfepy.monitors import DeadlineRecord, InvariantRecords
 from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
 from cfepy.rtos import InjectedCrash
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, instant_text
 
 if TYPE_CHECKING:
     from cfepy.script import Outcome
@@ -211,7 +211,7 @@ def _events(mission: Mission, outcome: Outcome | None) -> Iterator[RunProblem]:
 def _resets(mission: Mission) -> Iterator[RunProblem]:
     for reset in mission.record.resets:
         if reset.fault and InjectedCrash.__name__ not in reset.reason:
-            text = f"the processor was reset at {reset.at_ns / NS_PER_S:g} s: {reset.reason}"
+            text = f"the processor was reset at {instant_text(reset.at_ns)}: {reset.reason}"
             yield RunProblem(text, reset.at_ns, (Failure(FailureKind.RESET, "", reset.reason, reset.at_ns),))
 
 
@@ -222,7 +222,7 @@ def _invariants(mission: Mission) -> Iterator[RunProblem]:
     for each in mission.record.part(InvariantRecords).values():
         first = each.first
         if first is not None:
-            text = f"invariant {each.name!r} ({each.place}) at {first.at_ns / NS_PER_S:g} s: {first.text}"
+            text = f"invariant {each.name!r} ({each.place}) at {instant_text(first.at_ns)}: {first.text}"
             detail = f"{f'sent by {first.sender}: ' if first.sender else ''}{first.detail}"
             failure = Failure(FailureKind.INVARIANT, each.name, first.text, first.at_ns, detail)
             yield RunProblem(text, first.at_ns, (failure,))
@@ -245,7 +245,7 @@ def _of_compiled_code(mission: Mission) -> Iterator[RunProblem]:
     for race in mission.record.data_races:
         lines = "\n    ".join((race.text, *race.detail.splitlines()[1:]))
         failure = Failure(FailureKind.RACE, race.app, race.text, race.at_ns, race.detail, race.task, race.cause)
-        yield RunProblem(f"data race at {race.at_ns / NS_PER_S:g} s: {lines}", race.at_ns, (failure,))
+        yield RunProblem(f"data race at {instant_text(race.at_ns)}: {lines}", race.at_ns, (failure,))
     for each in mission.record.overwrites:
         failure = Failure(FailureKind.OVERWRITE, each.app, each.text, each.at_ns)
         yield RunProblem(f"overwritten memory: {each}", each.at_ns, (failure,))

@@ -27,7 +27,7 @@ from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.stall_signals import LastResort, Waker
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import StallError
-from cfepy.units import NS_PER_S
+from cfepy.units import NS_PER_S, instant_text
 from cfepy.writing.escapes import visible
 
 STALL_S = 10.0
@@ -315,7 +315,7 @@ class StallWatch:
         lines = lines_of(self._looks(stand), self._is_own)  # this also records which tasks have the CPU meanwhile
         app = "" if is_host or task.owner is None else str(task.owner.name)
         return StallError(
-            f"{self._subject(stand, app)} since {stand.now_ns / NS_PER_S:.6f} s of virtual time, "
+            f"{self._subject(stand, app)} since {instant_text(stand.now_ns)} of virtual time, "
             f"for {stand.standing_s + stand.idle_s:.1f} s of wall time; {end}",
             tuple(map(str, lines)),
             app=app,

@@ -10,7 +10,7 @@ from collections.abc import Hashable
 from typing import NamedTuple
 
 from cfepy.rtos import Task
-from cfepy.units import NS_PER_S
+from cfepy.units import instant_text
 
 
 class RaceSide(NamedTuple):
@@ -37,7 +37,7 @@ class RaceSide(NamedTuple):
     @property
     def stack(self) -> str:
         """The call stack as text, such as `ADDER: child (case.c:40) > add (case.c:12)`."""
-        at = "" if self.at_ns is None else f", at {self.at_ns / NS_PER_S:.6f} s"
+        at = "" if self.at_ns is None else f", at {instant_text(self.at_ns)}"
         return f"{self.task}: {' > '.join((*self.calls, self.place))}{at}"
 
 

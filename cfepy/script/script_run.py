@@ -89,7 +89,7 @@ class Outcome:
     def _line(self, each: StepVerdict) -> str:
         detail = f": {each.detail}" if each.detail else ""
         word = "ok" if each.ok else "FAILED"
-        return f"{word:<6} {each.at_s:9.3f}  {self.file}:{each.line}: {each.step}{detail}"
+        return f"{word:<6} {each.at_s:12.6f}  {self.file}:{each.line}: {each.step}{detail}"
 
     def text(self) -> str:
         """Return all lines, for a message."""

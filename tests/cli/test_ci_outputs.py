@@ -296,7 +296,7 @@ def test_quiet_run_prints_only_problems_and_the_verdict(tmp_path: Path, capsys: 
     assert main(["run", "m", "--script", "steps.txt", "--quiet", "--save-files", "saved"]) == 1
     shown = capsys.readouterr()
     assert [line[:27] for line in shown.out.splitlines()] == [
-        "FAILED     1.100  steps.txt",
+        "FAILED     1.100000  steps.",
         "verdict: failed; steps 1, i",
     ]
     assert shown.err == ""

@@ -14,6 +14,7 @@ from cfepy.extra.exploration.shrink import Shrinker
 from cfepy.extra.exploration.trial import Trial
 from cfepy.writing.work_progress import WorkProgress
 from tests.extra.exploration import missions
+from tests.mission.flights import write_mission
 
 ROOT = Path(__file__).parents[2]
 EVENT = "event: LISTENER: ERROR event 1: nothing came in 100 ms"
@@ -238,3 +239,30 @@ def test_ctrl_c_while_shrinking_leaves_the_report(
     out = capsys.readouterr().out
     assert f"failure 1: {EVENT}" in out
     assert "ended by Ctrl-C" in out
+
+
+def test_time_of_a_failure_has_microseconds_in_every_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = """
+        def Main(cfe):
+            cfe.evs.register()
+            cfe.es.run_loop(1)
+            cfe.os.task_delay(1200)
+            cfe.es.kernel.charge(1_024_000)
+            cfe.evs.send_event(7, 2, "late")
+            cfe.os.task_delay(9000)
+    """
+    rules = 'invariants: {early: {packet: CFE_EVS_LONG_EVENT_MSG, holds: "msg.PacketID.EventID != 7"}}\n'
+    rules += "deadlines: {apps: {PROG: {response: 1 ms}}}\n"
+    startup = "CFE_APP, prog, Main, PROG, 50, 16384, 0x0, 0;\n!"
+    folder = write_mission(tmp_path, startup, prog=program, mission_yaml=rules)
+    assert main(["run", folder, "--for", "3", "--no-console"]) == FOUND_PROBLEMS
+    shown = capsys.readouterr()
+    (invariant,) = re.findall(r"invariant 'early' \(mission.yaml:1\) at (\S+) s: ", shown.err)
+    (deadline,) = re.findall(r"PROG missed its deadline .* first at (\S+) s$", shown.err, re.MULTILINE)
+    assert re.fullmatch(r"1\.\d{3}024", invariant), "to the microsecond"
+    assert deadline == invariant
+    assert shown.out.count(f" {invariant}") == 2, "in the tables of invariants and of deadlines"
+    assert explore(folder, "--for", 3, "--seeds", 1, "--jobs", 1, "--shrink", 0) == FOUND_PROBLEMS
+    assert capsys.readouterr().out.count(f"  at {invariant} s\n") == 2

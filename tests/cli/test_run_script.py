@@ -28,7 +28,7 @@ def run(folder: Path, script: Path, text: str, *options: str) -> int:
 def test_a_good_script(make_mission: Write, script: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(make_mission("Quiet"), script, GOOD) == 0
     shown = capsys.readouterr().out
-    assert f"ok         1.000  {script}:1: at 1 send CFE_ES_NOOP\n" in shown
+    assert f"ok         1.000000  {script}:1: at 1 send CFE_ES_NOOP\n" in shown
     assert "3 steps, all ok\n" in shown
     assert "2.000 virtual s in " in shown
     assert shown.splitlines()[-2].startswith("trace: ")
@@ -39,8 +39,8 @@ def test_a_failed_step_is_the_exit_status(
 ) -> None:
     assert run(make_mission("Quiet"), script, BAD) == 1
     shown = capsys.readouterr().out
-    assert f"FAILED     1.000  {script}:1: at 1 expect app NOBODY: there are CFE_ES, " in shown
-    assert f"ok         2.000  {script}:2: at 2 expect app QUIET RUNNING\n" in shown
+    assert f"FAILED     1.000000  {script}:1: at 1 expect app NOBODY: there are CFE_ES, " in shown
+    assert f"ok         2.000000  {script}:2: at 2 expect app QUIET RUNNING\n" in shown
     assert "2 steps, 1 failed\n" in shown
 
 
@@ -53,7 +53,7 @@ def test_stop_on_failure(make_mission: Write, script: Path, capsys: pytest.Captu
     assert run(make_mission("Quiet"), script, BAD, "--stop-on-failure", "--for", "5") == 1
     shown = capsys.readouterr().out
     assert "1.000 virtual s in " in shown
-    assert f"FAILED     1.000  {script}:2: at 2 expect app QUIET RUNNING: the run ended earlier" in shown
+    assert f"FAILED     1.000000  {script}:2: at 2 expect app QUIET RUNNING: the run ended earlier" in shown
 
 
 @pytest.mark.parametrize(("seconds", "status"), [("1.5", 1), ("3", 0)])

@@ -21,19 +21,19 @@ def problems(folder: Path, mission_yaml: str, seconds: float = 3) -> list[str]:
 
 def test_violated_limit_fails_the_run_with_name_value_limit_and_time(tmp_path: Path) -> None:
     (problem,) = problems(tmp_path, RED)
-    text = "at 2.05 s: THERMAL_HK_TLM.Temp is 68 degC, above the red limit of 60 degC"
+    text = "at 2.050000 s: THERMAL_HK_TLM.Temp is 68 degC, above the red limit of 60 degC"
     assert problem == f"invariant 'heat' (mission.yaml:1) {text}"
 
 
 def test_yellow_includes_red_and_red_does_not_include_yellow(tmp_path: Path) -> None:
     (problem,) = problems(tmp_path, YELLOW, seconds=1.9)
-    assert problem.endswith("at 1.55 s: THERMAL_HK_TLM.Temp is 56 degC, above the yellow limit of 50 degC")
+    assert problem.endswith("at 1.550000 s: THERMAL_HK_TLM.Temp is 56 degC, above the yellow limit of 50 degC")
     assert problems(tmp_path, RED, seconds=1.9) == []
 
 
 def test_limits_apply_from_a_time_on_and_under_a_condition(tmp_path: Path) -> None:
     (problem,) = problems(tmp_path, RED.replace("red}", "red, after: 2.5 s}"))
-    assert "at 2.55 s: THERMAL_HK_TLM.Temp is 80 degC" in problem
+    assert "at 2.550000 s: THERMAL_HK_TLM.Temp is 80 degC" in problem
     assert problems(tmp_path, RED.replace("red}", "red, when: msg.Samples < 2}")) == []
 
 

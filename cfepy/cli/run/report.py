@@ -143,7 +143,7 @@ def _events(results: Results) -> Table:
 def _resets(results: Results) -> list[Table]:
     table = Table("Resets", ("at, s", "type", "why"), right=(0,))
     for reset in results.resets:
-        table.add(f"{reset.at_s:.3f}", reset.type, reset.reason)
+        table.add(f"{reset.at_s:.6f}", reset.type, reset.reason)
     return [table] if table.rows else []
 
 
@@ -212,7 +212,7 @@ def _deadlines(results: Results) -> list[Table]:
             each.checked,
             each.overruns,
             "" if each.worst_s is None else time_text(round(each.worst_s * NS_PER_S)),
-            "" if each.first_at_s is None else f"{each.first_at_s:.3f}",
+            "" if each.first_at_s is None else f"{each.first_at_s:.6f}",
         )
     return [table] if table.rows else []
 
@@ -226,7 +226,7 @@ def _inversions(results: Results) -> list[Table]:
     )
     for each in results.inversions:
         longest = time_text(round(each.worst_s * NS_PER_S))
-        table.add(each.victim, each.times, longest, f"{each.at_s:.3f}", each.text)
+        table.add(each.victim, each.times, longest, f"{each.at_s:.6f}", each.text)
     return [table] if table.rows else []
 
 
@@ -236,7 +236,7 @@ def _invariants(results: Results) -> list[Table]:
         "Invariants", ("name", "judged", "violated", "first at, s", "what was wrong"), right=(1, 2, 3), least=(3, 1)
     )
     for each in results.invariants:
-        at = "" if each.first_at_s is None else f"{each.first_at_s:.3f}"
+        at = "" if each.first_at_s is None else f"{each.first_at_s:.6f}"
         table.add(each.name, each.judged, each.violated, at, each.first or ("" if each.judged else "never judged"))
     return [table] if table.rows else []
 

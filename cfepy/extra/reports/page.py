@@ -33,7 +33,7 @@ from cfepy.extra.reports.page_story import (
 from cfepy.extra.reports.page_values import limits_section, value_data, values_section
 from cfepy.ground import SeriesSet, graph_svg
 from cfepy.pilot import Flown, Results, RunProblem
-from cfepy.units import NS_PER_S, time_text
+from cfepy.units import NS_PER_S, instant_text, time_text
 from cfepy.writing.markup import element, escaped
 
 NO_ICON = "data:,"  # a browser would request one
@@ -248,7 +248,7 @@ def _item(problem: RunProblem, kind: str = "") -> str:
     if problem.at_ns is None:
         return element("li", escaped(problem.text), class_=kind or None)
     span_ns = STORY_SPAN_NS if kind == SWITCH else None
-    link = instant(problem.at_ns, f"{problem.at_ns / NS_PER_S:.6f} s", span_ns)
+    link = instant(problem.at_ns, instant_text(problem.at_ns), span_ns)
     return element("li", f"{link}: {escaped(problem.text)}", class_=kind or None)
 
 

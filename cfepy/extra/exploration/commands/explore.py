@@ -20,7 +20,7 @@ from cfepy.extra.exploration.commands import DEFAULT_SEEDS
 from cfepy.pilot import RunPlan
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
-from cfepy.units import NS_PER_S, time_text
+from cfepy.units import instant_text, time_text
 
 RUNS_THAT_ARE_COMPARED = 2
 SHRINK_OPTION = "--shrink-time"
@@ -78,7 +78,7 @@ def _about(report: Report, told: Told, width: int) -> Iterator[str]:
     finding, shrunk = told.finding, told.shrunk
     failure = finding.failure
     if failure.at_ns is not None:
-        yield f"at {failure.at_ns / NS_PER_S:.6f} s"
+        yield f"at {instant_text(failure.at_ns)}"
     yield from failure.detail.splitlines()
     for other in finding.others:
         yield f"and in the same run: {other}"
@@ -107,7 +107,7 @@ def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
     fifo = "not measured" if found.under_fifo is None else time_text(found.under_fifo)
     yield f"worst {found.measure.text}: {time_text(longest.longest[0])}, under fifo {fifo}"
     shown = longest if worst.shrunk is None else worst.shrunk.verdict
-    yield f"  ends at {shown.longest[1] / NS_PER_S:.6f} s"
+    yield f"  ends at {instant_text(shown.longest[1])}"
     for inversion in worst.inversions:
         yield f"  priority inversion before that: {inversion}"
     if found.times:
