@@ -17,7 +17,16 @@ if TYPE_CHECKING:
     from cfepy.flight.log import Packet
     from cfepy.flight.message_library import SECONDS, array_of, build, library_near, library_of_class
     from cfepy.flight.notebook import Picture
-    from cfepy.flight.plans import SEED, Faults, MissionOptions, RunOptions, fault_attachments, fault_text, schedule_of
+    from cfepy.flight.plans import (
+        SEED,
+        Faults,
+        MissionOptions,
+        RunOptions,
+        command_for,
+        fault_attachments,
+        fault_text,
+        schedule_of,
+    )
     from cfepy.flight.run import App, ExpectationError, Run
     from cfepy.flight.start import boot, replay
 
@@ -38,6 +47,7 @@ __all__ = [
     "array_of",
     "boot",
     "build",
+    "command_for",
     "explore",
     "fault_attachments",
     "fault_text",
@@ -61,6 +71,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "Faults",
                 "MissionOptions",
                 "RunOptions",
+                "command_for",
                 "fault_attachments",
                 "fault_text",
                 "schedule_of",

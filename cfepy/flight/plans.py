@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias, TypedDict
 
 from cfepy.attachment import Attachment
-from cfepy.mission import cpp_nodes_source
+from cfepy.mission import cpp_nodes_source, is_node
 from cfepy.pilot import NODE, RUN, RunPlan
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.schedules import Schedule
@@ -115,7 +115,12 @@ def plan_of(mission: MissionWords, options: Mapping[str, Any], known: Iterable[s
     said["settings"] = tuple((name, json.dumps(value)) for name, value in said.pop("settings", {}).items())
     said["beside"] = tuple(said.pop("beside", ()))
     said["launch_args"] = tuple((name, str(value)) for name, value in said.pop("args", {}).items())
-    return RunPlan(words, NODE if words[0].endswith(_NODE_FILE) else RUN, **said)
+    return RunPlan(words, command_for(words[0]), **said)
+
+
+def command_for(mission: str) -> str:
+    """Return the command, as for `RunPlan`, that flies a mission or a node's program."""
+    return NODE if mission.endswith(_NODE_FILE) or is_node(mission) else RUN
 
 
 def _words(mission: MissionWords) -> tuple[str, ...]:

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from cfepy.attachment import Attachment
-from cfepy.flight import SEED, ExpectationError, Faults, Flight, fault_attachments, fault_text, schedule_of
+from cfepy.flight import SEED, ExpectationError, Faults, Flight, command_for, fault_attachments, fault_text, schedule_of
 from cfepy.interpreter.host_system import command_line
 from cfepy.interpreter.own_code import source_file
 from cfepy.mission import is_mission_folder
@@ -163,8 +163,8 @@ class Missions:
         """Boot a mission: it is at virtual time 0, and runs when the test lets it run.
 
         Args:
-            name: a mission's folder, startup script or launch file, searched relative to the test's file first; or the
-                name of a mission included in cfepy.
+            name: a mission's folder, startup script or launch file, or a node's program, searched relative to the
+                test's file first; or the name of a mission included in cfepy.
             board: name or file of a board; None for the mission's own.
             seed: seed of everything random in it; None for --cfepy-seed.
             schedule: which task goes first, such as "random:7"; None for the schedule of @explore or --cfepy-schedule.
@@ -177,8 +177,10 @@ class Missions:
         Raises:
             UsageError: if there is no such mission or board, or it has a mistake.
         """
+        place = self._place(name)
         plan = RunPlan(
-            (self._place(name),),
+            (place,),
+            command_for(place),
             launch_args=tuple((key, str(value)) for key, value in (args or {}).items()),
             seed=self._config.getoption("--cfepy-seed") if seed is None else seed,
             board=board,

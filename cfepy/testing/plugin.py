@@ -72,7 +72,7 @@ def _add(config: pytest.Config, name: str, plugin: type) -> None:
 
 @pytest.fixture(scope="session")
 def mission(request: pytest.FixtureRequest) -> Iterator[Missions]:
-    """Boot missions: `flight = mission("capture", seed=1)`, by folder, launch file or shipped name.
+    """Boot missions: `flight = mission("capture", seed=1)`, by folder, launch file, node or shipped name.
 
     A relative path starts at the folder of the test's file. The flight ends with the test, or with the fixture that
     made it. Give board=, seed=, schedule=, tasks=, faults=, args= (of a launch file) or attachments= as needed.

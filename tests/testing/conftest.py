@@ -10,10 +10,11 @@ import sys
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np  # noqa: F401  # imported here, or each suite would import it anew
 import pytest
 
-import cfepy.testing.strategies  # noqa: F401  # imported here, or each suite would import it anew
-from cfepy.pilot.plan import RunPlan
+import cfepy.testing.strategies  # noqa: F401  # the same
+from cfepy.pilot.plan import NODE, RunPlan
 from cfepy.testing import Flight
 
 ROOT = Path(__file__).parents[2]
@@ -104,6 +105,12 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> None:
             flight.publish("/jump", data=1)
             assert flight.call_service("/reset").success
             assert not flight.results.problems
+    launched = tmp_path_factory.mktemp("launched")
+    (launched / "mission.yaml").write_text("launch: [none.launch]\n", encoding="utf-8")
+    (launched / "none.launch").write_text("<launch/>\n", encoding="utf-8")
+    for plan in (RunPlan((str(folder / "racy.py"),), NODE), RunPlan((str(launched),))):
+        with Flight(plan) as flight:
+            flight.run_for(1)
 
 
 @pytest.fixture

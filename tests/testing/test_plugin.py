@@ -203,7 +203,7 @@ def test_paths_are_relative_to_the_test_file(pytester: pytest.Pytester, missions
     pytester.runpytest_inprocess("-p", "cfepy.testing.plugin").assert_outcomes(passed=1)
 
 
-def test_folder_with_launch_files_alone_is_a_mission(pytester: pytest.Pytester) -> None:
+def test_folder_with_launch_files_alone_is_a_mission(pytester: pytest.Pytester, loaded: None) -> None:
     folder = pytester.mkdir("drive")
     (folder / "mission.yaml").write_text("launch: [drive.launch]\n", encoding="utf-8")
     (folder / "drive.launch").write_text("<launch/>\n", encoding="utf-8")
@@ -213,6 +213,28 @@ def test_folder_with_launch_files_alone_is_a_mission(pytester: pytest.Pytester) 
     pytester.runpytest_inprocess("-p", "cfepy.testing.plugin").assert_outcomes(passed=1)
     assert not is_source_of_files(str(folder))
     assert is_source_of_files(str(folder.parent))
+
+
+NODE = """
+import rospy
+rospy.init_node("acc")
+rospy.set_param("/total", 2)
+rospy.spin()
+"""
+
+
+@pytest.mark.parametrize("name", ["acc.py", "acc"])
+def test_program_of_a_node_is_a_mission(name: str, suite: Suite, missions: Path) -> None:
+    (missions / name).write_text(f"#!/usr/bin/env python3\n{NODE}", encoding="utf-8")
+    suite(
+        f"""
+        def test_it(mission):
+            flight = mission({name!r})
+            flight.run_for(1)
+            assert flight.param("/total") == 2
+            assert flight.plan.command == "node"
+        """
+    ).assert_outcomes(passed=1)
 
 
 @pytest.mark.parametrize(
