@@ -237,8 +237,8 @@ def important(rows: Sequence[Row], moves: Sequence[MadeMove], culprit: str = "",
 def drawn(rows: Sequence[Row], tasks: Sequence[str], width: int = WIDTH) -> list[str]:
     """Return a line for each row, in its task's column.
 
-    Rows far from every move, from the end, and from what the cause names are left out. A file that has all lines of a
-    task is named once, above its column.
+    Rows far from every move, from the end, and from the operations of the cause are left out. A file that has all lines
+    of a task is named once, above its column.
     """
     if not tasks:
         return []

@@ -293,7 +293,7 @@ class _PythonVersions:
                 self._assign(node.targets[0].id, node.value)
 
     def branches(self, node: ast.If) -> list[ast.stmt]:
-        """Return the statements of an `if` that may run: those of both branches if the version does not decide."""
+        """Return the statements of an `if` that may run: the ones of both branches if the version does not decide."""
         decided = self._decide(node.test)
         if decided is None:
             return [*node.body, *node.orelse]
@@ -331,7 +331,7 @@ def _value(node: ast.expr, names: Mapping[str, Any]) -> tuple[Any, ...]:
 
 
 class _Versions(ast.NodeTransformer):
-    """Replaces what has the version by plain names.
+    """Replaces expressions with the version by plain names.
 
     Args:
         names: names of the file with values that depend on the version.

@@ -190,7 +190,7 @@ def test_rostopic_publishes_in_a_flight(flown: Flown, capsys: pytest.CaptureFixt
     assert "[counter] jumped 7" in flown.mission.console.lines
     for words, said in (
         (["/jump", "std_msgs/String", "data: x"], "/jump has type std_msgs/Int32, not std_msgs/String"),
-        (["/jump", "std_msgs/Int32", "data: x"], "/jump: invalid value: "),
+        (["/jump", "std_msgs/Int32", "data: x"], "field data must be an integer type"),
         (["/jump", "std_msgs/Int32", "7"], "expected fields, such as 'data: hi'"),
         (["/jump", "std_msgs/Int32", "nr: 7"], "unknown field"),
         (["/jmp", "std_msgs/Int32", "data: 7"], "did you mean /jump"),

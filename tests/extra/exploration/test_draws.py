@@ -61,7 +61,7 @@ def test_run_has_the_same_values_in_a_longer_sweep_and_with_further_parameters()
     assert draws_of(ALL, 5, 8) != few
 
 
-def test_first_values_are_those_of_numpys_pcg64() -> None:
+def test_first_values_equal_numpys_pcg64() -> None:
     from numpy.random import PCG64, Generator, SeedSequence
 
     stream = Generator(PCG64(SeedSequence(3, spawn_key=tuple(b"/n"))))
