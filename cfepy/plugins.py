@@ -133,7 +133,7 @@ OWN = (
         },
     ),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
-    _own("attach", hooks={"flight_options": ".attach_option:AttachDoor"}),
+    _own("attach", hooks={"realtime_flights": ".attach_door:AttachDoor"}),
     _own("viewers", hooks={"flight_options": ".viewer_options:Viewers"}),
 )
 """The add-ons in `cfepy.extra`, whether or not they are installed."""

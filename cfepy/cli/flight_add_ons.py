@@ -82,6 +82,8 @@ class FlightAddOn:
 
 
 FLIGHT_ADD_ONS: Hook[type[FlightAddOn]] = Hook("flight_options")
+REALTIME_ADD_ONS: Hook[type[FlightAddOn]] = Hook("realtime_flights")
+"""Add-ons without an option of their own, which each flight in real time has."""
 
 
 class FlightAddOns(contextlib.ExitStack):
@@ -95,7 +97,8 @@ class FlightAddOns(contextlib.ExitStack):
 
     def __init__(self, arguments: argparse.Namespace, name: str, tell: Tell) -> None:
         super().__init__()
-        self._parts = [kind(arguments, name, tell) for kind in FLIGHT_ADD_ONS.all()]
+        kinds = [*FLIGHT_ADD_ONS.all(), *(REALTIME_ADD_ONS.all() if arguments.realtime is not None else ())]
+        self._parts = [kind(arguments, name, tell) for kind in kinds]
 
     def __enter__(self) -> FlightAddOns:
         with contextlib.ExitStack() as undone:

@@ -1,4 +1,4 @@
-"""The door of each run with --realtime, for programs of the same user; it has no option."""
+"""The door of each run with --realtime, for programs of the same user."""
 
 from __future__ import annotations
 
@@ -20,19 +20,17 @@ class AttachDoor(FlightAddOn):
     def __init__(self, arguments: argparse.Namespace, name: str, tell: Tell) -> None:
         super().__init__(arguments, name, tell)
         self._tell = tell
-        self._is_wanted = arguments.realtime is not None
 
     def __enter__(self) -> AttachDoor:
-        if self._is_wanted:
-            from cfepy.extra.attach import AttachServer
+        from cfepy.extra.attach import AttachServer
 
-            try:
-                server = AttachServer()
-            except UsageError as error:
-                self._tell(f"{error}; no second terminal can attach to this flight")
-                return self
-            self.attachments.append(server)
-            self.guests.append(server)
+        try:
+            server = AttachServer()
+        except UsageError as error:
+            self._tell(f"{error}; no second terminal can attach to this flight")
+            return self
+        self.attachments.append(server)
+        self.guests.append(server)
         return self
 
     def close(self) -> None:
