@@ -386,10 +386,19 @@ class Missions:
     def _end_from(self, first: int) -> None:
         """End the missions of the test, or those that its body has booted."""
         for flight in reversed(self.flown[first:]):
-            self._close(flight, None if self._conditions is not None else self._item)
+            self._close(flight, None if self._is_searched else self._item)
         del self.flown[first:]
         if self._journals is not None:
             self._journals.drop(first)
+
+    @property
+    def _is_searched(self) -> bool:
+        """Whether a search chose the schedules: `@explore`, or a strategy of Hypothesis."""
+        item = self._item
+        drawn = (
+            item is not None and self._examples.concerns(item) and self._config.getoption("--cfepy-schedule") is None
+        )
+        return self._conditions is not None or drawn
 
     def _close(self, flight: Flight, node: pytest.Item | pytest.Collector | None) -> None:
         """End a mission, and warn once if its schedule was not possible.

@@ -28,7 +28,7 @@ def test_undamaged_sources_compile(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_clean_source_that_does_not_compile_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Compiler, "compile", lambda self, source, scratch: Compiled(True, []))
+    monkeypatch.setattr(Compiler, "compile", lambda self, source, scratch, while_waiting: Compiled(True, []))
     outcome = Damaging(1, tmp_path).check("nothing", NODES[2].encode() + b"int more = none;", False)
     assert outcome.problem == "clean, but it does not compile"
 
