@@ -28,6 +28,8 @@ OPENERS = {
     "cfepy/cli/run/compared_run.py": "a pipe to another process of cfepy",
     "cfepy/cli/run/compared_runs.py": "a pipe to another process of cfepy",
     "cfepy/cli/run/new.py": "templates",
+    "cfepy/cli/run/new_schema.py": "schemas of cfepy",
+    "cfepy/cli/run/watch.py": "the results of another process of cfepy",
     "cfepy/reading/contained_files.py": "writes",
     "cfepy/reading/input_files.py": "the helper",
     "cfepy/journal/journal.py": "writes",
