@@ -9,7 +9,7 @@ from cfepy.writing.ci_findings import NOTE, WARNING, CiFinding, FindingPlace, an
 from cfepy.writing.junit import ERROR, FAILURE, SKIPPED, Case, Problem, Suite
 from cfepy.writing.sarif_log import SarifRule, sarif_log
 
-BASE = Path("/work/repository")
+BASE = Path("/home/me/repository")
 ARM = FindingPlace(BASE / "src" / "arm, left.py", 12, 3)
 
 
@@ -93,7 +93,7 @@ def test_sarif_has_the_required_members() -> None:
     assert (driver["name"], driver["version"]) == ("cfepy run", "0.1.0")
     assert [rule["id"] for rule in driver["rules"]] == ["data-race", "warning"]
     assert driver["rules"][1]["fullDescription"] == {"text": "odd: it may fail"}
-    assert run["originalUriBaseIds"] == {"BASE": {"uri": "file:///work/repository/"}}
+    assert run["originalUriBaseIds"] == {"BASE": {"uri": "file:///home/me/repository/"}}
     found, warning = run["results"]
     (place,) = found["locations"]
     assert place["physicalLocation"] == {

@@ -225,7 +225,7 @@ class ExploredTest:
             schedule = shrunk.verdict.schedule
             lines.append(f"the shortest schedule that fails in this way, after {shrunk.probes} runs: {schedule}")
             lines += [shrunk.text("shrink_time of @explore"), "", *self._story(shrunk, finding.failure.group), ""]
-        elif self._last is not first:  # the reports are those of the first failure
+        elif self._last is not first:  # pytest reports the first failure
             self._last = self._once(Conditions(schedule))
         if self._missions is not None:
             lines.append(f"to reproduce: {self._missions.command(self._item, schedule)}")
