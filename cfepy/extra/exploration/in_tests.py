@@ -271,7 +271,7 @@ class ExploredTest:
         reporter = self._item.config.pluginmanager.get_plugin("terminalreporter")
         width = story_width(reporter is not None and reporter.isatty)
         lines = story_of(self, shrunk.verdict, failure, shrunk.moves).lines(width)
-        self._last = self._once(Conditions(shrunk.verdict.schedule))  # the reports are those of this run
+        self._last = self._once(Conditions(shrunk.verdict.schedule))  # pytest shows what this run reported
         return lines
 
     # -- one run -------------------------------------------------------------------------------------------------------
