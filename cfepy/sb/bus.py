@@ -41,6 +41,8 @@ from cfepy.trace import BATCH, LARGE, UNSENT
 
 DEFAULT_QOS = 0
 POLL = 0
+LOST_MS = 1
+"""Milliseconds of a time-out for which `SoftwareBus.receive_buffer` does not wait."""
 SECONDARY_BIT = SECONDARY >> 8
 UNSENT_PACKET = UNSENT + b"\0"
 FIRST_SEGMENT = 0x40  # bits of the sequence flags in byte 2: the first packet of a message
@@ -394,10 +396,12 @@ class SoftwareBus(SubscriptionServices):
 
         Args:
             pipe_id: any pipe; its owner is not checked, as in NASA's code.
-            timeout_ms: longest time to wait in ms, POLL (0) or PEND_FOREVER (-1).
+            timeout_ms: POLL (0), PEND_FOREVER (-1), or a time of which the bus waits one ms less: cFE makes it absolute,
+                and rounds the rest down to whole ms when some of it has passed (CFE_SB_MessageTxn_GetOsTimeout). So 1
+                is like POLL.
 
         Returns:
-            The packet, or None after the timeout.
+            The packet, or None if none came.
 
         Raises:
             CfeError: CFE_SB_BAD_ARGUMENT (pipe, timeout), CFE_SB_PIPE_RD_ERR (the pipe was deleted during the wait).
@@ -413,13 +417,13 @@ class SoftwareBus(SubscriptionServices):
         if items:
             packet, destination = items.popleft()
             self._queued_bytes -= len(packet) + BUFFER_BYTES
-        elif timeout_ms == POLL:
+        elif POLL <= timeout_ms <= POLL + LOST_MS:
             return None
         elif pipe.is_called:
             pipe.is_called = False
             return None
         else:
-            item = self.kernel.wait_on(pipe.waits, FOREVER if timeout_ms < 0 else timeout_ms * 1_000_000)
+            item = self.kernel.wait_on(pipe.waits, FOREVER if timeout_ms < 0 else (timeout_ms - LOST_MS) * 1_000_000)
             if item is TIMEOUT:
                 return None
             if item is None:

@@ -324,7 +324,8 @@ bool pump(std::int64_t until_ns, bool exactly)
         }
         // Never too early: what is due is due at the next millisecond, or exactly, after whole ones.
         const std::int64_t whole = (exactly && rest >= kMillisecond ? rest : rest + kMillisecond - 1) / kMillisecond;
-        wait_ms                  = static_cast<std::int32_t>(std::min<std::int64_t>(whole, kLongestWaitMs));
+        // One more, since cFE loses it: it makes the time absolute, and rounds the rest down to whole milliseconds.
+        wait_ms = static_cast<std::int32_t>(std::min<std::int64_t>(whole, kLongestWaitMs)) + 1;
     }
     CFE_SB_Buffer_t *buffer = nullptr;
     if (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, wait_ms) == CFE_SUCCESS)

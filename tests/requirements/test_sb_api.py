@@ -258,7 +258,7 @@ def test_cSB4306_receiving_with_and_without_waiting(flight: Flight) -> None:
         flight.run_for(1)
         transmit(flight, TLM)
     assert [each is None for each in got] == [True, False, False]
-    assert times[0] - begun == 30_000_000
+    assert times[0] - begun == 29_000_000  # cFE rounds the rest of an absolute time down
     assert [round((each - begun) / 1e9, 1) for each in times[1:]] == [1.0, 2.0]
     transmit(flight, TLM, b"a")
     transmit(flight, TLM, b"b")

@@ -284,7 +284,7 @@ static int give_packet(Coroutine *coroutine, PyObject *answer, const Outputs *ou
     uint64_t address = 0;
     coroutine->result = 0;
     if (answer == Py_None)
-        coroutine->result = (int32_t)argument(coroutine, 2) == 0 ? CFE_SB_NO_MESSAGE : CFE_SB_TIME_OUT;
+        coroutine->result = (uint32_t)argument(coroutine, 2) <= 1 ? CFE_SB_NO_MESSAGE : CFE_SB_TIME_OUT;
     else if (!PyBytes_CheckExact(answer)) {
         PyErr_SetString(PyExc_TypeError, "a packet is bytes");
         return -1;

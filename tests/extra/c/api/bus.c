@@ -76,6 +76,8 @@ static void messages(CFE_SB_PipeId_t pipe)
     TELL(CFE_SB_ReceiveBuffer(&buffer, CFE_SB_INVALID_PIPE, CFE_SB_POLL));
     SAY("null %d", buffer == NULL);
     TELL(CFE_SB_ReceiveBuffer(&buffer, pipe, CFE_SB_POLL));
+    TELL(CFE_SB_ReceiveBuffer(&buffer, pipe, 1));
+    TELL(CFE_SB_ReceiveBuffer(&buffer, pipe, 2));
     TELL(CFE_SB_ReceiveBuffer(&buffer, pipe, 20));
     TELL(CFE_SB_TransmitMsg(NULL, true));
     TELL(CFE_SB_TransmitMsg(&packet.message, true));
