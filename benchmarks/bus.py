@@ -9,6 +9,7 @@ from benchmarks import floor
 from benchmarks.measure import rate
 from cfepy.config.platform import PlatformConfig
 from cfepy.msg import telemetry
+from cfepy.osal import Osal
 from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget
 from cfepy.rtos import Kernel
@@ -31,7 +32,7 @@ def make_bus(context: str, config: PlatformConfig | None = None) -> SoftwareBus:
     """Return a bus on its own kernel, with a spacecraft clock. `config` replaces cFE's limits."""
     kernel, ports, config = Kernel(context, Trace()), Ports(), config or PlatformConfig()
     ports.evs, ports.memory = _Silent(), MemoryBudget(BoardProfile("linux"))  # type: ignore[assignment]
-    ports.time = TimeServices(kernel, ports, config)
+    ports.time, ports.queues = TimeServices(kernel, ports, config), Osal(kernel, config)
     return SoftwareBus(kernel, ports, config)
 
 

@@ -186,6 +186,16 @@ class Cleanup(Protocol):
         """Release everything that an application holds."""
 
 
+class PipeQueues(Protocol):
+    """OSAL's queues, of which each pipe of the Software Bus has one."""
+
+    def pipe_queue_create(self, name: str, depth: int) -> int:
+        """Make the queue of a pipe, and return its id (OS_QueueCreate)."""
+
+    def pipe_queue_delete(self, queue_id: int) -> None:
+        """Delete the queue of a pipe (OS_QueueDelete)."""
+
+
 class Files(Protocol):
     """File Services as seen by the other services."""
 
@@ -216,7 +226,7 @@ class Memory(Protocol):
 class Ports:
     """The services of one mission, as they see each other; `cfepy.mission` fills it in."""
 
-    __slots__ = ("es", "evs", "fs", "memory", "sb", "syslog", "tbl", "time")
+    __slots__ = ("es", "evs", "fs", "memory", "queues", "sb", "syslog", "tbl", "time")
 
     es: AppTable
     syslog: SysLog
@@ -225,4 +235,5 @@ class Ports:
     time: SpacecraftClock
     tbl: Cleanup
     memory: Memory
+    queues: PipeQueues
     fs: Files

@@ -42,9 +42,17 @@ COUNTED_BY_ID = frozenset(
     {
         "os_max_tasks",
         "os_max_queues",
-        "os_max_semaphores",
+        "os_max_bin_semaphores",
+        "os_max_count_semaphores",
+        "os_max_mutexes",
+        "os_max_condvars",
+        "os_max_rwlocks",
         "os_max_timers",
         "os_max_timebases",
+        "os_max_modules",
+        "os_max_num_open_files",
+        "os_max_num_open_dirs",
+        "os_max_file_systems",
         "es_max_applications",
         "es_max_libraries",
         "es_max_memory_pools",
@@ -86,9 +94,17 @@ class PlatformConfig:
     os_max_tasks: int = 64
     os_max_queues: int = 64
     os_queue_max_depth: int = 50
-    os_max_semaphores: int = 64
+    os_max_bin_semaphores: int = 20
+    os_max_count_semaphores: int = 20
+    os_max_mutexes: int = 20
+    os_max_condvars: int = 4
+    os_max_rwlocks: int = 20
     os_max_timers: int = 10
     os_max_timebases: int = 5
+    os_max_modules: int = 20
+    os_max_num_open_files: int = 50
+    os_max_num_open_dirs: int = 4
+    os_max_file_systems: int = 14
 
     es_max_applications: int = 32
     es_max_libraries: int = 10

@@ -6,6 +6,7 @@ An application that ends releases its resources. It can be started again.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import TypeVar
 
 from cfepy.es import events as ev
@@ -38,7 +39,6 @@ from cfepy.status import (
     CFE_ES_FILE_IO_ERR,
     CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
-    OS_ERR_NAME_TAKEN,
     CfeError,
     OsalError,
 )
@@ -89,26 +89,23 @@ class AppServices(ResetApi):
         record.app_id = self.apps.create(record)  # this comes first: as in C, a failed start uses up an id
         try:
             if entry is None:
-                record.entry = self._load_app(name, params)
+                record.module_id, record.entry = self._load(
+                    name,
+                    params.file,
+                    params.symbol,
+                    lambda: self.loader.load(params.file, params.symbol, name),
+                    lambda: None,
+                )
             record.main_task_id = self.start_task(
                 record, name, self._main_of(record), params.stack_size, params.priority
             )
         except CfeError as failure:
             self.apps.delete(record.app_id)
+            self._unload_module(record.module_id)
             self._explain(failure)
             raise
         self.history_of(name)
         return record.app_id
-
-    def _load_app(self, name: str, params: StartParams) -> Entry | None:
-        """Return the main function of an application, or None if no symbol names it, which NASA's ES accepts."""
-        if any(lib.name == name for lib in self.libs):  # OSAL's modules are named after the application or library
-            taken = f"CFE_ES_LoadModule: Could not load file:{params.file}. EC = {OS_ERR_NAME_TAKEN}"
-            self.write_to_sys_log(taken)
-            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, f"the name {name!r} is already used by a library")
-        return self._load(
-            params.file, params.symbol, lambda: self.loader.load(params.file, params.symbol, name), lambda: None
-        )
 
     def _check_new_app(self, name: str) -> None:
         if name_size(name) > MAX_NAME:
@@ -160,25 +157,49 @@ class AppServices(ResetApi):
             raise CfeError(CFE_ES_NO_RESOURCE_IDS_AVAILABLE, f"the limit of {self.libs.capacity} libraries is reached")
 
     def _init_library(self, lib: LibRecord) -> None:
-        init = self._load(
-            lib.file, lib.symbol, lambda: self.loader.load_library(lib.file, lib.symbol), lambda: _no_init
+        lib.module_id, init = self._load(
+            lib.name, lib.file, lib.symbol, lambda: self.loader.load_library(lib.file, lib.symbol), lambda: _no_init
         )
         result = init(lib.lib_id)
         if isinstance(result, int) and result != 0:
+            self._unload_module(lib.module_id)
             self.write_to_sys_log(f"CFE_ES_LoadLibrary: Load Shared Library Init Error = 0x{result & 0xFFFFFFFF:08x}")
             raise CfeError(result, f"init function of library {lib.name!r} returned {result}")
 
-    def _load(self, file: str, symbol: str, load: Callable[[], Loaded], nameless: Callable[[], Loaded]) -> Loaded:
+    def _load(
+        self, name: str, file: str, symbol: str, load: Callable[[], Loaded], nameless: Callable[[], Loaded]
+    ) -> tuple[int, Loaded]:
+        """Load the code of an application or library, which takes a place among OSAL's modules (CFE_ES_LoadModule).
+
+        Args:
+            name: its name, which is also the module's.
+            file: virtual path of the code.
+            symbol: name of the entry point.
+            load: returns the entry point.
+            nameless: returns the entry point if the symbol is one of `NO_SYMBOLS`.
+
+        Returns:
+            The module's id and the entry point.
+        """
+        module_id = 0
+        error: OsalError
         try:
-            return load()
+            module_id = self.osal.module_reserve(name, file)
+            return module_id, load()
         except SymbolError as missing:
             if symbol in NO_SYMBOLS:  # these names are not looked up
-                return nameless()
-            self.write_to_sys_log(f"CFE_ES_LoadModule: Could not find symbol:{missing.text}. EC = {missing.status}")
-            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(missing)) from missing
+                return module_id, nameless()
+            text, error = f"find symbol:{missing.text}. EC = {missing.status}", missing
         except OsalError as missing:
-            self.write_to_sys_log(f"CFE_ES_LoadModule: Could not load file:{file}. EC = {missing.status}")
-            raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(missing)) from missing
+            text, error = f"load file:{file}. EC = {missing.status}", missing
+        self._unload_module(module_id)
+        self.write_to_sys_log(f"CFE_ES_LoadModule: Could not {text}")
+        raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
+
+    def _unload_module(self, module_id: int) -> None:
+        if module_id:
+            with suppress(OsalError):  # a task has unloaded it before
+                self.osal.module_unload(module_id)
 
     def start_task(self, app: AppRecord, name: str, entry: Entry, stack_size: int, priority: int) -> int:
         """Start a task of an application; its entry runs after NASA's start delay of 50 ms (CFE_ES_StartAppTask).
@@ -351,6 +372,7 @@ class AppEnd(AppServices):
         self.osal.delete_objects_of(app)
         self._release_pools(app)
         self.apps.delete(app.app_id)
+        self._unload_module(app.module_id)
         self.loader.unload(app.name)
 
     def end_task(self, app: AppRecord, task_id: int) -> None:

@@ -88,6 +88,7 @@ class AppRecord:
     control_request: int = APP_RUN
     timer_ms: int = 0
     main_task_id: int = 0
+    module_id: int = 0
     error: BaseException | None = None
     tasks: dict[int, TaskRecord] = field(default_factory=dict)
 
@@ -116,6 +117,7 @@ class LibRecord:
     file: str
     symbol: str
     lib_id: int = 0
+    module_id: int = 0
 
 
 @dataclass(slots=True, eq=False)

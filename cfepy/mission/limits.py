@@ -26,18 +26,24 @@ MOST_NODES = 4000
 
 ROS_ROOM: Mapping[str, int] = {
     "es_cds_size": 409_600,
+    "os_max_modules": 42,
     "os_max_tasks": 512,
     "sb_buf_memory_bytes": 64 << 20,
     "tbl_buf_memory_bytes": 1 << 20,
 }
-"""The room in cFE for ROS parameters (which are critical tables), for threads, and for images in transit."""
+"""The room in cFE for ROS parameters (which are critical tables), for threads, for images in transit, and for
+the code of as many nodes as there can be applications and libraries.
+"""
 
 _PER_NODE: Mapping[str, int] = {
     "es_max_applications": 1,
     "os_max_tasks": 16,
     "os_max_queues": 16,
-    "os_max_semaphores": 4,
+    "os_max_bin_semaphores": 4,
+    "os_max_count_semaphores": 4,
+    "os_max_mutexes": 4,
     "os_max_timers": 1,
+    "os_max_modules": 1,
     "sb_max_pipes": 16,
     "sb_max_msg_ids": 8,
     "sb_max_dest_per_pkt": 1,
@@ -139,7 +145,7 @@ def limits_for(nodes: int) -> dict[str, int]:
     if nodes == 0:
         return {}
     defaults = PlatformConfig()
-    more = {"es_max_applications": 1, "os_max_tasks": 1}  # ROS's own application
+    more = {"es_max_applications": 1, "os_max_tasks": 1, "os_max_modules": 1}  # ROS's own application
     return {
         name: min(getattr(defaults, name) + nodes * each + more.get(name, 0), _MOST.get(name, SERIAL_MAX - 1))
         for name, each in _PER_NODE.items()

@@ -141,7 +141,8 @@ class Processor:
         machine = self.machine
         self.ports = Ports()
         self.memory = self.ports.memory = MemoryBudget(machine.board)
-        self.osal = self._make_osal()
+        self.osal = self.ports.queues = self._make_osal()
+        self.osal.add_core_objects()
         self.psp = Psp(
             machine.kernel,
             machine.board,

@@ -245,6 +245,13 @@ class Core:
             self._announce(table, record)
         return object_id
 
+    def _reserve(self, table: OsObjectTable[Record], record: Record) -> Record:
+        """Add an object that cFE or the PSP makes for itself. It belongs to no application, and costs no memory here:
+        a board's profile has the memory of cFE as a whole.
+        """
+        table.add(record)
+        return record
+
     def _id_by_name(self, table: OsObjectTable[Record], name: str) -> int:
         """Return the id of a name, and record the caller's application as a user of the object."""
         object_id = table.named(name)

@@ -15,8 +15,6 @@ from cfepy.osal.filesystem import RAM_BLOCK_BYTES, FileSystem
 from cfepy.osal.limits import (
     OS_FS_DEV_NAME_LEN,
     OS_FS_VOL_NAME_LEN,
-    OS_MAX_FILE_SYSTEMS,
-    OS_MAX_NUM_OPEN_FILES,
     OS_MAX_PATH_LEN,
 )
 from cfepy.osal.volumes import Volume
@@ -80,7 +78,7 @@ class DiskApi(Core):
         self._mounts: FileSystem = setup.files
         self._mounts.forget_guests()
         self._disks: OsObjectTable[OsDisk] = self._table(
-            "file system", OS_FILESYS_BASE, OS_MAX_FILE_SYSTEMS, OS_MAX_PATH_LEN
+            "file system", OS_FILESYS_BASE, setup.config.os_max_file_systems, OS_MAX_PATH_LEN
         )
         self._folder = Path()
         """The base of relative host paths: the folder behind /cf."""
@@ -224,10 +222,10 @@ class DiskApi(Core):
         """Return the total and free numbers of descriptors and volumes (OS_GetFsInfo)."""
         open_files = len(self._tables[OS_STREAM_BASE])
         return FileSystemInfo(
-            OS_MAX_NUM_OPEN_FILES,
-            OS_MAX_NUM_OPEN_FILES - open_files,
-            OS_MAX_FILE_SYSTEMS,
-            OS_MAX_FILE_SYSTEMS - len(self._disks),
+            self.config.os_max_num_open_files,
+            self.config.os_max_num_open_files - open_files,
+            self.config.os_max_file_systems,
+            self.config.os_max_file_systems - len(self._disks),
         )
 
     def translate_path(self, virtual_path: str) -> str:

@@ -18,8 +18,6 @@ from cfepy.osal.limits import (
     OS_FILE_FLAG_TRUNCATE,
     OS_FILESTAT_MODE_READ,
     OS_FILESTAT_MODE_WRITE,
-    OS_MAX_NUM_OPEN_DIRS,
-    OS_MAX_NUM_OPEN_FILES,
     OS_READ_ONLY,
     OS_READ_WRITE,
     OS_SEEK_CUR,
@@ -88,7 +86,7 @@ class FileApi(Core):
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         self.files: FileSystem = setup.files
-        self._streams: OsObjectTable[OsStream] = self._table("file", OS_STREAM_BASE, OS_MAX_NUM_OPEN_FILES)
+        self._streams: OsObjectTable[OsStream] = self._table("file", OS_STREAM_BASE, setup.config.os_max_num_open_files)
         self._opened = 0
 
     def open_create(self, path: str, flags: int = OS_FILE_FLAG_NONE, access_mode: int = OS_READ_ONLY) -> int:
@@ -283,7 +281,9 @@ class DirectoryApi(Core):
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
         self.files: FileSystem = setup.files
-        self._directories: OsObjectTable[OsDirectory] = self._table("directory", OS_DIR_BASE, OS_MAX_NUM_OPEN_DIRS)
+        self._directories: OsObjectTable[OsDirectory] = self._table(
+            "directory", OS_DIR_BASE, setup.config.os_max_num_open_dirs
+        )
         self._directories_opened = 0
 
     def mkdir(self, path: str, access: int = OS_READ_WRITE) -> None:

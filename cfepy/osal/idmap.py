@@ -6,8 +6,8 @@ from collections.abc import Callable
 from typing import Any
 
 from cfepy.config.versions import OSAL_VERSION, VersionFunctions
-from cfepy.ids import equal, from_integer, get_base, is_defined, to_integer
-from cfepy.osal.core import Core, OsObject, Setup
+from cfepy.ids import OS_CONSOLE_BASE, equal, from_integer, get_base, is_defined, to_integer
+from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup
 from cfepy.osal.limits import (
     OS_BUFFER_SIZE,
     OS_ERROR_NAME_LENGTH,
@@ -32,6 +32,8 @@ class IdMapApi(VersionFunctions, Core):
         super().__init__(setup)
         self._printf_enabled = True
         self._line = ""
+        consoles: OsObjectTable[OsObject] = self._table("console", OS_CONSOLE_BASE, 1)
+        self._reserve(consoles, OsObject(""))
 
     def get_resource_name(self, object_id: int) -> str:
         """Return the name of any OSAL object, or the path of an open file or folder (OS_GetResourceName).

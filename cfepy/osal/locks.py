@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 from cfepy.ids import OS_CONDVAR_BASE, OS_MUTEX_BASE, OS_RWLOCK_BASE
 from cfepy.osal.clock import OS_TIME_TICK_RESOLUTION_NS, ClockApi, OsTime
 from cfepy.osal.core import DELETED, Core, OsObject, OsObjectTable, Setup
-from cfepy.osal.limits import OS_MAX_CONDVARS, OS_MAX_RWLOCKS
 from cfepy.rtos import FOREVER, TIMEOUT, Kernel, Mutex, Task, WaitList
 from cfepy.status import OS_ERROR, OS_SEM_FAILURE, OsalError
 
@@ -38,7 +37,7 @@ class MutexApi(Core):
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
-        self._mutexes: OsObjectTable[OsMutex] = self._table("mutex", OS_MUTEX_BASE, setup.config.os_max_semaphores)
+        self._mutexes: OsObjectTable[OsMutex] = self._table("mutex", OS_MUTEX_BASE, setup.config.os_max_mutexes)
 
     def mut_sem_create(self, name: str, options: int = 0) -> int:
         """Make a mutex (OS_MutSemCreate).
@@ -143,7 +142,9 @@ class CondVarApi(ClockApi):
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
-        self._cond_vars: OsObjectTable[OsCondVar] = self._table("condition variable", OS_CONDVAR_BASE, OS_MAX_CONDVARS)
+        self._cond_vars: OsObjectTable[OsCondVar] = self._table(
+            "condition variable", OS_CONDVAR_BASE, setup.config.os_max_condvars
+        )
 
     def cond_var_create(self, name: str, options: int = 0) -> int:
         """Make a condition variable (OS_CondVarCreate).
@@ -298,7 +299,9 @@ class RwLockApi(Core):
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
-        self._rw_locks: OsObjectTable[OsRwLock] = self._table("readers-writer lock", OS_RWLOCK_BASE, OS_MAX_RWLOCKS)
+        self._rw_locks: OsObjectTable[OsRwLock] = self._table(
+            "readers-writer lock", OS_RWLOCK_BASE, setup.config.os_max_rwlocks
+        )
 
     def rw_lock_create(self, name: str, options: int = 0) -> int:
         """Make a readers-writer lock (OS_RwLockCreate).

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, Protocol
 from cfepy.ids import OS_MODULE_BASE
 from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup
 from cfepy.osal.filesystem import FileSystem
-from cfepy.osal.limits import OS_MAX_MODULES, OS_MODULE_FLAG_GLOBAL_SYMBOLS
+from cfepy.osal.limits import OS_MODULE_FLAG_GLOBAL_SYMBOLS, OS_MODULE_FLAG_LOCAL_SYMBOLS
 from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OsalError
 
 
@@ -71,7 +71,7 @@ class ModuleApi(Core):
         super().__init__(setup)
         self.modules: CodeSource | None = None
         self._paths: FileSystem = setup.files
-        self._modules: OsObjectTable[OsModule] = self._table("module", OS_MODULE_BASE, OS_MAX_MODULES)
+        self._modules: OsObjectTable[OsModule] = self._table("module", OS_MODULE_BASE, setup.config.os_max_modules)
 
     def module_load(self, module_name: str, filename: str, flags: int = OS_MODULE_FLAG_GLOBAL_SYMBOLS) -> int:
         """Load code (OS_ModuleLoad).
@@ -100,6 +100,21 @@ class ModuleApi(Core):
             self._unregister(self._modules, record)
             raise
         return module_id
+
+    def module_reserve(self, module_name: str, filename: str) -> int:
+        """Take a place among the modules for code that ES loads itself, as its call of OS_ModuleLoad does.
+
+        Args:
+            module_name: name of the application or library.
+            filename: virtual path of its code.
+
+        Returns:
+            The module's id.
+
+        Raises:
+            OsalError: OS_ERR_NAME_TAKEN, or OS_ERR_NO_FREE_IDS.
+        """
+        return self._reserve(self._modules, OsModule(module_name, filename, OS_MODULE_FLAG_LOCAL_SYMBOLS)).id
 
     def module_unload(self, module_id: int) -> None:
         """Forget a module (OS_ModuleUnload); objects taken from it stay usable. It raises OS_ERR_INVALID_ID."""
@@ -132,7 +147,7 @@ class ModuleApi(Core):
             OsalError: OS_ERROR if none has it.
         """
         for record in self._modules:
-            if hasattr(record.code, symbol_name):
+            if record.code is not None and hasattr(record.code, symbol_name):
                 return getattr(record.code, symbol_name)
         found = self.modules.library_symbol(symbol_name) if self.modules is not None else None
         if found is not None:

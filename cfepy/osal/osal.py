@@ -31,6 +31,7 @@ from cfepy.ids import (
     OS_TIMECB_BASE,
 )
 from cfepy.osal.core import EventHandler, Ledger, ObjectSizes, OsObject, Setup, check_size
+from cfepy.osal.core_objects import CoreObjectApi
 from cfepy.osal.disks import DiskApi
 from cfepy.osal.files import DirectoryApi
 from cfepy.osal.filesystem import FileSystem
@@ -280,7 +281,7 @@ class ApplicationApi(CleanupApi):
         return self._resource_type_config.get(resource_type, 0)
 
 
-class Osal(ShellApi, ApplicationApi, DiskApi, IdMapApi):
+class Osal(ShellApi, ApplicationApi, CoreObjectApi, DiskApi, IdMapApi):
     """The whole interface; see the other modules of this package for its parts.
 
     Args:

@@ -14,6 +14,9 @@ from cfepy.rtos import Queue
 from cfepy.status import OS_ERR_INVALID_SIZE, OS_QUEUE_FULL, OS_QUEUE_INVALID_SIZE, OsalError
 from cfepy.units import NS_PER_MS
 
+POINTER_BYTES = 8
+"""Size of the messages of a pipe's queue: pointers to buffers."""
+
 
 class QueueInfo(NamedTuple):
     """The result of `queue_get_info` (OS_queue_prop_t)."""
@@ -72,6 +75,30 @@ class QueueApi(Core):
         record = OsQueue(name, Queue(self.kernel, depth, name), data_size)
         sizes = self._setup.sizes
         return self._register(self._queues, record, "queue", sizes.queue + depth * (sizes.queue_slot + data_size))
+
+    def pipe_queue_create(self, name: str, depth: int) -> int:
+        """Make the queue behind a pipe, whose messages the Software Bus keeps itself.
+
+        It takes a place, an id and a name among the queues, as the queue that CFE_SB_CreatePipe makes. The bus books
+        its memory.
+
+        Args:
+            name: the pipe's name.
+            depth: maximum number of waiting messages.
+
+        Returns:
+            The queue's id.
+
+        Raises:
+            OsalError: OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
+        """
+        return self._register(self._queues, OsQueue(name, Queue(self.kernel, depth, name), POINTER_BYTES), "queue", 0)
+
+    def pipe_queue_delete(self, queue_id: int) -> None:
+        """Delete the queue behind a pipe, if no task has deleted it before."""
+        record = self._queues.lookup(queue_id)
+        if record is not None:
+            self._unregister(self._queues, record)
 
     def queue_delete(self, queue_id: int) -> None:
         """Delete a queue and its messages; a waiting task gets OS_ERR_INVALID_ID (OS_QueueDelete).

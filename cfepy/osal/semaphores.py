@@ -36,9 +36,12 @@ class SemaphoreApi(Core):
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
-        limit = setup.config.os_max_semaphores
-        self._bin_sems: OsObjectTable[OsSemaphore] = self._table("binary semaphore", OS_BINSEM_BASE, limit)
-        self._count_sems: OsObjectTable[OsSemaphore] = self._table("counting semaphore", OS_COUNTSEM_BASE, limit)
+        self._bin_sems: OsObjectTable[OsSemaphore] = self._table(
+            "binary semaphore", OS_BINSEM_BASE, setup.config.os_max_bin_semaphores
+        )
+        self._count_sems: OsObjectTable[OsSemaphore] = self._table(
+            "counting semaphore", OS_COUNTSEM_BASE, setup.config.os_max_count_semaphores
+        )
 
     def bin_sem_create(self, name: str, initial_value: int, options: int = 0) -> int:
         """Make a binary semaphore (OS_BinSemCreate).

@@ -392,6 +392,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
     def _start_modules(self) -> None:
         timebase = self.osal.time_base_create(SOFT_TIMEBASE_NAME)
         self.osal.time_base_set(timebase, SOFT_TIMEBASE_PERIOD_US, SOFT_TIMEBASE_PERIOD_US)
+        self.osal.add_one_hz_timer(timebase)
         ports = _PORTS_DIRECT if self.profile.ports else _PORTS_NOTIMPL
         for name, module_id, says in (*_MODULES[:2], ports, *_MODULES[2:]):
             self.console.write(f"CFE_PSP: initializing module '{name}' with ID {module_id:08x}")

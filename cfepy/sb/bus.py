@@ -396,9 +396,9 @@ class SoftwareBus(SubscriptionServices):
 
         Args:
             pipe_id: any pipe; its owner is not checked, as in NASA's code.
-            timeout_ms: POLL (0), PEND_FOREVER (-1), or a time of which the bus waits one ms less: cFE makes it absolute,
-                and rounds the rest down to whole ms when some of it has passed (CFE_SB_MessageTxn_GetOsTimeout). So 1
-                is like POLL.
+            timeout_ms: POLL (0), PEND_FOREVER (-1), or a time of which the bus waits one ms less: cFE makes it
+                absolute, and rounds the rest down to whole ms when some of it has passed
+                (CFE_SB_MessageTxn_GetOsTimeout). So 1 is like POLL.
 
         Returns:
             The packet, or None if none came.

@@ -38,6 +38,7 @@ class Pipe(Queue):
         "overflows",
         "owner",
         "pipe_id",
+        "queue_id",
         "receive_mark",
         "send_errors",
         "unheard",
@@ -54,6 +55,7 @@ class Pipe(Queue):
         self.keeps_newest = self.is_called = False
         self.send_errors = self.overflows = 0
         self.claim = 0
+        self.queue_id = 0
         self.identify(0)
 
     def call_reader(self) -> None:

@@ -12,9 +12,12 @@ from cfepy.status import (
     CFE_SB_BAD_ARGUMENT,
     CFE_SB_MAX_PIPES_MET,
     CFE_SB_PIPE_CR_ERR,
+    OS_ERR_NAME_TAKEN,
     OS_ERR_NAME_TOO_LONG,
+    OS_ERR_NO_FREE_IDS,
     OS_INVALID_POINTER,
     CfeError,
+    OsalError,
 )
 
 PIPEOPTS_IGNOREMINE = 1
@@ -39,7 +42,8 @@ class PipeServices(BufferServices):
             The pipe id.
 
         Raises:
-            CfeError: CFE_SB_BAD_ARGUMENT (depth, name), CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR (name taken).
+            CfeError: CFE_SB_BAD_ARGUMENT (depth, name), CFE_SB_MAX_PIPES_MET, CFE_SB_PIPE_CR_ERR (name
+                taken by a pipe or a queue, or no queue left).
         """
         app = self.caller_name()
         limit = self.config.os_queue_max_depth
@@ -54,18 +58,32 @@ class PipeServices(BufferServices):
             status = OS_INVALID_POINTER if name is None else OS_ERR_NAME_TOO_LONG
             text = f"CreatePipeErr:OS_QueueCreate returned {status},app {app}"
             raise self._create_error(ev.CR_PIPE_ERR_EID, CFE_SB_PIPE_CR_ERR, text)
-        if any(pipe.name == name for pipe in self.pipes):
+        try:
+            queue_id = self.ports.queues.pipe_queue_create(name, depth)
+        except OsalError as error:
             self.pipes.skip()
-            text = f"CreatePipeErr:OS_QueueCreate failed, name taken (app={app}, name={name})"
-            raise self._create_error(ev.CR_PIPE_NAME_TAKEN_EID, CFE_SB_PIPE_CR_ERR, text)
-        return self._add_pipe(depth, name, app)
+            raise self._queue_error(error, name, app) from error
+        try:
+            return self._add_pipe(depth, name, app, queue_id)
+        except CfeError:
+            self.ports.queues.pipe_queue_delete(queue_id)
+            raise
 
-    def _add_pipe(self, depth: int, name: str, app: str) -> int:
+    def _queue_error(self, error: OsalError, name: str, app: str) -> CfeError:
+        failed, event_id = "CreatePipeErr:OS_QueueCreate", ev.CR_PIPE_ERR_EID
+        text = f"{failed} returned {error.status},app {app}"
+        if error.status == OS_ERR_NAME_TAKEN:
+            event_id, text = ev.CR_PIPE_NAME_TAKEN_EID, f"{failed} failed, name taken (app={app}, name={name})"
+        elif error.status == OS_ERR_NO_FREE_IDS:
+            event_id, text = ev.CR_PIPE_NO_FREE_EID, f"{failed} failed, no free id's (app={app})"
+        return self._create_error(event_id, CFE_SB_PIPE_CR_ERR, text)
+
+    def _add_pipe(self, depth: int, name: str, app: str, queue_id: int) -> int:
         owner = self.kernel.current.owner
         size = self.sizes.queue + depth * (self.sizes.queue_slot + POINTER_BYTES)
         claim = self.ports.memory.claim(getattr(owner, "name", "host"), f"pipe {name}", size)
         pipe = Pipe(self.kernel, depth, name, owner)
-        pipe.claim = claim
+        pipe.claim, pipe.queue_id = claim, queue_id
         pipe_id = self.pipes.create(pipe)
         pipe.identify(pipe_id)
         self.peaks.pipes = max(self.peaks.pipes, len(self.pipes))
@@ -101,6 +119,7 @@ class PipeServices(BufferServices):
                 self.remove_destination(route, destination)
         self.pipes.delete(pipe.pipe_id)
         self.ports.memory.release(pipe.claim)
+        self.ports.queues.pipe_queue_delete(pipe.queue_id)
         pipe.heed(NOBODY_HEARD)
         pipe.depth = 0  # a transmission in progress then finds it full, and deleted
         pipe.close(None)

@@ -10,7 +10,6 @@ from cfepy.osal import FileSystem, Volume
 from cfepy.osal.limits import (
     OS_FILE_FLAG_CREATE,
     OS_FILE_FLAG_TRUNCATE,
-    OS_MAX_NUM_OPEN_FILES,
     OS_READ_ONLY,
     OS_READ_WRITE,
     OS_SEEK_CUR,
@@ -205,7 +204,7 @@ def test_descriptors_by_name(bench: Bench) -> None:
     assert not os.file_open_check("/ram/y")
     assert status_of(os.close_file_by_name, "/ram/y") == OS_FS_ERR_PATH_INVALID
     os.files.write_file("/ram/y", b"")
-    for _ in range(OS_MAX_NUM_OPEN_FILES):
+    for _ in range(os.config.os_max_num_open_files):
         os.open_create("/ram/y")
     assert status_of(os.open_create, "/ram/y") == OS_ERR_NO_FREE_IDS
     os.close_all_files()
@@ -240,7 +239,7 @@ def test_truncate_and_allocate(bench: Bench) -> None:
 def test_file_beyond_the_limit_is_neither_created_nor_emptied(bench: Bench) -> None:
     os = bench.os
     os.files.write_file("/ram/x", b"content")
-    for _ in range(OS_MAX_NUM_OPEN_FILES):
+    for _ in range(os.config.os_max_num_open_files):
         os.open_create("/ram/x")
     flags = OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE
     assert status_of(os.open_create, "/ram/x", flags, OS_WRITE_ONLY) == OS_ERR_NO_FREE_IDS

@@ -60,7 +60,7 @@ def test_for_each_object(bench: Bench) -> None:
     bench.os.for_each_object(creator, lambda object_id, into: into.append(bench.os.get_resource_name(object_id)), mine)
     bench.os.for_each_object(0, lambda object_id, into: into.append(bench.os.get_resource_name(object_id)), everything)
     assert mine == ["MINE", "MINE"]
-    assert sorted(everything) == ["/cf", "/ramdev0", "HOSTS", "MINE", "MINE"]
+    assert sorted(everything) == ["", "/cf", "/ramdev0", "HOSTS", "MINE", "MINE"]  # the console has no name
 
 
 @pytest.mark.parametrize(
@@ -137,6 +137,7 @@ def test_an_application_leaves_nothing_behind(bench: Bench) -> None:
         "cFS-Master",
         "/cf",
         "/ramdev0",
+        "",
     }
     assert (left.count("/ram/OTHER"), left.count("/ram")) == (1, 1)  # of others, open
     assert {task.name for task in bench.kernel.tasks} == {"OTHER", "OTHER_OWN", "cFS-Master"}

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from cfepy.osal.limits import OS_MAX_MODULES, OS_MODULE_FLAG_LOCAL_SYMBOLS
+from cfepy.osal.limits import OS_MODULE_FLAG_LOCAL_SYMBOLS
 from cfepy.osal.modules import ModuleAddress
 from cfepy.status import (
     OS_ERR_INVALID_ID,
@@ -67,7 +67,7 @@ def test_module_load_refuses_invalid_names_paths_and_code(loader: Bench) -> None
     assert status_of(os.module_load, "M", "/cf/bad.so") == OS_ERROR
     os.module_load("M", "/cf/a.so")  # the failed ones left nothing behind
     assert status_of(os.module_load, "M", "/cf/a.so") == OS_ERR_NAME_TAKEN
-    for number in range(1, OS_MAX_MODULES):
+    for number in range(1, os.config.os_max_modules):
         os.module_load(f"M{number}", "/cf/a.so")
     assert status_of(os.module_load, "ONE_MORE", "/cf/a.so") == OS_ERR_NO_FREE_IDS
 

@@ -9,8 +9,6 @@ from cfepy.osal.limits import (
     OS_FILE_FLAG_TRUNCATE,
     OS_FILESTAT_MODE_READ,
     OS_FILESTAT_MODE_WRITE,
-    OS_MAX_NUM_OPEN_DIRS,
-    OS_MAX_NUM_OPEN_FILES,
     OS_READ_ONLY,
     OS_READ_WRITE,
     OS_WRITE_ONLY,
@@ -139,7 +137,7 @@ def test_copy_and_move_between_volumes(bench: Bench) -> None:
 
 def test_copying_takes_a_descriptor(bench: Bench) -> None:
     bench.os.files.write_file("/ram/x", b"")
-    for _ in range(OS_MAX_NUM_OPEN_FILES):
+    for _ in range(bench.os.config.os_max_num_open_files):
         bench.os.open_create("/ram/x")
     assert status_of(bench.os.cp, "/ram/x", "/ram/y") == OS_ERR_NO_FREE_IDS
 
@@ -181,6 +179,6 @@ def test_directory_removed_while_open_has_no_entries(bench: Bench) -> None:
 
 
 def test_there_are_4_open_directories(bench: Bench) -> None:
-    for _ in range(OS_MAX_NUM_OPEN_DIRS):
+    for _ in range(bench.os.config.os_max_num_open_dirs):
         bench.os.directory_open("/ram")
     assert status_of(bench.os.directory_open, "/ram") == OS_ERR_NO_FREE_IDS

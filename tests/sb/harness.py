@@ -9,6 +9,7 @@ from typing import Any
 from cfepy.config.platform import PlatformConfig
 from cfepy.fs.background import FileWriteEvent, FileWriteMetaData
 from cfepy.msg import telemetry
+from cfepy.osal import Osal
 from cfepy.ports import Ports
 from cfepy.rtos import Kernel
 from cfepy.sb import SoftwareBus
@@ -101,7 +102,9 @@ class Bench:
         self.log, self.files = Log(), Files()
         ports.evs, ports.time, ports.memory = self.events, Clock(), Memory()
         ports.syslog, ports.fs = self.log, self.files  # type: ignore[assignment]  # what SB asks of them
-        self.bus = bus(self.kernel, ports, PlatformConfig(**limits))
+        config = PlatformConfig(**limits)
+        ports.queues = Osal(self.kernel, config)
+        self.bus = bus(self.kernel, ports, config)
         ports.sb = self.bus
         self.apps: dict[str, App] = {}
 

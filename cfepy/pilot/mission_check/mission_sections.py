@@ -160,11 +160,12 @@ def _check_limits(
     ros = any(entry.symbol == NODE_SYMBOL for entry in entries)
     apps = [entry for entry in entries if entry.kind == CFE_APP]
     libraries = [entry for entry in entries if entry.kind == CFE_LIB]
-    for what, these, limit in (
-        ("application", apps, config.es_max_applications - len(CORE_APPS) - ros),
-        ("library", libraries, config.es_max_libraries),
+    modules = [entry for entry in entries if entry.kind in (CFE_APP, CFE_LIB)]
+    for what, these, limit, name in (
+        ("application", apps, config.es_max_applications - len(CORE_APPS) - ros, "es_max_applications"),
+        ("library", libraries, config.es_max_libraries, "es_max_libraries"),
+        ("application and library", modules, config.os_max_modules - ros, "os_max_modules"),
     ):
-        name = "es_max_applications" if what == "application" else "es_max_libraries"
         raise_it = "the board's limit" if name in profile.limits else f"limits.{name} in the mission file"
         for entry in these[limit:]:
             text = f"{entry.name} exceeds the limit: {profile.name} allows {limit} {what} entries"

@@ -76,13 +76,12 @@ class Builder:
         text = (self.sources / "default_config.cmake").read_text(encoding="utf-8")
         values = dict(re.findall(r'^\s*set\((\w+)\s+"?([^\s")]*)"?', text, re.M))
         config = PlatformConfig()
-        semaphores = str(config.os_max_semaphores)
         values.update(
             OSAL_CONFIG_MAX_TASKS=str(config.os_max_tasks),
             OSAL_CONFIG_MAX_QUEUES=str(config.os_max_queues),
-            OSAL_CONFIG_MAX_COUNT_SEMAPHORES=semaphores,
-            OSAL_CONFIG_MAX_BIN_SEMAPHORES=semaphores,
-            OSAL_CONFIG_MAX_MUTEXES=semaphores,
+            OSAL_CONFIG_MAX_COUNT_SEMAPHORES=str(config.os_max_count_semaphores),
+            OSAL_CONFIG_MAX_BIN_SEMAPHORES=str(config.os_max_bin_semaphores),
+            OSAL_CONFIG_MAX_MUTEXES=str(config.os_max_mutexes),
             OSAL_CONFIG_MAX_TIMERS=str(config.os_max_timers),
             OSAL_CONFIG_MAX_TIMEBASES=str(config.os_max_timebases),
             OSAL_CONFIG_QUEUE_MAX_DEPTH=str(config.os_queue_max_depth),

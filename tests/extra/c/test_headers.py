@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 import subprocess
 from collections.abc import Iterator
+from dataclasses import fields
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from unittest.mock import MagicMock
 
 import pytest
 
+from cfepy.config.platform import PlatformConfig
 from cfepy.extra.c import api
 from cfepy.extra.c.elf import elf_file
 from cfepy.extra.c.engine import compiler
@@ -55,6 +57,15 @@ def compile_text(folder: Path, text: str, *flags: str, command: list[str] | None
     tool = command or [*compiler(), "-std=gnu11"]
     whole = [*tool, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *flags, f"-I{headers_folder()}", str(file)]
     return subprocess.run(whole, capture_output=True, text=True, check=False).stderr
+
+
+def test_limits_of_osal_are_the_defaults_of_a_mission() -> None:
+    text = (Path(api.__file__).parents[1] / "headers" / "osal_config.h").read_text(encoding="utf-8")
+    header = {name.lower(): int(value) for name, value in re.findall(r"#define (OS_MAX_\w+|OS_QUEUE_\w+) +(\d+)", text)}
+    limits = {
+        each.name: each.default for each in fields(PlatformConfig) if each.name.startswith(("os_max_", "os_queue_"))
+    }
+    assert limits == {name: header[name] for name in limits}
 
 
 @each_profile

@@ -130,12 +130,12 @@ def test_ids_and_names(tmp_path: Path) -> None:
         SAY("[%s]", name);
         DID(OS_GetResourceName(id, name, 0));
         OS_ForEachObject(OS_TaskGetId(), count, &one);
-        OS_ForEachObjectOfType(2, 0, count, &one);
+        OS_ForEachObjectOfType(2, 0, count, &one); /* and the queues of cFE's five pipes */
         OS_ForEachObjectOfType(99, 0, count, &one);
         SAY("%d", seen);
     """
     assert results(tmp_path, body, before=before) == [
-        *("2", "0", "1", "0", "-16", "-16", "-2", "0", "QUEUE", "-13", "QUE", "-16", "[]", "-40", "2")
+        *("2", "0", "1", "0", "-16", "-16", "-2", "0", "QUEUE", "-13", "QUE", "-16", "[]", "-40", "7")
     ]
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from cfepy.config.platform import PlatformConfig
 from cfepy.extra.c.api.osal_values import BAD
 from cfepy.extra.c.memory import CMemory
-from cfepy.osal import OS_MAX_NUM_OPEN_FILES, FdSet, OsTime
+from cfepy.osal import FdSet, OsTime
 from cfepy.status import OS_ERROR_TIMEOUT, OsalError
 
 if TYPE_CHECKING:
@@ -15,7 +16,8 @@ if TYPE_CHECKING:
     from cfepy.extra.c.calls import Declarations
     from cfepy.extra.c.runtime import CRuntime
 
-SET_BYTES = (OS_MAX_NUM_OPEN_FILES + 7) // 8
+SET_BITS = PlatformConfig().os_max_num_open_files  # the header's limit, with which the application was compiled
+SET_BYTES = (SET_BITS + 7) // 8
 """sizeof(OS_FdSet)."""
 
 
@@ -25,7 +27,7 @@ def read_set(memory: CMemory, at: int) -> FdSet | None:
         return None
     made = FdSet()
     bits = int.from_bytes(memory.peek(at, SET_BYTES), "little")
-    made.slots.extend(slot for slot in range(OS_MAX_NUM_OPEN_FILES) if bits >> slot & 1)
+    made.slots.extend(slot for slot in range(SET_BITS) if bits >> slot & 1)
     return made
 
 
