@@ -29,15 +29,31 @@ from cfepy.es.records import (
     TaskRecord,
 )
 from cfepy.es.resets import ResetApi
-from cfepy.ids import name_size
+from cfepy.ids import (
+    OS_BINSEM_BASE,
+    OS_COUNTSEM_BASE,
+    OS_MUTEX_BASE,
+    OS_QUEUE_BASE,
+    OS_TASK_BASE,
+    OS_TIMECB_BASE,
+    get_base,
+    name_size,
+)
 from cfepy.osal import OS_MAX_API_NAME
 from cfepy.psp import RST_TYPE_PROCESSOR
 from cfepy.status import (
+    CFE_ES_APP_CLEANUP_ERR,
     CFE_ES_BAD_ARGUMENT,
+    CFE_ES_BIN_SEM_DELETE_ERR,
+    CFE_ES_COUNT_SEM_DELETE_ERR,
+    CFE_ES_ERR_CHILD_TASK_DELETE,
     CFE_ES_ERR_DUPLICATE_NAME,
     CFE_ES_ERR_RESOURCEID_NOT_VALID,
     CFE_ES_FILE_IO_ERR,
+    CFE_ES_MUT_SEM_DELETE_ERR,
     CFE_ES_NO_RESOURCE_IDS_AVAILABLE,
+    CFE_ES_QUEUE_DELETE_ERR,
+    CFE_ES_TIMER_DELETE_ERR,
     CFE_STATUS_EXTERNAL_RESOURCE_FAIL,
     CfeError,
     OsalError,
@@ -45,15 +61,25 @@ from cfepy.status import (
 
 MAX_NAME = OS_MAX_API_NAME - 1
 NO_SYMBOLS = ("", "NULL")
+MOST_OBJECTS = 0xFFFF_FFFF
 Loaded = TypeVar("Loaded")
-# The words of each request's event, and the event ids for success and for a failed new start.
+# The words of each request's event, and the event ids for success, for a failed new start and for a failed cleanup.
 _REPORTS = {
-    APP_EXIT: ("Exit", ev.EXIT_APP_INF_EID, ev.EXIT_APP_ERR_EID),
-    APP_ERROR: ("Exit", ev.ERREXIT_APP_INF_EID, ev.ERREXIT_APP_ERR_EID),
-    SYS_DELETE: ("Stop", ev.STOP_INF_EID, ev.STOP_ERR3_EID),
-    SYS_RESTART: ("Restart", ev.RESTART_APP_INF_EID, ev.RESTART_APP_ERR3_EID),
-    SYS_RELOAD: ("Reload", ev.RELOAD_APP_INF_EID, ev.RELOAD_APP_ERR3_EID),
+    APP_EXIT: ("Exit", ev.EXIT_APP_INF_EID, ev.EXIT_APP_ERR_EID, ev.EXIT_APP_ERR_EID),
+    APP_ERROR: ("Exit", ev.ERREXIT_APP_INF_EID, ev.ERREXIT_APP_ERR_EID, ev.ERREXIT_APP_ERR_EID),
+    SYS_DELETE: ("Stop", ev.STOP_INF_EID, ev.STOP_ERR3_EID, ev.STOP_ERR3_EID),
+    SYS_RESTART: ("Restart", ev.RESTART_APP_INF_EID, ev.RESTART_APP_ERR3_EID, ev.RESTART_APP_ERR4_EID),
+    SYS_RELOAD: ("Reload", ev.RELOAD_APP_INF_EID, ev.RELOAD_APP_ERR3_EID, ev.RELOAD_APP_ERR4_EID),
 }
+_CLEANUP_ERRORS = {
+    OS_TASK_BASE: CFE_ES_ERR_CHILD_TASK_DELETE,
+    OS_QUEUE_BASE: CFE_ES_QUEUE_DELETE_ERR,
+    OS_COUNTSEM_BASE: CFE_ES_COUNT_SEM_DELETE_ERR,
+    OS_BINSEM_BASE: CFE_ES_BIN_SEM_DELETE_ERR,
+    OS_MUTEX_BASE: CFE_ES_MUT_SEM_DELETE_ERR,
+    OS_TIMECB_BASE: CFE_ES_TIMER_DELETE_ERR,
+}
+"""The status for an object that cannot be deleted, by its kind; for other kinds CFE_ES_APP_CLEANUP_ERR."""
 
 
 def _no_init(lib_id: int) -> None:
@@ -334,18 +360,24 @@ class AppEnd(AppServices):
         request = app.control_request
         history = self.history_of(app.name)
         history.error_exits += request == APP_ERROR
-        self.cleanup_app(app)
+        is_clean = self.cleanup_app(app)
         if request not in _REPORTS:
             self._report_odd_request(app.name, request)
             return
-        action, event, failed = _REPORTS[request]
+        action, event, not_started, not_clean = _REPORTS[request]
         detail, kind = "Completed.", ev.INFORMATION
+        if not is_clean:
+            event, kind = not_clean, ev.ERROR
+            detail = f"Failed: CleanUpApp Error 0x{CFE_ES_APP_CLEANUP_ERR & 0xFFFFFFFF:08X}."
         if request in (SYS_RESTART, SYS_RELOAD):
             try:
-                detail = f"Completed, AppID={self.create_app(app.name, app.params)}"
+                app_id = self.create_app(app.name, app.params)
                 history.restarts += 1
+                if is_clean:
+                    detail = f"Completed, AppID={app_id}"
             except CfeError as failure:
-                event, kind, detail = failed, ev.ERROR, f"Failed: AppCreate Error {failure.hex}."
+                event, kind = not_started if is_clean else not_clean, ev.ERROR
+                detail = f"Failed: AppCreate Error {failure.hex}."
         self.ports.evs.send_event(event, kind, f"{action} Application {app.name} {detail}")
 
     def _report_odd_request(self, name: str, request: int) -> None:
@@ -355,25 +387,75 @@ class AppEnd(AppServices):
             event, text = ev.PCR_ERR2_EID, f"ES_ProcControlReq: Unknown State Application {name} ( {request} )"
         self.ports.evs.send_event(event, ev.ERROR, text)
 
-    def cleanup_app(self, app: AppRecord) -> None:
+    def cleanup_app(self, app: AppRecord) -> bool:
         """End an application's tasks and release its resources (CFE_ES_CleanUpApp).
 
-        The tasks end first, because their `finally` blocks may still use the resources.
+        The objects of a task are deleted before the task, as in NASA's ES. An object that cannot be deleted stays, with
+        its name: a mutex that a task holds, a socket at which a task waits. In a safe mission the tasks end first, and
+        nothing stays. The same holds for a ROS node, which is a process of its own on a robot.
+
+        Returns:
+            Whether everything was released.
         """
-        history = self.history_of(app.name)
-        for task_id in [*(each for each in app.tasks if each != app.main_task_id), app.main_task_id]:
-            self.end_task(app, task_id)
-        for task in [task for task in self.kernel.tasks if task.owner is app]:
-            history.cpu_ns += task.cpu_ns
-            self.kernel.kill(task)
+        main, others = app.main_task_id, [each for each in app.tasks if each != app.main_task_id]
+        if self.config.safe or app.params.is_node:
+            for task_id in (*others, main):
+                self.end_task(app, task_id)
+            self._end_other_tasks(app)
+            self._clean_up_services(app)
+            self.osal.delete_objects_of(app)
+            statuses = [0]
+        else:
+            self._clean_up_services(app)
+            statuses = [self._clean_up_task(app, task_id) for task_id in (main, *others)]
+            self._end_other_tasks(app)
+        self._release_pools(app)
+        self._unload_module(app.module_id)
+        self.apps.delete(app.app_id)
+        self.loader.unload(app.name)
+        return not any(statuses)
+
+    def _clean_up_services(self, app: AppRecord) -> None:
         tbl, sb, time, evs = self.ports.tbl, self.ports.sb, self.ports.time, self.ports.evs
         for service in (tbl, sb, time, evs) if self.config.is_cfe_7_0_0 else (evs, sb, tbl, time):
             service.cleanup_app(app.app_id)
-        self.osal.delete_objects_of(app)
-        self._release_pools(app)
-        self.apps.delete(app.app_id)
-        self._unload_module(app.module_id)
-        self.loader.unload(app.name)
+
+    def _end_other_tasks(self, app: AppRecord) -> None:
+        """End the tasks that ES does not know: of OS_TaskCreate, and of ROS nodes."""
+        history = self.history_of(app.name)
+        for task in [task for task in self.kernel.tasks if task.owner is app]:
+            history.cpu_ns += task.cpu_ns
+            self.kernel.kill(task)
+
+    def _clean_up_task(self, app: AppRecord, task_id: int) -> int:
+        """Delete a task's objects, then the task (CFE_ES_CleanupTaskResources).
+
+        Returns:
+            0, or the status of the first object that could not be deleted.
+        """
+        status, before, is_stuck = 0, MOST_OBJECTS, False
+        while True:
+            found = self.osal.clean_up_task(task_id)
+            failed = [each for each in found if each.error is not None]
+            for each in failed:
+                assert each.error is not None
+                self.write_to_sys_log(
+                    f"CFE_ES_CleanupObjectCallback: Call to OSAL Delete Object (ID:{each.object_id}) failed. "
+                    f"RC={each.error.status}"
+                )
+            if failed and not status:
+                status = _CLEANUP_ERRORS.get(get_base(failed[0].object_id), CFE_ES_APP_CLEANUP_ERR)
+            if not found or is_stuck:
+                break
+            is_stuck = len(failed) == len(found) or len(found) >= before
+            before = len(found)
+        self.end_task(app, task_id)
+        if status:
+            self.write_to_sys_log(
+                f"CFE_ES_CleanUpApp: CleanUpTaskResources for Task ID:{task_id} returned Error: "
+                f"0x{status & 0xFFFFFFFF:08X}"
+            )
+        return status
 
     def end_task(self, app: AppRecord, task_id: int) -> None:
         """End a task of an application."""

@@ -39,6 +39,8 @@ APP_RESTART = 3
 """In addition to RST_TYPE_*: only an application is restarted (CFE_ES_APP_RESTART)."""
 
 Entry = Callable[[], object]
+NODE_SYMBOL = "__main__"
+"""The entry point that a startup script gives a ROS node."""
 
 
 @dataclass(slots=True)
@@ -53,6 +55,11 @@ class StartParams:
     stack_size: int
     priority: int
     exception_action: int = EXCEPTION_RESTART_APP
+
+    @property
+    def is_node(self) -> bool:
+        """Whether the application is a ROS node in Python."""
+        return self.symbol == NODE_SYMBOL
 
 
 @dataclass(slots=True, eq=False)

@@ -16,11 +16,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy import msg, tbl
+from cfepy.es import NODE_SYMBOL
 from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
 from cfepy.ground.mission_names import CORE_PACKETS
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import flat, int_of, line_of, measured_fields, texts_of, violations_of
-from cfepy.mission import NODE_SYMBOL, MissionSpec, read_mission
+from cfepy.mission import MissionSpec, read_mission
 from cfepy.mission import app_sources as sources
 from cfepy.mission.python_code import ModuleNames, execute, find_declarations
 from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Command, Layout, Telemetry

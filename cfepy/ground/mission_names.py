@@ -14,10 +14,11 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from cfepy.es import NODE_SYMBOL
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
 from cfepy.interpreter.syntax_trees import parsed_input
-from cfepy.mission import NODE_SYMBOL, Mission, MissionSpec, find_declarations
+from cfepy.mission import Mission, MissionSpec, find_declarations
 from cfepy.msg import is_valid_msg_id, topics
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import PYTHON_BYTES

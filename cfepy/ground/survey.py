@@ -13,9 +13,10 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from cfepy.es import NODE_SYMBOL
 from cfepy.ground.mission_names import kind_of, names_in
 from cfepy.ground.topics import Topic, topics_of
-from cfepy.mission import LOCK_FILE, NODE_SYMBOL, Mission, MissionSpec, PacketWatch, Seen
+from cfepy.mission import LOCK_FILE, Mission, MissionSpec, PacketWatch, Seen
 from cfepy.nodes import RosConfig
 from cfepy.writing.console import Console
 

@@ -51,7 +51,6 @@ if TYPE_CHECKING:
         is_mission_folder,
         mission_file_of,
     )
-    from cfepy.mission.loader import NODE_SYMBOL
     from cfepy.mission.mission import Mission
     from cfepy.mission.mission_file import MissionSections, read_mission_file
     from cfepy.mission.mission_lookup import (
@@ -91,7 +90,6 @@ __all__ = [
     "LAUNCH_FILES",
     "LOCK_FILE",
     "MOST_ITEMS",
-    "NODE_SYMBOL",
     "PACKET",
     "PARAM",
     "PROFILES",
@@ -237,7 +235,6 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "is_mission_folder",
                 "mission_file_of",
             ),
-            ".loader": ("NODE_SYMBOL",),
             ".mission": ("Mission",),
             ".mission_file": (
                 "MissionSections",

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, Protocol
 
-from cfepy.es import StartupEntry
-from cfepy.mission.loader import NODE_SYMBOL, Code, Finder
+from cfepy.es import NODE_SYMBOL, StartupEntry
+from cfepy.mission.loader import Code, Finder
 from cfepy.osal import FileSystem
 from cfepy.reading.input_files import beginning_of, read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES

@@ -145,6 +145,7 @@ def _with_sections(spec: MissionSpec, path: Path, said: MissionSections) -> Miss
         ros=ros,
         limits=limits,
         cfe_version=said.cfe_version,
+        safe=said.safe,
         epoch_ns=said.epoch,
         compiled=said.compiled,
         cpp_nodes=said.cpp_nodes,

@@ -14,7 +14,6 @@ from cfepy.rtos import TaskExit
 from cfepy.status import OS_ERROR, OsalError
 from cfepy.writing.console import Console
 
-NODE_SYMBOL = "__main__"
 NO_SYMBOL = "NULL"
 """The entry point of a library without one."""
 

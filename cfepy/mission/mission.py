@@ -17,10 +17,10 @@ from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from cfepy.app import Cfe
 from cfepy.attachment import Attachment
+from cfepy.es import NODE_SYMBOL
 from cfepy.interpreter.own_code import is_own_code
 from cfepy.mission.failed_code import FailedCode
 from cfepy.mission.host_actions import HostActs
-from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.mission.mission_lookup import read_mission
 from cfepy.mission.outside import Outside
 from cfepy.mission.processor import Machine, Processor, RunFiles
@@ -232,8 +232,10 @@ class Mission:
 
     @property
     def over(self) -> bool:
-        """Whether the run has ended on its own: a required node, or all nodes, have ended."""
-        return self.ros is not None and bool(self.ros.monitor.over)
+        """Whether the run has ended on its own: a required node or all nodes have ended, or the flight software has
+        aborted.
+        """
+        return self.kernel.abortion is not None or (self.ros is not None and bool(self.ros.monitor.over))
 
     @property
     def stall(self) -> StallError | None:

@@ -41,9 +41,9 @@ class MissionSections:
     """The content of a mission file, as far as it could be read.
 
     Attributes:
-        name, board, cfe_version, epoch, compiled, cpp_nodes, limits, nodes, topics, params, params_from, ordered_sets,
-            connection_delay, ros_bridge, launch, sweep: the values of these sections; `name`, `board` and `epoch` are
-            None if missing.
+        name, board, cfe_version, safe, epoch, compiled, cpp_nodes, limits, nodes, topics, params, params_from,
+            ordered_sets, connection_delay, ros_bridge, launch, sweep: the values of these sections; `name`, `board` and
+            `epoch` are None if missing.
         demands: the sections of `DEMANDS`, unread.
         places: all known sections in the file, unread.
     """
@@ -51,6 +51,7 @@ class MissionSections:
     name: str | None = None
     board: str | None = None
     cfe_version: str = DEFAULT_RELEASE
+    safe: bool = False
     epoch: int | None = None
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
     cpp_nodes: CppNodesConfig = field(default_factory=CppNodesConfig)
@@ -366,6 +367,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "name": _single(Marked.text),
     "board": _single(Marked.text),
     "cfe_version": _single(_release),
+    "safe": _single(Marked.flag),
     "epoch": _single(read_epoch),
     "compiled": read_compiled,
     "cpp_nodes": read_cpp_nodes,

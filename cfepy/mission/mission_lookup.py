@@ -163,6 +163,7 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
         ros=said.ros,
         limits=said.limits,
         cfe_version=said.cfe_version,
+        safe=said.safe,
         epoch_ns=said.epoch,
         compiled=said.compiled,
         cpp_nodes=said.cpp_nodes,

@@ -341,7 +341,8 @@ class Processor:
             history = self.cfe.es.history_of(app.name)
             history.cpu_ns += sum(task.cpu_ns for task in kernel.tasks if task.owner is app)
         self.osal.register_event_handler(_ignore)  # an application's handler has ended together with the application
-        self.osal.delete_all_objects()  # first, because it calls the tasks' delete handlers
+        with kernel.unwinding():
+            self.osal.delete_all_objects()  # first, because it calls the tasks' delete handlers
         kernel.unwind()
         # objects that `finally` blocks have created meanwhile, such as a socket on the network
         self.osal.delete_all_objects()

@@ -20,9 +20,9 @@ from pathlib import Path, PurePosixPath
 from types import ModuleType
 from typing import Any
 
-from cfepy.es import SymbolError
+from cfepy.es import NODE_SYMBOL, SymbolError
 from cfepy.mission.compiled_code import find_compiled
-from cfepy.mission.loader import NO_SYMBOL, NODE_SYMBOL, Code, Finder, MainCode, RemovedCodeError
+from cfepy.mission.loader import NO_SYMBOL, Code, Finder, MainCode, RemovedCodeError
 from cfepy.nodes import AppModules
 from cfepy.osal import FileSystem
 from cfepy.reading.input_files import read_limited

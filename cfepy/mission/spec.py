@@ -9,12 +9,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.config.platform import PlatformConfig
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
-from cfepy.es import StartupEntry
+from cfepy.es import NODE_SYMBOL, StartupEntry
 from cfepy.es import entries as read_entries
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission.cpp_nodes import CppNodesConfig
 from cfepy.mission.limits import MissionLimits
-from cfepy.mission.loader import NODE_SYMBOL
 from cfepy.nodes import CppNode, NodeConfig, RosConfig
 from cfepy.psp import BoardProfile
 from cfepy.reading.input_files import read_limited
@@ -95,6 +94,7 @@ class MissionSpec:
         mission_file: None if there is none.
         board: its board: a shipped board's name or a path.
         cfe_version: its release of cFE.
+        safe: whether it prevents what hangs, leaks or ends the process on NASA's Linux.
         compiled: how its compiled applications were built.
         ros: its ROS nodes, topics and parameters.
         limits: its platform limits.
@@ -117,6 +117,7 @@ class MissionSpec:
     ros: RosConfig = field(default_factory=RosConfig)
     limits: MissionLimits = field(default_factory=MissionLimits)
     cfe_version: str = DEFAULT_RELEASE
+    safe: bool = False
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
     cpp_nodes: CppNodesConfig = field(default_factory=CppNodesConfig)
     startup: bytes | None = None
@@ -144,7 +145,12 @@ class MissionSpec:
         Raises:
             UsageError: if the mission needs more than the board has.
         """
-        limits = replace(self.limits.config(board, self.has_nodes), cfe_version=self.cfe_version, given=tuple(self.ids))
+        limits = replace(
+            self.limits.config(board, self.has_nodes),
+            cfe_version=self.cfe_version,
+            safe=self.safe,
+            given=tuple(self.ids),
+        )
         config = limits.with_limits(self.ids)
         if self.epoch_ns is None:
             return config

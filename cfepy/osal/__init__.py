@@ -18,7 +18,7 @@ from cfepy.osal.clock import (
     OsTime,
     time_from_total_nanoseconds,
 )
-from cfepy.osal.core import Ledger, ObjectSizes, OsObject
+from cfepy.osal.core import NOBODY, Ledger, Nobody, ObjectSizes, OsObject
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.limits import (
     OS_CHECK,
@@ -77,7 +77,6 @@ from cfepy.osal.sockets import (
     OS_SocketShutdownMode_SHUT_WRITE,
 )
 from cfepy.osal.streams import OS_SocketType_DATAGRAM, OS_SocketType_STREAM
-from cfepy.osal.tasks import NOBODY, Nobody
 from cfepy.osal.volumes import FileNode, Volume
 
 __all__ = [

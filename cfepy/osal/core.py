@@ -22,7 +22,7 @@ from cfepy.osal.limits import (
     SIZE_MAX,
 )
 from cfepy.osal.network import Network
-from cfepy.rtos import CpuCosts, Kernel, Task
+from cfepy.rtos import CpuCosts, Kernel, Task, WaitList
 from cfepy.status import (
     OS_ERR_INCORRECT_OBJ_STATE,
     OS_ERR_INVALID_ID,
@@ -44,6 +44,15 @@ class Deleted:
 
 
 DELETED = Deleted()
+
+
+class Nobody:
+    """The owner of tasks that belong to no application; its only instance is `NOBODY`."""
+
+    name = "system"  # its name in the memory accounting and in messages
+
+
+NOBODY = Nobody()
 
 
 class Ledger(Protocol):
@@ -106,7 +115,7 @@ class OsObject:
         name: at most 19 characters, unique among objects of the same kind.
     """
 
-    __slots__ = ("claim", "creator", "deleted", "id", "name", "owner", "users")
+    __slots__ = ("claim", "creator", "deleted", "deleters", "id", "name", "owner", "users")
 
     def __init__(self, name: str) -> None:
         self.name = name
@@ -116,6 +125,7 @@ class OsObject:
         self.users: tuple[Any, ...] = ()  # the applications that looked up its id by its name
         self.claim = 0
         self.deleted = False
+        self.deleters: WaitList | None = None  # the task that waits until it can delete the object
 
     @property
     def resource_name(self) -> str:
@@ -264,6 +274,31 @@ class Core:
         table.drop(record)
         self._release(record)
         self._notify(OS_EVENT_RESOURCE_DELETED, record.id)
+
+    @property
+    def _is_strict(self) -> bool:
+        """Whether a call hangs or leaks as on NASA's Linux: in a task, of a mission that is not safe."""
+        return not self.config.safe and self.kernel.current is not self.kernel.host
+
+    def _await_leaving(self, table: OsObjectTable[Record], record: Record, waits: WaitList) -> None:
+        """Wait until no task waits in a list of an object that is being deleted, as pthread_cond_destroy does.
+
+        The object has no id meanwhile, so no task can wake the waiting ones.
+        """
+        del table.records[record.id]
+        waits.is_orphaned = True
+        waits.what += f", which {self.kernel.current.name} is deleting"
+        record.deleters = WaitList(f"the tasks to leave {table.kind} {record.name}, which it deletes")
+        record.deleters.holders = lambda: tuple(waits)
+        try:
+            self.kernel.wait_on(record.deleters)
+        finally:
+            table.records[record.id] = record
+
+    def _has_left(self, record: OsObject, waits: WaitList) -> None:
+        """Wake the task that deletes an object, if the caller was the last that waited for it."""
+        if record.deleters is not None and not waits:
+            self.kernel.wake_all(record.deleters)
 
     def _announce(self, table: OsObjectTable[Record], record: Record) -> None:
         """Report a new object to the event handler, which can refuse it (OS_ObjectIdAllocateNew)."""

@@ -40,7 +40,7 @@ class CoreObjectApi(SemaphoreApi, MutexApi, TimerApi):
     def add_core_objects(self) -> None:
         """Add the mutexes and semaphores."""
         for name in MUTEXES:
-            self._reserve(self._mutexes, OsMutex(name, Mutex(self.kernel, name)))
+            self._reserve(self._mutexes, OsMutex(name, Mutex(self.kernel, name, stays_locked=not self.config.safe)))
         for name in BINARY_SEMAPHORES:
             self._reserve(self._bin_sems, OsSemaphore(name, Semaphore(self.kernel, 0, 1, name)))
 

@@ -22,6 +22,7 @@ from cfepy.reading.texts import to_bytes
 from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NO_FREE_IDS,
+    OS_ERR_NOT_IMPLEMENTED,
     OS_FS_ERR_DEVICE_NOT_FREE,
     OS_FS_ERR_PATH_INVALID,
     OS_FS_ERR_PATH_TOO_LONG,
@@ -198,16 +199,17 @@ class DiskApi(Core):
         return VolumeStat(disk.block_size, volume.capacity // disk.block_size, free // disk.block_size)
 
     def chkfs(self, name: str, repair: bool = False) -> None:
-        """Check a file system, which is in memory and never damaged (OS_chkfs).
+        """Refuse to check a file system (OS_chkfs), as on NASA's Linux.
 
         Args:
             name: a path on it.
             repair: has no effect.
 
         Raises:
-            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND, otherwise OS_ERR_NOT_IMPLEMENTED.
         """
         self._mounted(name)
+        raise OsalError(OS_ERR_NOT_IMPLEMENTED, f"file system {name} cannot be checked on Linux")
 
     def fs_get_phys_drive_name(self, mount_point: str) -> str:
         """Return the name of the volume mounted at a path: a folder of the host, or a RAM volume

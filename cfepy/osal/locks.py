@@ -54,7 +54,7 @@ class MutexApi(Core):
         """
         if self._cost:
             self.kernel.charge(self._cost)
-        record = OsMutex(name, Mutex(self.kernel, name))
+        record = OsMutex(name, Mutex(self.kernel, name, stays_locked=not self.config.safe))
         return self._register(self._mutexes, record, "mutex", self._setup.sizes.mutex)
 
     def mut_sem_take(self, mutex_id: int) -> None:
@@ -63,7 +63,8 @@ class MutexApi(Core):
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
-            DeadlockError: the owner waits, directly or not, for a mutex that the caller holds.
+            DeadlockError: in a safe mission, if the owner waits, directly or not, for a mutex that the caller holds.
+                Otherwise the caller waits forever.
         """
         if self._cost:
             self.kernel.charge(self._cost)
@@ -130,9 +131,9 @@ class OsCondVar(OsObject):
 
     __slots__ = ("mutex", "waits")
 
-    def __init__(self, name: str, kernel: Kernel) -> None:
+    def __init__(self, name: str, kernel: Kernel, safe: bool) -> None:
         super().__init__(name)
-        self.mutex = Mutex(kernel, f"of condition {name}")
+        self.mutex = Mutex(kernel, f"of condition {name}", stays_locked=not safe)
         self.waits = WaitList(f"condition {name}")
         self.waits.subject = self
 
@@ -163,7 +164,10 @@ class CondVarApi(ClockApi):
             self.kernel.charge(self._cost)
         sizes = self._setup.sizes
         return self._register(
-            self._cond_vars, OsCondVar(name, self.kernel), "condition variable", sizes.mutex + sizes.semaphore
+            self._cond_vars,
+            OsCondVar(name, self.kernel, self.config.safe),
+            "condition variable",
+            sizes.mutex + sizes.semaphore,
         )
 
     def cond_var_lock(self, var_id: int) -> None:
@@ -225,7 +229,10 @@ class CondVarApi(ClockApi):
         return self._wait(self._cond_var(var_id), max(left, 1)) is not TIMEOUT
 
     def cond_var_delete(self, var_id: int) -> None:
-        """Delete a condition variable; waiting tasks get OS_ERR_INVALID_ID (OS_CondVarDelete).
+        """Delete a condition variable (OS_CondVarDelete).
+
+        The call waits until no task waits for a signal, as pthread_cond_destroy does; none can be given any more. In a
+        safe mission it ends these waits with OS_ERR_INVALID_ID.
 
         Raises:
             OsalError: OS_ERROR while a task has locked it; OS_ERR_INVALID_ID.
@@ -233,6 +240,8 @@ class CondVarApi(ClockApi):
         record = self._cond_var(var_id)
         if record.mutex.owner is not None:
             raise OsalError(OS_ERROR, f"{record.mutex.owner.name} has locked condition variable {record.name}")
+        if record.waits and self._is_strict:
+            self._await_leaving(self._cond_vars, record, record.waits)
         self._unregister(self._cond_vars, record)
         self.kernel.wake_all(record.waits, DELETED)
 
@@ -261,7 +270,12 @@ class CondVarApi(ClockApi):
         # No task may run between the unlock and the wait, or a signal could get lost. So `give`, which preempts, is not
         # used.
         mutex.abandon(task)
-        woken = self.kernel.wait_on(record.waits, timeout_ns)
+        try:
+            woken = self.kernel.wait_on(record.waits, timeout_ns)
+        except BaseException:
+            self._has_left(record, record.waits)
+            raise
+        self._has_left(record, record.waits)
         if woken is DELETED:
             raise self._cond_vars.gone(record)
         mutex.take()
@@ -281,12 +295,13 @@ class OsRwLock(OsObject):
 
     __slots__ = ("readers", "waiting_readers", "waiting_writers", "writer")
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, safe: bool) -> None:
         super().__init__(name)
         self.readers: list[Task] = []
         self.writer: Task | None = None
         self.waiting_readers = WaitList(f"readers of lock {name}")
         self.waiting_writers = WaitList(f"writers of lock {name}")
+        self.waiting_readers.is_cancelable = self.waiting_writers.is_cancelable = safe
         self.waiting_readers.holders = lambda: self._writers() or self.waiting_writers[:1]
         self.waiting_writers.holders = lambda: self._writers() or self.readers
 
@@ -316,7 +331,9 @@ class RwLockApi(Core):
         Raises:
             OsalError: OS_ERR_NAME_TOO_LONG, OS_ERR_NAME_TAKEN or OS_ERR_NO_FREE_IDS.
         """
-        return self._register(self._rw_locks, OsRwLock(name), "readers-writer lock", self._setup.sizes.mutex)
+        return self._register(
+            self._rw_locks, OsRwLock(name, self.config.safe), "readers-writer lock", self._setup.sizes.mutex
+        )
 
     def rw_lock_read_take(self, rw_id: int) -> None:
         """Wait until no task writes or waits to write (OS_RwLockReadTake).
@@ -369,15 +386,17 @@ class RwLockApi(Core):
         self._hand_on(record)
 
     def rw_lock_delete(self, rw_id: int) -> None:
-        """Delete a lock (OS_RwLockDelete).
+        """Delete a lock (OS_RwLockDelete); tasks that wait for it wait forever, as on Linux.
 
         Raises:
-            OsalError: OS_ERROR while a task holds it; OS_ERR_INVALID_ID.
+            OsalError: OS_ERR_INVALID_ID. In a safe mission OS_ERROR while a task holds it.
         """
         record = self._rw_lock(rw_id)
-        if record.readers or record.writer is not None:
+        if self.config.safe and (record.readers or record.writer is not None):
             raise OsalError(OS_ERROR, f"lock {record.name} is held")
         self._unregister(self._rw_locks, record)
+        record.waiting_readers.orphan()
+        record.waiting_writers.orphan()
 
     def rw_lock_get_id_by_name(self, name: str) -> int:
         """Return the id of a named lock, or OS_ERR_NAME_NOT_FOUND (OS_RwLockGetIdByName)."""
@@ -399,8 +418,11 @@ class RwLockApi(Core):
     def _hand_on(self, record: OsRwLock) -> None:
         """Give a free lock to the most urgent waiting writer, or otherwise to all waiting readers."""
         if record.waiting_writers:
-            record.writer = record.waiting_writers[0]
+            record.writer = writer = record.waiting_writers[0]
+            self.kernel.call_joiners(writer)
             self.kernel.wake_first(record.waiting_writers)
         elif record.waiting_readers:
             record.readers = list(record.waiting_readers)
+            for reader in record.readers:
+                self.kernel.call_joiners(reader)
             self.kernel.wake_all(record.waiting_readers)

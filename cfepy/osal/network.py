@@ -258,11 +258,15 @@ Bound = TypeVar("Bound", bound=Endpoint)
 class BoundEndpoints(Generic[Bound]):
     """The addresses of bound endpoints, for one protocol.
 
+    Args:
+        shares: whether several endpoints can have one address, as UDP sockets with SO_REUSEADDR, which OSAL sets.
+
     Attributes:
         bound: the endpoints by (whether it is IPv6, port), in the order of binding.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, shares: bool) -> None:
+        self._shares = shares
         self.bound: dict[tuple[bool, int], list[Bound]] = {}
         self._next = FIRST_FREE_PORT
 
@@ -270,7 +274,7 @@ class BoundEndpoints(Generic[Bound]):
         """Bind an endpoint to an address; port 0 means any free port.
 
         Returns:
-            The address, or None if it is taken or not on this network.
+            The address, or None if it is not on this network, or taken and not shared.
         """
         if not place.is_here:
             return None
@@ -278,7 +282,7 @@ class BoundEndpoints(Generic[Bound]):
         if endpoint.anonymous:
             place = Place(place.host, self._free_port(place.is_ip6))
         others = self.bound.get((place.is_ip6, place.port), [])
-        if any(_clash(place, other.place) for other in others):
+        if not self._shares and any(_clash(place, other.place) for other in others):
             return None
         endpoint.place = place
         self.bound.setdefault((place.is_ip6, place.port), []).append(endpoint)
@@ -294,11 +298,16 @@ class BoundEndpoints(Generic[Bound]):
                 del self.bound[place.is_ip6, place.port]
 
     def find(self, place: Place) -> Bound | None:
-        """Return the endpoint that receives data sent to an address, or None."""
+        """Return the endpoint that receives data sent to an address, or None.
+
+        Of several, that is one bound to just this host, and of these the newest, as on Linux.
+        """
+        best: Bound | None = None
         for endpoint in self.bound.get((place.is_ip6, place.port), ()):
-            if endpoint.place is not None and endpoint.place.host in (place.host, place.any_host):
-                return endpoint
-        return None
+            host = None if endpoint.place is None else endpoint.place.host
+            if host == place.host or (host == place.any_host and (best is None or best.place != place)):
+                best = endpoint
+        return best
 
     def _free_port(self, is_ip6: bool) -> int:
         while (is_ip6, self._next) in self.bound:
@@ -322,8 +331,8 @@ class Network:
     """
 
     def __init__(self) -> None:
-        self.datagrams: BoundEndpoints[Mailbox] = BoundEndpoints()
-        self.streams: BoundEndpoints[Listener] = BoundEndpoints()
+        self.datagrams: BoundEndpoints[Mailbox] = BoundEndpoints(shares=True)
+        self.streams: BoundEndpoints[Listener] = BoundEndpoints(shares=False)
         self.outlets: list[Callable[[Datagram], object]] = []
         self.dial: Callable[[Place, Place], Stream | None] | None = None
 

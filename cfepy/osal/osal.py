@@ -53,13 +53,24 @@ from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OS_INVALID_POINTER, O
 from cfepy.writing.console import Console
 
 EXIT_SUCCESS, EXIT_FAILURE = 0, 1
+CLEANED_UP = (
+    OS_TASK_BASE,
+    OS_QUEUE_BASE,
+    OS_COUNTSEM_BASE,
+    OS_BINSEM_BASE,
+    OS_MUTEX_BASE,
+    OS_STREAM_BASE,
+    OS_TIMECB_BASE,
+    OS_MODULE_BASE,
+)
+"""The kinds of objects that ES deletes when an application ends, in the order of OS_ForEachObject."""
 
 
 class Leftover(NamedTuple):
-    """An object that could not be deleted, and why."""
+    """An object that was to be deleted, and the error if that failed."""
 
     object_id: int
-    error: OsalError
+    error: OsalError | None
 
 
 class CleanupApi(
@@ -120,6 +131,30 @@ class CleanupApi(
             The objects that could not be deleted.
         """
         return self._delete_where(lambda record: record.creator == task_id and not self._is_caller(record))
+
+    def clean_up_task(self, task_id: int) -> list[Leftover]:
+        """Delete the objects of some kinds that a task created, in one pass over the tables.
+
+        ES repeats the pass (CFE_ES_CleanupObjectCallback). Open directories, time bases, condition variables and
+        readers-writer locks are left behind, as in NASA's ES.
+
+        Args:
+            task_id: the task.
+
+        Returns:
+            The objects that were found, with the error if one could not be deleted.
+        """
+        found: list[Leftover] = []
+        for base in CLEANED_UP:
+            for object_id, record in self._tables[base].items():
+                if record.deleted or record.creator != task_id or self._is_caller(record):
+                    continue
+                try:
+                    self._deleters[base](object_id)
+                    found.append(Leftover(object_id, None))
+                except OsalError as error:
+                    found.append(Leftover(object_id, error))
+        return found
 
     def _tasks_of(self, owner: Any) -> list[tuple[int, OsTask]]:
         return [

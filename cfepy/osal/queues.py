@@ -101,14 +101,20 @@ class QueueApi(Core):
             self._unregister(self._queues, record)
 
     def queue_delete(self, queue_id: int) -> None:
-        """Delete a queue and its messages; a waiting task gets OS_ERR_INVALID_ID (OS_QueueDelete).
+        """Delete a queue and its messages (OS_QueueDelete).
+
+        Tasks that wait for a message wait on, to their time limit or forever, as on Linux. In a safe mission they get
+        OS_ERR_INVALID_ID.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
         """
         record = self._queue(queue_id)
         self._unregister(self._queues, record)
-        record.queue.close(DELETED)
+        if self.config.safe:
+            record.queue.close(DELETED)
+        else:
+            record.queue.abandon()
 
     def queue_put(self, queue_id: int, data: bytes | bytearray | memoryview, flags: int = 0) -> None:
         """Add a message; never waits (OS_QueuePut).

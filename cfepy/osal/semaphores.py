@@ -102,11 +102,17 @@ class SemaphoreApi(Core):
         return self._timed_wait(self._bin_sems, sem_id, timeout_ms)
 
     def bin_sem_delete(self, sem_id: int) -> None:
-        """Delete a binary semaphore; waiting tasks get OS_ERR_INVALID_ID (OS_BinSemDelete).
+        """Delete a binary semaphore (OS_BinSemDelete).
+
+        The call waits until no task waits for the semaphore, as pthread_cond_destroy does; no task can give it any
+        more. In a safe mission it ends these waits with OS_ERR_INVALID_ID.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
         """
+        record = self._semaphore(self._bin_sems, sem_id)
+        if record.semaphore.waits and self._is_strict:
+            self._await_leaving(self._bin_sems, record, record.semaphore.waits)
         self._delete(self._bin_sems, sem_id)
 
     def bin_sem_get_id_by_name(self, name: str) -> int:
@@ -168,7 +174,10 @@ class SemaphoreApi(Core):
         return self._timed_wait(self._count_sems, sem_id, timeout_ms)
 
     def count_sem_delete(self, sem_id: int) -> None:
-        """Delete a counting semaphore; waiting tasks get OS_ERR_INVALID_ID (OS_CountSemDelete).
+        """Delete a counting semaphore (OS_CountSemDelete).
+
+        Tasks that wait for it wait on, to their time limit or forever, as on Linux. In a safe mission they get
+        OS_ERR_INVALID_ID.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -204,9 +213,14 @@ class SemaphoreApi(Core):
         record = table.lookup(sem_id)
         if record is None:
             raise table.missing(sem_id)
-        if record.semaphore.take(timeout_ns):
-            return True
-        if record.deleted:
+        try:
+            if record.semaphore.take(timeout_ns):
+                return True
+        except BaseException:
+            self._has_left(record, record.semaphore.waits)
+            raise
+        self._has_left(record, record.semaphore.waits)
+        if record.deleted and self.config.safe:
             raise table.gone(record)
         return False
 
@@ -218,7 +232,10 @@ class SemaphoreApi(Core):
     def _delete(self, table: OsObjectTable[OsSemaphore], sem_id: int) -> None:
         record = self._semaphore(table, sem_id)
         self._unregister(table, record)
-        self.kernel.wake_all(record.semaphore.waits, TIMEOUT)
+        if self.config.safe:
+            self.kernel.wake_all(record.semaphore.waits, TIMEOUT)
+        else:
+            record.semaphore.waits.orphan()
 
 
 def _info(record: OsSemaphore) -> SemaphoreInfo:

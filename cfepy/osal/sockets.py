@@ -227,7 +227,7 @@ class SocketApi(DatagramApi):
         def decided() -> bool:
             return server.has_room or not server.listening or record.deleted
 
-        if not self._await([record.endpoint, server], decided, timeout_ns):
+        if not self._await([record], [record.endpoint, server], decided, timeout_ns):
             return False
         self._check_alive(record)
         if not server.listening:
@@ -263,7 +263,7 @@ class SocketApi(DatagramApi):
         server = record.listener
         if not server.listening:
             raise record.error("is not listening")
-        if not self._await([server], lambda: server.readable or record.deleted, timeout_ns):
+        if not self._await([record], [server], lambda: server.readable or record.deleted, timeout_ns):
             return None
         self._check_alive(record)
         accepted = OsSocket(self._next_name(), record.domain, record.kind)
@@ -444,8 +444,9 @@ class SelectApi(SocketApi):
         record = self._stream(objid)
         if not wanted:
             return 0
-        endpoints = [record.endpoint] if isinstance(record, OsSocket) else []
-        if not self._await(endpoints, lambda: record.deleted or _state(record) & wanted != 0, timeout_ns):
+        sockets = [record] if isinstance(record, OsSocket) else []
+        endpoints = [each.endpoint for each in sockets]
+        if not self._await(sockets, endpoints, lambda: record.deleted or _state(record) & wanted != 0, timeout_ns):
             return None
         if record.deleted:
             raise self._streams.gone(record)
@@ -461,8 +462,8 @@ class SelectApi(SocketApi):
                 _can(record, OS_STREAM_STATE_WRITABLE) for record in writers
             )
 
-        endpoints = [record.endpoint for record in (*readers, *writers) if isinstance(record, OsSocket)]
-        if not self._await(endpoints, ready, timeout_ns):
+        sockets = [record for record in (*readers, *writers) if isinstance(record, OsSocket)]
+        if not self._await(sockets, [record.endpoint for record in sockets], ready, timeout_ns):
             return False
         self._keep(read_set, readers, OS_STREAM_STATE_READABLE)
         self._keep(write_set, writers, OS_STREAM_STATE_WRITABLE)

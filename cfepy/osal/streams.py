@@ -14,11 +14,14 @@ from cfepy.osal.limits import OS_PEND
 from cfepy.osal.network import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Place, Stream
 from cfepy.osal.sockaddr import ANY_HOST
 from cfepy.rtos import FOREVER, WaitList
-from cfepy.status import OS_ERR_INCORRECT_OBJ_TYPE, OS_ERROR, OsalError
+from cfepy.status import OS_ERR_INCORRECT_OBJ_TYPE, OS_ERR_OBJECT_IN_USE, OS_ERROR, OsalError
 from cfepy.units import NS_PER_MS
 
 OS_SocketType_DATAGRAM = 1
 OS_SocketType_STREAM = 2
+RELEASE_ATTEMPTS = 5
+RELEASE_STEP_NS = 10_000_000
+"""OSAL waits 10, 40, 90 and 160 ms for the release of an object (OS_WaitForStateChange_Impl)."""
 
 
 class OsSocket(OsStream):
@@ -34,9 +37,11 @@ class OsSocket(OsStream):
         mailbox: the receiver of a datagram socket.
         listener: the owner of the TCP port of a stream socket.
         dscp: the option IP_DSCP.
+        users_waiting: number of calls that wait at it. A task that is deleted in such a call counts forever, as the
+            reference count of NASA's OSAL does.
     """
 
-    __slots__ = ("bound", "connected", "domain", "dscp", "endpoint", "kind", "listener", "mailbox")
+    __slots__ = ("bound", "connected", "domain", "dscp", "endpoint", "kind", "listener", "mailbox", "users_waiting")
 
     def __init__(self, name: str, domain: int, kind: int) -> None:
         super().__init__(name)
@@ -47,6 +52,7 @@ class OsSocket(OsStream):
         self.endpoint: Endpoint = self.mailbox if kind == OS_SocketType_DATAGRAM else Endpoint()
         self.bound = self.connected = False
         self.dscp = 0
+        self.users_waiting = 0
 
     def error(self, what: str) -> OsalError:
         """Return the error for a call that the host's network code would refuse."""
@@ -94,12 +100,17 @@ class StreamApi(ClockApi, FileApi):
         return self._timed_write(filedes, data, self._ns_until(abstime))
 
     def close(self, filedes: int) -> None:
-        """Close a file or a socket (OS_close); a task waiting at the socket gets OS_ERR_INVALID_ID.
+        """Close a file or a socket (OS_close).
+
+        While a task waits at the socket, the call tries for 300 ms, and then fails. In a safe mission that task gets
+        OS_ERR_INVALID_ID.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_OBJECT_IN_USE.
         """
         stream = self._stream(filedes)
+        if isinstance(stream, OsSocket) and stream.users_waiting and self._is_strict:
+            self._await_release(stream)
         self._unregister(self._streams, stream)
         if isinstance(stream, OsSocket):
             self._unplug(stream)
@@ -131,7 +142,7 @@ class StreamApi(ClockApi, FileApi):
         stream = record.endpoint
         if not isinstance(stream, Stream):
             raise record.error("is not connected")
-        if not self._await([stream], lambda: record.deleted or stream.writable, timeout_ns):
+        if not self._await([record], [stream], lambda: record.deleted or stream.writable, timeout_ns):
             return None
         self._check_alive(record)
         count = stream.write(bytes(data))
@@ -162,6 +173,22 @@ class StreamApi(ClockApi, FileApi):
             raise record.error(f"cannot be bound to {place.host}:{place.port}")
         return taken
 
+    def _await_release(self, record: OsSocket) -> None:
+        """Wait until no call waits at a socket, which has no id meanwhile (OS_ObjectIdConvertToken).
+
+        Raises:
+            OsalError: OS_ERR_OBJECT_IN_USE after 300 ms.
+        """
+        del self._streams.records[record.id]
+        try:
+            for attempt in range(1, RELEASE_ATTEMPTS):
+                self.kernel.delay(attempt * attempt * RELEASE_STEP_NS)
+                if not record.users_waiting:
+                    return
+        finally:
+            self._streams.records[record.id] = record
+        raise OsalError(OS_ERR_OBJECT_IN_USE, f"a task waits at socket {record.name}")
+
     def _unplug(self, record: OsSocket) -> None:
         """Take a closed socket off the network; a waiting task finds it deleted."""
         self.network.datagrams.release(record.mailbox)
@@ -175,13 +202,15 @@ class StreamApi(ClockApi, FileApi):
 
     def _wait_readable(self, record: OsSocket, timeout_ns: int) -> bool:
         endpoint = record.endpoint
-        if not self._await([endpoint], lambda: record.deleted or endpoint.readable, timeout_ns):
+        if not self._await([record], [endpoint], lambda: record.deleted or endpoint.readable, timeout_ns):
             return False
         self._check_alive(record)
         return True
 
-    def _await(self, endpoints: Sequence[Endpoint], ready: Callable[[], bool], timeout_ns: int) -> bool:
-        """Wait until `ready` returns true; it is called again after each change of an endpoint.
+    def _await(
+        self, records: Sequence[OsSocket], endpoints: Sequence[Endpoint], ready: Callable[[], bool], timeout_ns: int
+    ) -> bool:
+        """Wait at sockets until `ready` returns true; it is called again after each change of an endpoint.
 
         Returns:
             False after the timeout.
@@ -191,15 +220,21 @@ class StreamApi(ClockApi, FileApi):
         waits = WaitList("socket")
         for endpoint in endpoints:
             endpoint.watch(kernel, waits)
+        for record in records:
+            record.users_waiting += 1
+        is_ready = True
         try:
             while not ready():
                 if timeout_ns != FOREVER and kernel.now >= until:
-                    return False
+                    is_ready = False
+                    break
                 kernel.wait_on(waits, FOREVER if timeout_ns == FOREVER else until - kernel.now)
         finally:
             for endpoint in endpoints:
                 endpoint.unwatch(kernel, waits)
-        return True
+        for record in records:
+            record.users_waiting -= 1
+        return is_ready
 
     def _check_alive(self, record: OsSocket) -> None:
         if record.deleted:

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from cfepy.ids import OS_TASK_BASE
 from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup, check_size
 from cfepy.osal.limits import OS_EVENT_TASK_STARTUP, OS_MAX_TASK_PRIORITY
-from cfepy.rtos import Task
+from cfepy.rtos import Task, WaitList
 from cfepy.status import (
     OS_ERR_INVALID_ARGUMENT,
     OS_ERR_INVALID_PRIORITY,
@@ -29,15 +29,6 @@ class TaskProperties(NamedTuple):
     creator: int
     stack_size: int
     priority: int
-
-
-class Nobody:
-    """The owner of tasks that belong to no application; its only instance is `NOBODY`."""
-
-    name = "system"  # its name in the memory accounting and in messages
-
-
-NOBODY = Nobody()
 
 
 class OsTask(OsObject):
@@ -109,7 +100,9 @@ class TaskApi(Core):
     def task_delete(self, task_id: int) -> None:
         """End a task and call its delete handler; objects that it created stay (OS_TaskDelete).
 
-        The call does not return to a task that deletes itself.
+        The call does not return to a task that deletes itself. While the task waits for a mutex or a readers-writer
+        lock, the caller waits: the task ends in its first wait of another kind after that, as a canceled thread of
+        Linux does. In a safe mission it ends at once.
 
         Raises:
             OsalError: OS_ERR_INVALID_ID.
@@ -117,11 +110,28 @@ class TaskApi(Core):
         record = self._task(task_id)
         task = record.task
         if task is not None and task is not self.kernel.current:
+            if self._is_strict and task.waits is not None and not task.waits.is_cancelable:
+                self._join(task)
             self.kernel.kill(task)
         self._forget(record)
         self._call_delete_handler(record)
         if task is self.kernel.current:
             self.kernel.exit_task()
+
+    def _join(self, task: Task) -> None:
+        """Wait until a task that waits for a lock has got it, and waits for something else or has ended."""
+        kernel = self.kernel
+        while not task.done:
+            if task.waits is not None and not task.waits.is_cancelable:
+                if task.joiners is None:
+                    task.joiners = WaitList(f"the end of task {task.name}")
+                    task.joiners.holders = lambda: (task,)
+                    task.joiners.is_cancelable = False
+                kernel.wait_on(task.joiners)
+            elif kernel.is_waiting(task):
+                return
+            else:
+                kernel.delay(1)  # all tasks that are ready run before time passes
 
     def task_exit(self) -> None:
         """End the calling task; its delete handler is not called (OS_TaskExit)."""

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from cfepy.ids import OS_TIMEBASE_BASE, OS_TIMECB_BASE
-from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup
+from cfepy.osal.core import NOBODY, Core, OsObject, OsObjectTable, Setup
 from cfepy.rtos import FOREVER, Kernel, Task, WaitList
 from cfepy.status import OS_ERR_OBJECT_IN_USE, OS_INVALID_POINTER, OS_TIMER_ERR_INVALID_ARGS, OsalError
 from cfepy.units import NS_PER_MS, NS_PER_US
@@ -37,14 +37,13 @@ class TimeBaseInfo(NamedTuple):
 class OsTimer(OsObject):
     """The record of a timer; see `cfepy.osal.timers`."""
 
-    __slots__ = ("backlog_resets", "callback", "dedicated", "due", "interval_us", "start_us", "timebase")
+    __slots__ = ("backlog_resets", "callback", "dedicated", "due", "interval_us", "timebase")
 
     def __init__(self, name: str, timebase: OsTimeBase, callback: Callable[[int], object], dedicated: bool) -> None:
         super().__init__(name)
         self.timebase = timebase
         self.callback = callback
         self.dedicated = dedicated
-        self.start_us = 0
         self.interval_us = 0
         self.due: int | None = None  # free run time of the time base at which it expires
         self.backlog_resets = 0
@@ -276,12 +275,15 @@ class TimeBaseApi(Core):
                 record.run_by_sync(record.sync)
             else:
                 record.run_by_clock()
+        except Exception:
+            task.owner = NOBODY  # a sync function whose application may have ended: ES resets the processor
+            raise
         finally:
             self._task_ids.pop(task, None)
 
 
 class TimerInfo(NamedTuple):
-    """The result of `timer_get_info` (OS_timer_prop_t); times in us."""
+    """The result of `timer_get_info` (OS_timer_prop_t); times in us. OSAL leaves `start_time` 0."""
 
     name: str
     creator: int
@@ -363,7 +365,7 @@ class TimerApi(TimeBaseApi):
             raise OsalError(OS_TIMER_ERR_INVALID_ARGS, f"invalid timer: {start_time} us, then every {interval_time} us")
         self._refuse_in_callback("OS_TimerSet")
         timer = self._timer(timer_id)
-        timer.start_us, timer.interval_us = start_time, interval_time
+        timer.interval_us = interval_time
         timer.due = timer.timebase.freerun() + (start_time or interval_time)
         if timer.dedicated:
             self.time_base_set(timer.timebase.id, start_time, interval_time)
@@ -401,7 +403,7 @@ class TimerApi(TimeBaseApi):
         self._refuse_in_callback("OS_TimerGetInfo")
         timer = self._timer(timer_id)
         accuracy = 0 if timer.timebase.sync is not None else self._accuracy_us
-        return TimerInfo(timer.name, timer.creator, timer.start_us, timer.interval_us, accuracy)
+        return TimerInfo(timer.name, timer.creator, 0, timer.interval_us, accuracy)
 
     def has_timer(self, owner: object) -> bool:
         """Return whether an application has a timer, whose callback runs in a task of OSAL."""

@@ -48,7 +48,8 @@ def problems_of(mission: Mission, endless: EndlessWaits, outcome: Outcome | None
         endless: its waits that never end, now or at the end of the run's time.
         outcome: result of the run's script.
     """
-    found = [*_startup(mission), *_stall(mission), *_deaths(mission), *_bad_ends(mission), *_events(mission, outcome)]
+    found = [*_startup(mission), *_stall(mission), *_abortion(mission), *_deaths(mission), *_bad_ends(mission)]
+    found += _events(mission, outcome)
     found += [*_resets(mission), *_invariants(mission), *_deadlines(mission), *_of_compiled_code(mission)]
     found += [*map(_circle, endless.circles), *_printed(mission)]
     found += _alone(endless.alone, _failures(found))
@@ -118,6 +119,17 @@ def _stall(mission: Mission) -> Iterator[RunProblem]:
         text, detail = f"{stall.task} does not give up the CPU{where}", "\n".join(stall.lines)
         failure = Failure(FailureKind.STALLED, stall.app, text, stall.at_ns, detail, stall.task)
         yield RunProblem(str(stall), stall.at_ns, (failure,))
+
+
+def _abortion(mission: Mission) -> Iterator[RunProblem]:
+    """Yield the end of the flight software by abort(), which no task of NASA's process survives."""
+    abortion = mission.kernel.abortion
+    if abortion is not None:
+        task, at = abortion.task, instant_text(abortion.at_ns)
+        app = "" if task.owner is None else task.owner.name
+        failure = Failure(FailureKind.DIED, app, abortion.text, abortion.at_ns, task=task.name)
+        text = f"the flight software aborts at {at}, as NASA's process on Linux does: {abortion.text}"
+        yield RunProblem(text, abortion.at_ns, (failure,))
 
 
 def _deaths(mission: Mission) -> Iterator[RunProblem]:

@@ -42,6 +42,8 @@ class Kernel(Scheduler):
         is_running: whether the host is running or ending tasks.
         is_collecting: whether the host itself runs finalizers.
         broken: why the run was broken off; None if it was not.
+        abortion: why the flight software has aborted, after which no task runs; None if it has not.
+        abortion: why the flight software has aborted; no task runs after that. None if it has not.
         is_lost: whether the running task will not return the CPU and the host is about to continue without it.
         guard: lock for another thread that reads these attributes and acts on them.
         frames_wanted: whether a tool reads the Python frames of tasks, so that other code must show a frame too.
@@ -67,7 +69,6 @@ class Kernel(Scheduler):
         self._begun = False
         self._collect_at = COLLECT_NS
         self.is_running = self.is_collecting = self.is_lost = False
-        self.broken: BaseException | None = None
         self.guard = threading.Lock()
         self._gave_up = False
         self.frames_wanted = False
@@ -209,8 +210,7 @@ class Kernel(Scheduler):
             return self.host
         task.done = True
         task.entry = None
-        for mutex in task.held[:]:
-            mutex.abandon(task)
+        self._leave_held(task)
         self.tasks.remove(task)
         following = task.killer
         if following is None:
@@ -255,6 +255,9 @@ class Kernel(Scheduler):
         self._check_whole()
         end = ENDLESS if until_ns is None else until_ns
         if self.passes(end):
+            return
+        if self.abortion is not None:
+            self.now = max(self.now, until_ns or 0)
             return
         self._stopped = self._exhausted = False
         if not self._begun:
@@ -385,15 +388,24 @@ class Kernel(Scheduler):
         task.done = True
         self.tasks.remove(task)
         self.stuck.append(task)
-        for mutex in task.held[:]:
-            mutex.abandon(task)
+        self._leave_held(task)
+
+    @contextmanager
+    def unwinding(self) -> Iterator[None]:
+        """Let tasks end as at the end of a computer: their mutexes stay locked for no other task."""
+        before, self._is_unwinding = self._is_unwinding, True
+        try:
+            yield
+        finally:
+            self._is_unwinding = before
 
     def unwind(self) -> None:
         """End every task, the youngest first; the clock and the trace continue. The host calls this when it resets a
         computer.
         """
-        while self.tasks:
-            self.kill(self.tasks[-1])
+        with self.unwinding():
+            while self.tasks:
+                self.kill(self.tasks[-1])
         self.ready.clear()
         self.timers.clear()
         self._last = None

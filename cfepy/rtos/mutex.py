@@ -15,23 +15,28 @@ class Mutex:
     Args:
         kernel: the kernel of the tasks.
         name: name for reports.
+        stays_locked: whether it stays locked if its owner ends, as a mutex of Linux's threads does; otherwise the first
+            waiter gets it. A task that waits for a mutex that stays locked cannot be ended by another one either.
     """
 
-    __slots__ = ("count", "kernel", "name", "owner", "waits")
+    __slots__ = ("count", "kernel", "name", "owner", "stays_locked", "waits")
 
-    def __init__(self, kernel: Kernel, name: str = "mutex") -> None:
+    def __init__(self, kernel: Kernel, name: str = "mutex", stays_locked: bool = False) -> None:
         self.kernel = kernel
         self.name = name
+        self.stays_locked = stays_locked
         self.owner: Task | None = None
         self.count = 0
         self.waits = WaitList(f"mutex {name}")
+        self.waits.is_cancelable = not stays_locked
         self.waits.holders = lambda: () if self.owner is None else (self.owner,)
 
     def take(self) -> None:
         """Wait until the mutex is free or belongs to the caller.
 
         Raises:
-            DeadlockError: if the owner waits, directly or through others, for a mutex of the caller.
+            DeadlockError: if the owner waits, directly or through others, for a mutex of the caller. A mutex that stays
+                locked does not tell: its tasks wait forever.
         """
         kernel = self.kernel
         task = kernel.current
@@ -76,17 +81,19 @@ class Mutex:
             heir.mutex = None
             kernel.enqueue(heir, None)
             kernel.inherit(heir)
+            if heir.joiners is not None:
+                kernel.call_joiners(heir)
         kernel.inherit(owner)
 
     def _wait(self, task: Task) -> None:
         kernel = self.kernel
-        circle = self._circle(task)
+        circle = () if self.stays_locked else self._circle(task)
         if circle:
             text = f"{task.name} takes mutex {self.name}, whose owner waits for {task.name}:\n{kernel.waiting()}"
             raise DeadlockError(text, circle)
         task.mutex = self
         owner, priority = self.owner, task.priority
-        while owner is not None and owner.priority > priority:
+        while owner is not None and owner.priority > priority and not owner.done:
             kernel.reprioritize(owner, priority)
             owner = owner.mutex.owner if owner.mutex is not None else None
         try:

@@ -83,3 +83,8 @@ class Queue:
         """Close the queue: every waiting task gets `value`."""
         self.items.clear()
         self.kernel.wake_all(self.waits, value)
+
+    def abandon(self) -> None:
+        """Close the queue, and leave its waiting tasks where they are."""
+        self.items.clear()
+        self.waits.orphan()

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
 from operator import index
-from typing import Any, SupportsIndex
+from typing import Any, NamedTuple, SupportsIndex
 
 from cfepy import trace as tr
 from cfepy.interpreter.compiled import mypyc_attr
@@ -38,6 +38,20 @@ def whole(time_ns: Any) -> int:
         return int(index(time_ns))
     except TypeError:
         raise TypeError(f"time must be an int, not {time_ns!r}") from None
+
+
+class Abortion(NamedTuple):
+    """The end of the whole flight software by abort().
+
+    Attributes:
+        task: the task that caused it.
+        text: the cause.
+        at_ns: virtual time in ns.
+    """
+
+    task: Task
+    text: str
+    at_ns: int
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -66,6 +80,9 @@ class Scheduler:
         self._slice_end = 0
         self._last: Task | None = None  # the task that gave the CPU to the host when the run paused
         self._exhausted = False
+        self._is_unwinding = False
+        self.broken: BaseException | None = None
+        self.abortion: Abortion | None = None
 
     # -- waiting ---------------------------------------------------------------------------------------------------
 
@@ -312,6 +329,30 @@ class Scheduler:
             self._push_front(task)
             self._switch(task, following)
 
+    def call_joiners(self, task: Task) -> None:
+        """Make the tasks ready that wait until a task can be deleted, without running them yet."""
+        joiners = task.joiners
+        if joiners is not None:
+            while joiners:
+                self.enqueue(joiners.pop(0), None)
+
+    def _leave_held(self, task: Task) -> None:
+        """Free the mutexes of a task that ends, except those that stay locked, as the mutexes of Linux's threads do.
+
+        If a task waits for one of those at this time, the C library of NASA's process calls abort().
+        """
+        for mutex in task.held[:]:
+            if not mutex.stays_locked or self._is_unwinding:
+                mutex.abandon(task)
+            elif mutex.waits and self.abortion is None:
+                text = f"{task.name} ended while it held mutex {mutex.name}, for which {mutex.waits[0].name} waits"
+                self.abortion = Abortion(task, f"{text} (assertion in pthread_mutex_lock)", self.now)
+                self.stop()
+
+    def stop(self) -> None:
+        """End the run: `run` returns when the current task reaches its next wait, or at once if the host calls this."""
+        raise NotImplementedError
+
     def inherit(self, task: Task) -> None:
         """Recompute a task's priority: its own, or the priority of the most urgent task that waits for one of its
         mutexes.
@@ -319,7 +360,7 @@ class Scheduler:
         A change can also change the priority of the owner of the mutex that the task itself waits for, and so on.
         """
         heir: Task | None = task
-        while heir is not None:
+        while heir is not None and not heir.done:
             priority = heir.base_priority
             for mutex in heir.held:
                 if mutex.waits and mutex.waits[0].priority < priority:
@@ -450,8 +491,7 @@ class Scheduler:
         task.done = True
         self.tasks.remove(task)
         self.stuck.append(task)
-        for mutex in task.held[:]:
-            mutex.abandon(task)
+        self._leave_held(task)
         self.current = killer
         killer.resume()
         while task.park is not None:

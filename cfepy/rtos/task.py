@@ -52,6 +52,7 @@ class Task:
         "held",
         "ident",
         "interruption",
+        "joiners",
         "killer",
         "mark",
         "mutex",
@@ -90,6 +91,7 @@ class Task:
         self.awaits: WaitList | None = None  # the list in which it waits repeatedly, each time with a time limit
         self.since = 0  # virtual ns at which its last wait without a time limit began
         self.mutex: Mutex | None = None  # the mutex it waits for
+        self.joiners: WaitList | None = None  # the tasks that wait until it can be deleted
         self.held: list[Mutex] = []
         self.started = self.done = self.dying = False
         self.killer: Task | None = None

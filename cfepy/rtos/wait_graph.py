@@ -1,8 +1,8 @@
 """The wait-for graph: which tasks wait for which, which waits can never end, and a report of all waiting tasks.
 
 A waiting task has either holders, all of which must let go first (the owner of a mutex, the readers of a lock), or
-wakers, any one of which can wake it. A wait never ends if one of its holders has ended or waits forever itself, or if
-no task is left that could wake it. A task whose wait has a time limit continues.
+wakers, any one of which can wake it. A wait never ends if one of its holders has ended or waits forever itself, if no
+task is left that could wake it, or if its object was deleted. A task whose wait has a time limit continues.
 """
 
 from __future__ import annotations
@@ -51,11 +51,14 @@ def endless(tasks: Sequence[Task], could_end: Wakers = _by_holders_only) -> list
         tasks: all tasks that have not ended.
         could_end: called for each task that waits for an object without holders.
     """
-    holders = {task: waits.holders() for task in tasks if (waits := awaited(task)) is not None}
+    awaits = {task: waits for task in tasks if (waits := awaited(task)) is not None}
+    holders = {task: waits.holders() for task, waits in awaits.items()}
     lost = dict.fromkeys(holders)
     free: Task | None = None
     while True:  # the set shrinks until each task in it waits for another one in it
         for free in lost:
+            if awaits[free].is_orphaned:
+                continue
             if not _blocking(holders[free], lost) and (holders[free] or could_end(free, lost)):
                 break
         else:

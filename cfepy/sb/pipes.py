@@ -122,7 +122,10 @@ class PipeServices(BufferServices):
         self.ports.queues.pipe_queue_delete(pipe.queue_id)
         pipe.heed(NOBODY_HEARD)
         pipe.depth = 0  # a transmission in progress then finds it full, and deleted
-        pipe.close(None)
+        if self.config.safe:
+            pipe.close(None)
+        else:
+            pipe.abandon()
 
     def _report_deleted(self, pipe: Pipe, owner: str) -> None:
         self.report(ev.PIPE_DELETED_EID, ev.DEBUG, f"Pipe Deleted:id {pipe.pipe_id},owner {owner}")

@@ -157,6 +157,7 @@ def mission_schema() -> Schema:
         "name": TEXT,
         "board": TEXT,
         "cfe_version": one_of(RELEASES),
+        "safe": FLAG,
         "epoch": DATE,
         "compiled": record(mission_file.COMPILED_FIELDS, dict.fromkeys(mission_file.COMPILED_FIELDS, FLAG)),
         "cpp_nodes": _cpp_nodes(),

@@ -72,7 +72,7 @@ LINUX = {
 
 @pytest.mark.parametrize("board", [None, "rx64m"])
 def test_application_that_exhausts_every_resource_gets_nasas_statuses(tmp_path: Path, board: str | None) -> None:
-    folder = write_mission(tmp_path, STARTUP, taker=TAKER)
+    folder = write_mission(tmp_path, STARTUP, taker=TAKER, mission_yaml="safe: true\n")
     with Mission(folder, console=Console(quiet=True), board=board) as mission:
         mission.run_for(3)
         took = [line for line in mission.console.lines if line.startswith("took ")]

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.mission.loader import NODE_SYMBOL, BuiltInApps, ModuleLoader
+from cfepy.es import NODE_SYMBOL
+from cfepy.mission.loader import BuiltInApps, ModuleLoader
 from cfepy.mission.python_code import Code, NodeScripts, PythonLoader, RemovedCodeError, python_finders
 from cfepy.nodes import AppModules, make_app_universe
 from cfepy.osal import FileSystem

@@ -99,13 +99,13 @@ def test_version(bench: Bench) -> None:
     assert bench.os.get_build_number() == 0
 
 
-def test_an_application_leaves_nothing_behind(bench: Bench) -> None:
+def test_an_application_leaves_nothing_behind_in_a_safe_mission(safe_bench: Bench) -> None:
     app, other = App("APP"), App("OTHER")
-    os = bench.os
+    os = safe_bench.os
     master = os.time_base_create("cFS-Master")
 
     def make_everything() -> None:
-        name = bench.kernel.current.name
+        name = safe_bench.kernel.current.name
         os.queue_create(name, 1, 1)
         os.bin_sem_create(name, 0)
         os.count_sem_create(name, 0)
@@ -120,12 +120,12 @@ def test_an_application_leaves_nothing_behind(bench: Bench) -> None:
         os.task_delay(10_000)
 
     def main() -> None:
-        bench.task(make_everything, name="CHILD")
+        safe_bench.task(make_everything, name="CHILD")
         make_everything()
 
-    bench.task(main, name="APP", owner=app)
-    bench.task(make_everything, name="OTHER", owner=other)
-    bench.kernel.run(until_ns=1)
+    safe_bench.task(main, name="APP", owner=app)
+    safe_bench.task(make_everything, name="OTHER", owner=other)
+    safe_bench.kernel.run(until_ns=1)
     assert os.delete_objects_of(app) == []
     left: list[str] = []
     os.for_each_object(0, lambda object_id, _: left.append(os.get_resource_name(object_id)))
@@ -140,7 +140,7 @@ def test_an_application_leaves_nothing_behind(bench: Bench) -> None:
         "",
     }
     assert (left.count("/ram/OTHER"), left.count("/ram")) == (1, 1)  # of others, open
-    assert {task.name for task in bench.kernel.tasks} == {"OTHER", "OTHER_OWN", "cFS-Master"}
+    assert {task.name for task in safe_bench.kernel.tasks} == {"OTHER", "OTHER_OWN", "cFS-Master"}
     assert os.files.exists("/ram/APP")
 
 

@@ -101,15 +101,15 @@ def test_pending_reader_gets_a_later_message(bench: Bench) -> None:
     assert bench.run(lambda: (bench.os.queue_get(queue_id, OS_PEND), bench.kernel.now)) == (b"late", 5000 * MS)
 
 
-def test_deleted_queue_wakes_its_readers_with_an_error(bench: Bench) -> None:
-    queue_id = bench.os.queue_create("Q", 1, 4)
+def test_deleted_queue_wakes_its_readers_with_an_error_in_a_safe_mission(safe_bench: Bench) -> None:
+    queue_id = safe_bench.os.queue_create("Q", 1, 4)
 
     def deleter() -> None:
-        bench.os.task_delay(5)
-        bench.os.queue_delete(queue_id)
+        safe_bench.os.task_delay(5)
+        safe_bench.os.queue_delete(queue_id)
 
-    bench.task(deleter)
-    assert bench.run(lambda: status_of(bench.os.queue_get, queue_id, OS_PEND)) == OS_ERR_INVALID_ID
+    safe_bench.task(deleter)
+    assert safe_bench.run(lambda: status_of(safe_bench.os.queue_get, queue_id, OS_PEND)) == OS_ERR_INVALID_ID
 
 
 def test_info_names_the_creator(bench: Bench) -> None:

@@ -107,18 +107,19 @@ def test_files_are_always_ready(bench: Bench) -> None:
     assert members(bench, readers, file_id, silent) == [True, False]
 
 
-def test_socket_closed_during_select_is_reported(bench: Bench) -> None:
-    first, second = bound(bench, 5000), bound(bench, 5001)
+def test_socket_closed_during_select_is_reported_in_a_safe_mission(safe_bench: Bench) -> None:
+    first, second = bound(safe_bench, 5000), bound(safe_bench, 5001)
 
     def close() -> None:
-        bench.os.task_delay(2)
-        bench.os.close(first)
+        safe_bench.os.task_delay(2)
+        safe_bench.os.close(first)
 
     def use() -> tuple[object, int]:
-        until = bench.os.time_from_relative_milliseconds(9)
-        return bench.os.select_multiple_abs(fd_set(bench, first, second), None, until), bench.kernel.now // MS
+        until = safe_bench.os.time_from_relative_milliseconds(9)
+        ready = safe_bench.os.select_multiple_abs(fd_set(safe_bench, first, second), None, until)
+        return ready, safe_bench.kernel.now // MS
 
-    bench.task(close)
-    bench.task(lambda: bench.log.append(status_of(bench.os.select_single, first, READ)), name="single")
-    assert bench.run(use) == (False, 9)
-    assert bench.log == [OS_ERR_INVALID_ID]
+    safe_bench.task(close)
+    safe_bench.task(lambda: safe_bench.log.append(status_of(safe_bench.os.select_single, first, READ)), name="single")
+    assert safe_bench.run(use) == (False, 9)
+    assert safe_bench.log == [OS_ERR_INVALID_ID]

@@ -61,11 +61,12 @@ def test_take_waits_for_a_give(bench: Bench, kind: str) -> None:
 
 
 @pytest.mark.parametrize("kind", ["bin", "count"])
-def test_deleted_semaphore_wakes_its_waiters_with_an_error(bench: Bench, kind: str) -> None:
-    sem_id = getattr(bench.os, f"{kind}_sem_create")("S", 0)
-    bench.task(lambda: (bench.os.task_delay(1), getattr(bench.os, f"{kind}_sem_delete")(sem_id)), name="D")
-    take = getattr(bench.os, f"{kind}_sem_take")
-    assert bench.run(lambda: status_of(take, sem_id)) == OS_ERR_INVALID_ID
+def test_deleted_semaphore_wakes_its_waiters_with_an_error_in_a_safe_mission(safe_bench: Bench, kind: str) -> None:
+    os = safe_bench.os
+    sem_id = getattr(os, f"{kind}_sem_create")("S", 0)
+    safe_bench.task(lambda: (os.task_delay(1), getattr(os, f"{kind}_sem_delete")(sem_id)), name="D")
+    take = getattr(os, f"{kind}_sem_take")
+    assert safe_bench.run(lambda: status_of(take, sem_id)) == OS_ERR_INVALID_ID
     assert status_of(take, sem_id) == OS_ERR_INVALID_ID
 
 
@@ -167,10 +168,11 @@ def test_a_wait_without_the_lock_is_an_error(bench: Bench) -> None:
     assert status_of(bench.os.cond_var_unlock, var_id) == OS_ERROR
 
 
-def test_deleted_condition_variable_wakes_its_waiters_with_an_error(bench: Bench) -> None:
-    var_id = bench.os.cond_var_create("C")
-    bench.task(lambda: (bench.os.task_delay(1), bench.os.cond_var_delete(var_id)), name="D")
-    assert bench.run(lambda: (bench.os.cond_var_lock(var_id), status_of(bench.os.cond_var_wait, var_id))[1]) == (
+def test_deleted_condition_variable_wakes_its_waiters_with_an_error_in_a_safe_mission(safe_bench: Bench) -> None:
+    os = safe_bench.os
+    var_id = os.cond_var_create("C")
+    safe_bench.task(lambda: (os.task_delay(1), os.cond_var_delete(var_id)), name="D")
+    assert safe_bench.run(lambda: (os.cond_var_lock(var_id), status_of(os.cond_var_wait, var_id))[1]) == (
         OS_ERR_INVALID_ID
     )
 

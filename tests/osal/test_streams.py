@@ -126,19 +126,21 @@ def test_ten_connections_wait_to_be_accepted(bench: Bench) -> None:
     assert bench.run(use) == [True] * 10 + [False, True]
 
 
-def test_close_of_a_socket_that_waits_to_connect_is_an_error(bench: Bench) -> None:
-    bound(bench, 9997, STREAM)
-    clients = [bench.os.socket_open(INET, STREAM) for _ in range(11)]
+def test_close_of_a_socket_that_waits_to_connect_is_an_error_in_a_safe_mission(safe_bench: Bench) -> None:
+    bound(safe_bench, 9997, STREAM)
+    clients = [safe_bench.os.socket_open(INET, STREAM) for _ in range(11)]
     for client in clients[:10]:
-        bench.os.socket_connect(client, address(9997))
+        safe_bench.os.socket_connect(client, address(9997))
 
     def close() -> None:
-        bench.os.task_delay(4)
-        bench.os.close(clients[10])
+        safe_bench.os.task_delay(4)
+        safe_bench.os.close(clients[10])
 
-    bench.task(lambda: bench.log.append(status_of(bench.os.socket_connect, clients[10], address(9997))), name="LATE")
-    bench.run(close)
-    assert bench.log == [OS_ERR_INVALID_ID]
+    safe_bench.task(
+        lambda: safe_bench.log.append(status_of(safe_bench.os.socket_connect, clients[10], address(9997))), name="LATE"
+    )
+    safe_bench.run(close)
+    assert safe_bench.log == [OS_ERR_INVALID_ID]
 
 
 def test_wrong_states_of_streams(bench: Bench) -> None:

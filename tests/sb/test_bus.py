@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import pytest
 
@@ -220,20 +221,25 @@ def test_invalid_receives_are_refused(bench: Bench) -> None:
     assert bench.bus.counters.msg_receive_error == 2
 
 
-def test_reader_of_a_deleted_pipe_gets_an_error(bench: Bench) -> None:
+@pytest.mark.parametrize("safe", [False, True])
+def test_reader_of_a_deleted_pipe_waits_on_or_gets_an_error_in_a_safe_mission(safe: bool) -> None:
+    bench = Bench(safe=safe)
     pipe = subscriber(bench, "A")
-    caught: list[int] = []
+    ended: list[object] = []
 
-    def reader() -> None:
+    def reader(timeout_ms: int) -> None:
         try:
-            bench.bus.receive_buffer(pipe, PEND_FOREVER)
+            ended.append((bench.bus.receive_buffer(pipe, timeout_ms), bench.kernel.now))
         except CfeError as error:
-            caught.append(error.status)
+            ended.append(error.status)
 
-    bench.spawn("A", reader)
+    for timeout_ms in (PEND_FOREVER, 51):
+        bench.spawn("A", partial(reader, timeout_ms))
     bench.kernel.run(0)
     bench.do("A", lambda: bench.bus.delete_pipe(pipe))
-    assert caught == [CFE_SB_PIPE_RD_ERR]
+    bench.kernel.run(10**9)
+    assert ended == ([CFE_SB_PIPE_RD_ERR] * 2 if safe else [(None, 50_000_000)])
+    bench.kernel.shutdown()
 
 
 def test_pipe_deleted_during_a_transmission_is_a_write_error(bench: Bench) -> None:

@@ -6,13 +6,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from cfepy.es import CFE_LIB, StartupEntry
+from cfepy.es import CFE_LIB, NODE_SYMBOL, StartupEntry
 from cfepy.extra.c.abi import AbiProfile, abi_profile
 from cfepy.extra.c.api import function_names
 from cfepy.extra.c.elf import ElfError, read_shared_object
 from cfepy.extra.c.ground_check import ground_differences
 from cfepy.extra.c.linking import wanted_names
-from cfepy.mission import NODE_SYMBOL, MissionSections, find_compiled
+from cfepy.mission import MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES

@@ -10,8 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from cfepy.es import NODE_SYMBOL
 from cfepy.ground.survey import rows_of
-from cfepy.mission import CORE_APPS, NODE_SYMBOL, Mission
+from cfepy.mission import CORE_APPS, Mission
 from cfepy.units import NS_PER_S
 
 APP, NODE, CORE = "app", "node", "core"

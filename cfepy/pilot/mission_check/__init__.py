@@ -11,10 +11,9 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 
 from cfepy.config.versions import RELEASES
-from cfepy.es import CFE_APP, StartupEntry, entries
+from cfepy.es import CFE_APP, NODE_SYMBOL, StartupEntry, entries
 from cfepy.mission import (
     LAUNCH_FILES,
-    NODE_SYMBOL,
     WITHOUT_LAUNCH,
     CppNodesConfig,
     MissionSections,

@@ -7,16 +7,9 @@ from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from cfepy.config.platform import PlatformConfig
-from cfepy.es import CFE_APP, CFE_LIB, StartupEntry
+from cfepy.es import CFE_APP, CFE_LIB, NODE_SYMBOL, StartupEntry
 from cfepy.ground import dictionary_of
-from cfepy.mission import (
-    CORE_APPS,
-    LOCK_FILE,
-    NODE_SYMBOL,
-    MissionSections,
-    read_lock,
-    read_mission,
-)
+from cfepy.mission import CORE_APPS, LOCK_FILE, MissionSections, read_lock, read_mission
 from cfepy.monitors import Demands
 from cfepy.nodes import RosConfig
 from cfepy.pilot.mission_check.problem import MissionProblem, problems_of, with_field

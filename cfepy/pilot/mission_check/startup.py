@@ -6,8 +6,8 @@ import ast
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from cfepy.es import CFE_APP, StartupEntry, startup_script
-from cfepy.mission import CORE_APPS, NODE_SYMBOL, find_code, find_compiled, find_node
+from cfepy.es import CFE_APP, NODE_SYMBOL, StartupEntry, startup_script
+from cfepy.mission import CORE_APPS, find_code, find_compiled, find_node
 from cfepy.mission import app_sources as sources
 from cfepy.osal import OS_MAX_FILE_NAME
 from cfepy.pilot.mission_check.problem import MissionProblem
