@@ -66,7 +66,11 @@ COUNTED_BY_ID = frozenset(
 """Limits on objects with resource ids; ids distinguish at most 65534 objects of a kind."""
 
 
-NOT_LIMITS = frozenset({"cfe_version", "given", "safe"})
+REAL_TIME, FAIR = "real-time", "fair"
+SCHEDULINGS = (REAL_TIME, FAIR)
+"""The ways to schedule tasks: by priority, or in turns as Linux does for an ordinary user."""
+
+NOT_LIMITS = frozenset({"cfe_version", "given", "safe", "scheduling"})
 """Fields that neither a board profile nor the `limits:` of a mission file can set."""
 
 IDENTITIES: Mapping[str, str] = {"processor_id": "--cpuid", "spacecraft_id": "--scid"}
@@ -83,11 +87,13 @@ class PlatformConfig:
         cfe_version: the release of cFE that it runs, a key of `RELEASES`; a mission file has a field of its own for it.
         safe: whether OSAL and ES prevent what hangs, leaks or ends the process on NASA's Linux; a mission file has a
             field of its own for it.
+        scheduling: one of `SCHEDULINGS`; a mission file has a field of its own for it.
         given: the keys of `IDENTITIES` that the command line of the flight software set.
     """
 
     cfe_version: str = DEFAULT_RELEASE
     safe: bool = False
+    scheduling: str = REAL_TIME
     given: tuple[str, ...] = ()
 
     spacecraft_id: int = 66

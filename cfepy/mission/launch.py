@@ -146,6 +146,7 @@ def _with_sections(spec: MissionSpec, path: Path, said: MissionSections) -> Miss
         limits=limits,
         cfe_version=said.cfe_version,
         safe=said.safe,
+        scheduling=said.scheduling,
         epoch_ns=said.epoch,
         compiled=said.compiled,
         cpp_nodes=said.cpp_nodes,

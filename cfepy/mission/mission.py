@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from cfepy.app import Cfe
 from cfepy.attachment import Attachment
+from cfepy.config.platform import FAIR
 from cfepy.es import NODE_SYMBOL
 from cfepy.interpreter.own_code import is_own_code
 from cfepy.mission.failed_code import FailedCode
@@ -130,6 +131,7 @@ class Mission:
         self._attachments = tuple(attachments)
         tick_ns = self.board.tick_ns
         self.kernel = kernel = make_kernel(kind.name, self.trace, policy, tick_ns, switch_ns, seed, self._kernel_class)
+        kernel.is_fair = self.config.scheduling == FAIR
         self.trace.take_times(lambda: kernel.now)
         self.console.record = _noting_lines(self.trace, kernel, self.record.part(FailedCode))
         self.outside = Outside(self.kernel, self.network, self.trace)

@@ -14,6 +14,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from cfepy.config.platform import REAL_TIME, SCHEDULINGS
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
 from cfepy.mission.epoch import read_epoch, refuse_both
@@ -24,6 +25,7 @@ from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.reading.mistakes import Mistakes, each_of
+from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -41,9 +43,9 @@ class MissionSections:
     """The content of a mission file, as far as it could be read.
 
     Attributes:
-        name, board, cfe_version, safe, epoch, compiled, cpp_nodes, limits, nodes, topics, params, params_from,
-            ordered_sets, connection_delay, ros_bridge, launch, sweep: the values of these sections; `name`, `board` and
-            `epoch` are None if missing.
+        name, board, cfe_version, safe, scheduling, epoch, compiled, cpp_nodes, limits, nodes, topics, params,
+            params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep: the values of these sections;
+            `name`, `board` and `epoch` are None if missing.
         demands: the sections of `DEMANDS`, unread.
         places: all known sections in the file, unread.
     """
@@ -52,6 +54,7 @@ class MissionSections:
     board: str | None = None
     cfe_version: str = DEFAULT_RELEASE
     safe: bool = False
+    scheduling: str = REAL_TIME
     epoch: int | None = None
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
     cpp_nodes: CppNodesConfig = field(default_factory=CppNodesConfig)
@@ -318,6 +321,14 @@ def _computing(entry: Marked) -> dict[str, int]:
     return dict(zip(parts, each_of(value.time for value in parts.values()), strict=True))
 
 
+def _scheduling(entry: Marked) -> str:
+    """Return a way to schedule tasks."""
+    if entry.value not in SCHEDULINGS:
+        hint = did_you_mean(str(entry.value), SCHEDULINGS, before="; ")
+        raise entry.fail(f"unknown scheduling {entry.shown()}; expected {' or '.join(SCHEDULINGS)}{hint}")
+    return str(entry.value)
+
+
 def _release(entry: Marked) -> str:
     """Return a release of cFE."""
     if not isinstance(entry.value, str) or entry.value not in RELEASES:
@@ -368,6 +379,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "board": _single(Marked.text),
     "cfe_version": _single(_release),
     "safe": _single(Marked.flag),
+    "scheduling": _single(_scheduling),
     "epoch": _single(read_epoch),
     "compiled": read_compiled,
     "cpp_nodes": read_cpp_nodes,

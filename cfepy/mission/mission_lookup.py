@@ -164,6 +164,7 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
         limits=said.limits,
         cfe_version=said.cfe_version,
         safe=said.safe,
+        scheduling=said.scheduling,
         epoch_ns=said.epoch,
         compiled=said.compiled,
         cpp_nodes=said.cpp_nodes,

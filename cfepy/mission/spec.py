@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.config.platform import PlatformConfig
+from cfepy.config.platform import REAL_TIME, PlatformConfig
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.es import NODE_SYMBOL, StartupEntry
 from cfepy.es import entries as read_entries
@@ -95,6 +95,7 @@ class MissionSpec:
         board: its board: a shipped board's name or a path.
         cfe_version: its release of cFE.
         safe: whether it prevents what hangs, leaks or ends the process on NASA's Linux.
+        scheduling: how its tasks are scheduled, one of `cfepy.config.platform.SCHEDULINGS`.
         compiled: how its compiled applications were built.
         ros: its ROS nodes, topics and parameters.
         limits: its platform limits.
@@ -118,6 +119,7 @@ class MissionSpec:
     limits: MissionLimits = field(default_factory=MissionLimits)
     cfe_version: str = DEFAULT_RELEASE
     safe: bool = False
+    scheduling: str = REAL_TIME
     compiled: CompiledConfig = field(default_factory=CompiledConfig)
     cpp_nodes: CppNodesConfig = field(default_factory=CppNodesConfig)
     startup: bytes | None = None
@@ -149,6 +151,7 @@ class MissionSpec:
             self.limits.config(board, self.has_nodes),
             cfe_version=self.cfe_version,
             safe=self.safe,
+            scheduling=self.scheduling,
             given=tuple(self.ids),
         )
         config = limits.with_limits(self.ids)

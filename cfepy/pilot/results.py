@@ -158,6 +158,7 @@ class Mark:
     sb: dict[str, int]
     endless: EndlessWaits
     idle_nodes: list[str]
+    starved: list[str]
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
@@ -179,6 +180,7 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         mission.processor.sb_task.housekeeping(),
         endless_waits(mission),
         _idle_nodes(mission),
+        _starved(mission),
     )
 
 
@@ -203,8 +205,9 @@ class Results:
     each viewer and each topic, and `beside` one for each mission that flew together with it. `script_problems` are the
     entries of the startup script that could not be started. `endless_waits` has a line for each task that no task can
     wake any more. `missed_steps` are the failed steps of the script. `never_judged` are the rules of the mission file
-    without input. `loose_ends` are topics that connect to nothing, and idle nodes. `missed_moves` are the moves of the
-    schedule that were not possible. `why_tasks` is why tasks are threads by default although greenlets are installed.
+    without input. `loose_ends` are topics that connect to nothing, idle nodes, and applications that kept others from
+    running. `missed_moves` are the moves of the schedule that were not possible. `why_tasks` is why tasks are threads
+    by default although greenlets are installed.
     """
 
     mission: str
@@ -293,7 +296,7 @@ class Results:
             endless_waits=[wait.text for wait in at.endless.alone],
             missed_moves=_missed_moves(mission),
             never_judged=rules_without_input(mission) if never_judged is None else list(never_judged),
-            loose_ends=[*_loose_ends(mission), *at.idle_nodes],
+            loose_ends=[*_loose_ends(mission), *at.idle_nodes, *at.starved],
             missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[each.text for each in problems],
@@ -353,6 +356,15 @@ def _idle_nodes(mission: Mission) -> list[str]:
     from cfepy.pilot.idleness import idle_nodes
 
     return idle_nodes(mission)
+
+
+def _starved(mission: Mission) -> list[str]:
+    """Return the tasks that others kept from running; only a run that used virtual CPU time loads the code for it."""
+    if not mission.kernel.kept_back():
+        return []
+    from cfepy.pilot.starvation import starved_tasks
+
+    return starved_tasks(mission)
 
 
 def _never_happened(rows: list[dict[str, Any]], missed_moves: list[str]) -> list[str]:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from cfepy.rtos.costs import CpuCosts
     from cfepy.rtos.cpus import allowed_cpus
     from cfepy.rtos.errors import DeadlockError, InjectedCrash
+    from cfepy.rtos.kept_back import KeptBack
     from cfepy.rtos.kernel import ENDLESS, Kernel
     from cfepy.rtos.mutex import Mutex
     from cfepy.rtos.policies import (
@@ -77,6 +78,7 @@ __all__ = [
     "From",
     "InOrder",
     "InjectedCrash",
+    "KeptBack",
     "Kernel",
     "LastResort",
     "Moment",
@@ -125,6 +127,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "DeadlockError",
                 "InjectedCrash",
             ),
+            ".kept_back": ("KeptBack",),
             ".kernel": (
                 "ENDLESS",
                 "Kernel",

@@ -19,7 +19,7 @@ from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.interpreter.garbage import collect_leftovers, freeze_many, no_collection
 from cfepy.rtos.context import make_context, take_back
 from cfepy.rtos.errors import DeadlockError
-from cfepy.rtos.scheduler import Scheduler
+from cfepy.rtos.scheduler import FAIR_PRIORITY, Scheduler
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.rtos.wait_graph import Wait, circles, endless, waiting_report
 
@@ -42,8 +42,8 @@ class Kernel(Scheduler):
         is_running: whether the host is running or ending tasks.
         is_collecting: whether the host itself runs finalizers.
         broken: why the run was broken off; None if it was not.
+        is_fair: whether all tasks take turns as if they had one priority, as Linux schedules an ordinary user's tasks.
         abortion: why the flight software has aborted, after which no task runs; None if it has not.
-        abortion: why the flight software has aborted; no task runs after that. None if it has not.
         is_lost: whether the running task will not return the CPU and the host is about to continue without it.
         guard: lock for another thread that reads these attributes and acts on them.
         frames_wanted: whether a tool reads the Python frames of tasks, so that other code must show a frame too.
@@ -97,7 +97,7 @@ class Kernel(Scheduler):
             The task.
         """
         self._idents = ident = self._idents + 1
-        task = Task(name, ident, entry, priority)
+        task = Task(name, ident, entry, FAIR_PRIORITY if self.is_fair else priority)
         parent = self.current
         task.owner = parent.owner if owner is None else owner
         parent.children += 1
@@ -171,7 +171,7 @@ class Kernel(Scheduler):
 
     def set_priority(self, task: Task, priority: int) -> None:
         """Set the base priority of a task; a priority inherited from waiters of its mutexes stays."""
-        task.base_priority = priority
+        task.base_priority = FAIR_PRIORITY if self.is_fair else priority
         self.inherit(task)
         self.preempt()
 

@@ -19,11 +19,13 @@ from typing import Any, NamedTuple, SupportsIndex
 
 from cfepy import trace as tr
 from cfepy.interpreter.compiled import mypyc_attr
+from cfepy.rtos.kept_back import LOOK_NS, KeptBack, ReadyWatch
 from cfepy.rtos.policy import Policy, Question
 from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit
 from cfepy.rtos.wait_list import WaitList
 
 HOST_PRIORITY = 256
+FAIR_PRIORITY = 100
 SLICE_NS = 20_000  # tasks of equal priority take turns after this much virtual CPU time
 MAX_REFUSALS = 100  # number of kernel calls that a dying task may try before the kernel abandons it
 
@@ -83,6 +85,9 @@ class Scheduler:
         self._is_unwinding = False
         self.broken: BaseException | None = None
         self.abortion: Abortion | None = None
+        self.is_fair = False
+        self._ready_watch: ReadyWatch | None = None
+        self._look_at = LOOK_NS
 
     # -- waiting ---------------------------------------------------------------------------------------------------
 
@@ -243,6 +248,8 @@ class Scheduler:
         self._fire_due()
         if task.dying:
             return
+        if self.now >= self._look_at:
+            self.look_at_ready()
         ready = self.ready
         first = ready[0][0] if ready else HOST_PRIORITY
         paused = self.now > self._until
@@ -257,6 +264,19 @@ class Scheduler:
         following = self.host if paused else self._take()
         if following is not task:
             self._switch(task, following)
+
+    def look_at_ready(self) -> None:
+        """Note which tasks are ready without running (`cfepy.rtos.kept_back`)."""
+        if self._ready_watch is None:
+            self._ready_watch = ReadyWatch()
+        task = self.current
+        if task is self.host and self._last is not None:
+            task = self._last
+        self._look_at = self._ready_watch.look(self.now, task, self.ready)
+
+    def kept_back(self) -> list[KeptBack]:
+        """Return the tasks that were ready for 100 ms or more without running."""
+        return [] if self._ready_watch is None else list(self._ready_watch.found.values())
 
     def _turn_is_over(self, task: Task, duration_ns: int) -> bool:
         """Return whether a task used a whole time slice while tasks of equal priority were ready; if so, a new slice

@@ -15,7 +15,7 @@ from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any
 
-from cfepy.config.platform import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, PlatformConfig
+from cfepy.config.platform import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, SCHEDULINGS, PlatformConfig
 from cfepy.config.versions import RELEASES
 from cfepy.faults import fault_plan, kinds
 from cfepy.mission import cpp_nodes, drawn_parameters, limits, mission_file, parameter_files
@@ -158,6 +158,7 @@ def mission_schema() -> Schema:
         "board": TEXT,
         "cfe_version": one_of(RELEASES),
         "safe": FLAG,
+        "scheduling": one_of(SCHEDULINGS),
         "epoch": DATE,
         "compiled": record(mission_file.COMPILED_FIELDS, dict.fromkeys(mission_file.COMPILED_FIELDS, FLAG)),
         "cpp_nodes": _cpp_nodes(),
