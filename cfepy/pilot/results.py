@@ -27,7 +27,9 @@ if TYPE_CHECKING:
 EVENT_TYPES = {DEBUG: "DEBUG", INFORMATION: "INFORMATION", ERROR: "ERROR", CRITICAL: "CRITICAL"}
 RESET_TYPES = {RST_TYPE_PROCESSOR: "PROCESSOR", RST_TYPE_POWERON: "POWERON"}
 NOT_STARTED = "NOT STARTED"
-RUNNING, ENDED = "RUNNING", "ENDED"
+ENDED = "ENDED"
+HALTED = ("WAITING", "STOPPED")
+"""The states of applications that ES is about to end."""
 PERCENT_OF_FEW_DIGITS, LEAST_PERCENT = 0.1, 0.0001
 TOLERANCE = 1.1  # for a measured rate, because messages just before the mission was operational count too
 
@@ -159,6 +161,7 @@ class Mark:
     endless: EndlessWaits
     idle_nodes: list[str]
     starved: list[str]
+    returned: list[str]
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
@@ -181,15 +184,21 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         endless_waits(mission),
         _idle_nodes(mission),
         _starved(mission),
+        [_returned(app.name) for app in mission.cfe.es.apps if _state(app) == ENDED],
     )
+
+
+def _returned(app: str) -> str:
+    why = "its main function has returned without CFE_ES_ExitApp"
+    return f"{app}: {why}; ES keeps the application and its objects"
 
 
 def _state(app: AppRecord) -> str:
     """Return the state of an application. ES does not notice if a main task ends without CFE_ES_ExitApp."""
     main = app.tasks.get(app.main_task_id)
     state = STATE_NAMES[app.state]
-    has_ended = state == RUNNING and (main is None or (main.task is not None and main.task.done))
-    return ENDED if has_ended and not app.is_core else state
+    has_ended = main is None or (main.task is not None and main.task.done)
+    return ENDED if has_ended and not app.is_core and state not in HALTED else state
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,7 +305,7 @@ class Results:
             endless_waits=[wait.text for wait in at.endless.alone],
             missed_moves=_missed_moves(mission),
             never_judged=rules_without_input(mission) if never_judged is None else list(never_judged),
-            loose_ends=[*_loose_ends(mission), *at.idle_nodes, *at.starved],
+            loose_ends=[*_loose_ends(mission), *at.idle_nodes, *at.returned, *at.starved],
             missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[each.text for each in problems],

@@ -111,7 +111,14 @@ class CompiledCode:
         function = self._loader.symbol(image, self._file, symbol)
         if NODE_MARK in image.symbols:
             self._loader.on_node()
-        return lambda: runtime.run_main(function)
+
+        def run() -> None:
+            runtime.run_main(function)
+            os = runtime.handle.os
+            if not os.config.safe:
+                os.task_exit()  # ES does not notice that the function has returned
+
+        return run
 
     def library(self, symbol: str) -> tuple[object, Callable[[int], object]]:
         """Load a library. Its init function gets the LibId."""

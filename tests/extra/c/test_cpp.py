@@ -164,6 +164,7 @@ LIFE = """
         Announced *heap = new Announced("heap"), *many = new Announced[2]{"many", "more"};
         delete heap;
         delete[] many;
+        CFE_ES_ExitApp(EXIT);
     }
 """
 

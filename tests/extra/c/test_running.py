@@ -10,6 +10,7 @@ import pytest
 from cfepy.extra.c import runtime
 from cfepy.extra.c.engine import engine
 from cfepy.mission import Mission
+from cfepy.pilot.results import mark
 from cfepy.writing.console import Console
 from tests.extra.c.building import compile_c, console_of, digest_of, fly, fly_c, needs_compiler, said, write_mission
 
@@ -38,6 +39,16 @@ def test_an_application_runs_and_exits(tmp_path: Path, tasks: str) -> None:
     )
     assert said(console) == ["turn 0", "turn 1", "turn 2"]
     assert "CFE_ES_ExitApp: Application TEST called CFE_ES_ExitApp" in console
+
+
+def test_application_whose_main_function_returns_stays_running_as_in_nasas_es(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", "void TEST_Main(void) {}")
+    with Mission(write_mission(tmp_path, "TEST"), console=Console(quiet=True)) as mission:
+        mission.run_for(5)
+        assert [app.name for app in mission.cfe.es.apps if not app.is_core] == ["TEST"]
+        assert mark(mission, 0).returned == [
+            "TEST: its main function has returned without CFE_ES_ExitApp; ES keeps the application and its objects"
+        ]
 
 
 def test_formats_take_all_kinds_of_arguments(tmp_path: Path) -> None:
