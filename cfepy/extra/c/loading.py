@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from weakref import WeakKeyDictionary
 
 from cfepy.es import SymbolError
 from cfepy.extra.c.abi import abi_profile
@@ -32,6 +33,7 @@ class CompiledLoader:
         self.on_node = on_node
         self._console = console
         self._read: dict[bytes, SharedObject] = {}
+        self._files: WeakKeyDictionary[Image, str] = WeakKeyDictionary()
 
     def code(self, file: str, data: bytes) -> CompiledCode:
         """Return the code in a shared object, not loaded yet.
@@ -73,6 +75,21 @@ class CompiledLoader:
         except CFault as error:
             raise self._failed(CFault(f"{file}: {error}")) from error
 
+    def load_application(self, file: str, data: bytes, app_name: str) -> Image:
+        """Load an application. Two applications from one file share its variables, as dlopen has it on Linux.
+
+        In a safe mission each has its own, and so has each ROS node, which is a process of its own on a robot. It
+        raises the errors of `read`.
+        """
+        others = {name: image for name, image in self.runtime.applications.items() if self._files.get(image) == file}
+        shared = next(iter(others.values()), None)
+        if shared is None or NODE_MARK in shared.symbols or self.runtime.handle.os.config.safe:
+            image = self.load(file, data)
+            self._files[image] = file
+            return image
+        self._console.write(f"OS_ModuleLoad: {file} is in use: {app_name} shares the variables of {', '.join(others)}")
+        return shared
+
     def symbol(self, image: Image, file: str, symbol: str) -> int:
         """Return the address of an entry point.
 
@@ -106,7 +123,7 @@ class CompiledCode:
 
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
         runtime = self._loader.runtime
-        image = self._loader.load(self._file, self._data)
+        image = self._loader.load_application(self._file, self._data, app_name)
         runtime.applications[app_name] = image
         function = self._loader.symbol(image, self._file, symbol)
         if NODE_MARK in image.symbols:

@@ -193,7 +193,7 @@ class CRuntime:
     def unload(self, app_name: str) -> None:
         """Unload the code of an ended application, and free its blocks of malloc and of messages."""
         image = self.applications.pop(app_name, None)
-        if image is not None:
+        if image is not None and image not in self.applications.values():  # otherwise another one uses it
             self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
             with self.streams.ending(app_name):
                 self.unload_image(image)

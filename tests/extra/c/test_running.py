@@ -7,6 +7,7 @@ from types import ModuleType
 
 import pytest
 
+from cfepy.es import StartParams
 from cfepy.extra.c import runtime
 from cfepy.extra.c.engine import engine
 from cfepy.mission import Mission
@@ -49,6 +50,41 @@ def test_application_whose_main_function_returns_stays_running_as_in_nasas_es(tm
         assert mark(mission, 0).returned == [
             "TEST: its main function has returned without CFE_ES_ExitApp; ES keeps the application and its objects"
         ]
+
+
+SHARED = """
+static int starts;
+void TEST_Main(void)
+{
+    uint32_t run = RUN;
+    SAY("starts %d", ++starts);
+    while (CFE_ES_RunLoop(&run)) OS_TaskDelay(100);
+    CFE_ES_ExitApp(run);
+}
+"""
+
+
+@pytest.mark.parametrize(("safe", "starts"), [(False, ["1", "2", "3", "1"]), (True, ["1", "1", "1", "1"])])
+def test_applications_of_one_file_share_its_variables_as_on_linux(
+    tmp_path: Path, safe: bool, starts: list[str]
+) -> None:
+    compile_c(tmp_path, "TEST", SHARED)
+    lines = [f"CFE_APP, TEST, TEST_Main, {name}, 50, 16384, 0x0, 0;\n" for name in ("A", "B")]
+    (tmp_path / "startup.scr").write_text("".join(lines) + "!\n", encoding="utf-8")
+    (tmp_path / "mission.yaml").write_text(f"safe: {str(safe).lower()}\n", encoding="utf-8")
+    with Mission(str(tmp_path), console=Console(quiet=True)) as mission:
+        mission.run_for(1)
+        es = mission.cfe.es
+        es.restart_app(es.get_app_id_by_name("B"))
+        mission.run_for(8)
+        for name in ("A", "B"):
+            es.delete_app(es.get_app_id_by_name(name))
+        mission.run_for(8)
+        es.create_app("A", StartParams("/cf/TEST.so", "TEST_Main", 16384, 50))
+        mission.run_for(1)
+        lines = list(mission.console.lines)
+    assert [line.rpartition(" ")[2] for line in lines if "starts " in line] == starts
+    assert ("OS_ModuleLoad: /cf/TEST.so is in use: B shares the variables of A" in lines) is not safe
 
 
 def test_formats_take_all_kinds_of_arguments(tmp_path: Path) -> None:
