@@ -146,6 +146,7 @@ class RosRuntime:
         network: network of their sockets; None refuses sockets.
         files: their view of files; None is the computer's own.
         accesses: receives the accesses of their code to data, or None.
+        traps: receives their loops that wait without a sleep, and similar traps.
 
     Attributes:
         graph: publishers, subscribers and services.
@@ -168,6 +169,7 @@ class RosRuntime:
         network: Network | None = None,
         files: Overlay | None = None,
         accesses: Accesses | None = None,
+        traps: list[object] | None = None,
     ) -> None:
         self.graph = Graph(config)
         self.switchboard = Switchboard(self.graph)
@@ -182,6 +184,7 @@ class RosRuntime:
         self._network = network
         self._files = files
         self._accesses = accesses
+        self.traps = [] if traps is None else traps
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
         self.monitor = ProcessMonitor(config, console, kernel.stop)
@@ -278,6 +281,7 @@ class RosRuntime:
             root=self._config.root,
             overlay=None if config.on_disk else self._files,
             accesses=self._accesses,
+            traps=self.traps,
             on_thread_start=tasks.thread,
         )
         universe.pid = self._pids.take(universe.pid)

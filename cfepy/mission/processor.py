@@ -23,7 +23,7 @@ from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
 from cfepy.mission.record import RunRecord
 from cfepy.mission.spec import MissionSpec
-from cfepy.nodes import Accesses, AppModules, make_app_universe
+from cfepy.nodes import Accesses, AppModules, make_app_universe, turn_hook
 from cfepy.osal import (
     OS_FILE_FLAG_CREATE,
     OS_FILE_FLAG_TRUNCATE,
@@ -164,13 +164,19 @@ class Processor:
         """Return the finders of application code, in the order of the search."""
         machine, folder = self.machine, self.machine.spec.folder
         self._compiled = CompiledFiles(machine.files, self._make_compiled_loader, machine.spec.built_files)
-        python = PythonLoader(machine.console, lambda: self.handle, AppModules(self._app_universe, machine.accesses))
+        turns = turn_hook(machine.kernel, self._costs.polling_ns, self._current_app, machine.record.traps)
+        modules = AppModules(self._app_universe, machine.accesses, turns)
+        python = PythonLoader(machine.console, lambda: self.handle, modules)
         return [
             BuiltInApps({ROS_FILE: self._ros_main}),
             NodeScripts(machine.files, folder, self._script_of, self._node_main),
             self._compiled,
             *python_finders(python, machine.files, folder),
         ]
+
+    def _current_app(self) -> str:
+        """Return the name of the application whose task is running."""
+        return str(getattr(self.machine.kernel.current.owner, "name", ""))
 
     def _app_universe(self) -> Universe:
         """Return the provider of the modules with which apps open files."""
@@ -314,6 +320,7 @@ class Processor:
             network=machine.network,
             files=machine.run_files.of(machine),
             accesses=machine.accesses,
+            traps=machine.record.traps,
         )
 
     @property

@@ -95,7 +95,8 @@ class RunRecord:
     id. The services of each processor write into these four. `topics` has rows of ROS topics by MsgId. `tables`
     provides more rows for the report, by title; an attachment adds its function there. `data_races` are the races
     found, and `overwrites` the memory errors that the guard found. `stack_use` is by application and task, for ended
-    tasks.
+    tasks. `traps` are loops that wait without a sleep, and other code that works badly on ROS too; their texts are
+    lines of the report.
     """
 
     resets: list[Reset] = field(default_factory=list)
@@ -108,6 +109,7 @@ class RunRecord:
     data_races: list[DataRace] = field(default_factory=list)
     overwrites: list[Overwrite] = field(default_factory=list)
     stack_use: dict[tuple[str, str], StackUse] = field(default_factory=dict)
+    traps: list[object] = field(default_factory=list)
     _parts: dict[type, object] = field(default_factory=dict)
     _traffic: dict[int, Traffic] = field(default_factory=dict)
 

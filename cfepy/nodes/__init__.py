@@ -29,6 +29,7 @@ from rospy_shim.types.config import (
 if TYPE_CHECKING:
     from cfepy.nodes.accesses import WHOLE, Accesses, Observer, Touch
     from cfepy.nodes.app_modules import AppModules, make_app_universe
+    from cfepy.nodes.busy_waits import turn_hook
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
     from cfepy.nodes.reachable_objects import held_by, is_private, reaches
     from cfepy.nodes.refused_modules import RefusedError
@@ -64,6 +65,7 @@ __all__ = [
     "make_app_universe",
     "process_number",
     "reaches",
+    "turn_hook",
 ]
 
 if not TYPE_CHECKING:  # type checkers see only the names above
@@ -72,6 +74,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
         {
             ".accesses": ("WHOLE", "Touch", "Accesses", "Observer"),
             ".app_modules": ("AppModules", "make_app_universe"),
+            ".busy_waits": ("turn_hook",),
             ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
             ".reachable_objects": ("held_by", "is_private", "reaches"),
             ".refused_modules": ("RefusedError",),

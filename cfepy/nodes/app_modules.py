@@ -20,6 +20,7 @@ from types import ModuleType
 from typing import IO, TYPE_CHECKING, Any
 
 from cfepy.interpreter.host_system import check_own_builtins
+from cfepy.nodes.busy_waits import HOOK
 from cfepy.nodes.node_sources import code_of_source
 
 if TYPE_CHECKING:
@@ -43,16 +44,23 @@ class AppModules:
     Args:
         make: makes the universe that has the modules that open files; all others are the host's.
         accesses: where the accesses of their code are reported; None for no reports.
+        turns: called at each turn of a loop that can wait without a call (`cfepy.nodes.busy_waits`); None does nothing.
 
     Attributes:
         builtins: `__builtins__` of their code.
     """
 
-    def __init__(self, make: Callable[[], Universe], accesses: Accesses | None = None) -> None:
+    def __init__(
+        self,
+        make: Callable[[], Universe],
+        accesses: Accesses | None = None,
+        turns: Callable[[tuple[str, int]], object] | None = None,
+    ) -> None:
         self._make = make
         self._accesses = accesses
         self._made: Universe | None = None
         self.builtins: dict[str, Any] = {**vars(builtins), "open": self._opener(), "__import__": self._import}
+        self.builtins[HOOK] = turns if turns is not None else lambda place: None
 
     @property
     def _universe(self) -> Universe:

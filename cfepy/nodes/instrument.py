@@ -12,11 +12,9 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Iterable, Sequence
-from types import CodeType
 from typing import NamedTuple, TypeVar
 
-from cfepy.interpreter.syntax_trees import FUNCTION, MODULE, NameScopes, compiled, parsed
-from cfepy.nodes.ordered_sets import with_ordered_sets
+from cfepy.interpreter.syntax_trees import FUNCTION, MODULE, NameScopes
 
 READING_METHODS = frozenset(
     {
@@ -76,22 +74,15 @@ class Kinds(NamedTuple):
     is_main: bool = False
 
 
-def compile_with_hooks(source: bytes | str, file: str, kinds: Kinds, ordered: bool = False) -> CodeType:
-    """Compile a module.
+def with_hooks(tree: ast.Module, kinds: Kinds) -> ast.Module:
+    """Return a module that calls hooks.
 
     Args:
-        source: its text.
-        file: its name.
+        tree: the module.
         kinds: which hooks it calls; its builtins must contain them.
-        ordered: whether set displays in it make ordered sets.
-
-    Raises:
-        SyntaxError: as `compile` does.
     """
-    tree = parsed(source, file)
-    if ordered:
-        tree = with_ordered_sets(tree)
-    return compiled(_Hooking(tree, kinds).visit(tree), file)
+    made: ast.Module = _Hooking(tree, kinds).visit(tree)
+    return made
 
 
 class _Hooking(ast.NodeTransformer):

@@ -14,7 +14,8 @@ import warnings
 from types import CodeType
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.interpreter.syntax_trees import compiled
+from cfepy.interpreter.syntax_trees import TooDeepError, compiled, parsed
+from cfepy.nodes.busy_waits import add_hooks, busy_loops
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import PYTHON_BYTES
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 SOURCES = 512  # number of application texts that are kept
 # raised as Python audit event for a file that was compiled before, like the event for an opened one
 AGAIN = "cfepy.source"
+_LOOP = b"while"
 
 _compiled: dict[tuple[object, ...], CodeType] = {}
 
@@ -93,15 +95,37 @@ def code_of_source(source: bytes, name: str, kinds: Kinds | None = None) -> Code
 
 
 def _compile(source: bytes, path: str, ordered: bool, kinds: Kinds | None) -> CodeType:
-    if kinds is not None:
-        from cfepy.nodes.instrument import compile_with_hooks
-
-        return compile_with_hooks(source, path, kinds, ordered)
-    if not ordered:
+    """Compile a module; its tree is built only if code must be added to it."""
+    has_loops = _LOOP in source and _has_busy_loops(source, path)
+    is_plain = kinds is None and not ordered
+    if is_plain and not has_loops:
         return compiled(source, path)
-    from cfepy.nodes.ordered_sets import compile_ordered
+    tree = parsed(source, path)
+    loops = busy_loops(tree) if has_loops else []
+    if ordered:
+        from cfepy.nodes.ordered_sets import with_ordered_sets
 
-    return compile_ordered(source, path)
+        tree = with_ordered_sets(tree)
+    if kinds is not None:
+        from cfepy.nodes.instrument import with_hooks
+
+        tree = with_hooks(tree, kinds)
+    add_hooks(loops, path)
+    try:
+        return compiled(tree, path)
+    except RecursionError:
+        if not is_plain:
+            raise
+        return compiled(source, path)  # Python nests more deeply in a text than in a tree
+
+
+def _has_busy_loops(source: bytes, path: str) -> bool:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the code is compiled from the text again
+        try:
+            return bool(busy_loops(parsed(source, path)))
+        except TooDeepError:
+            return False
 
 
 def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:

@@ -10,10 +10,7 @@ from __future__ import annotations
 import ast
 import builtins
 from collections.abc import Iterable, Iterator
-from types import CodeType
 from typing import Any
-
-from cfepy.interpreter.syntax_trees import compiled, parsed
 
 SET_NAME = "__ordered_set__"
 
@@ -175,15 +172,6 @@ class _SetLiterals(ast.NodeTransformer):
 def _call(node: ast.expr, argument: ast.expr) -> ast.AST:
     call = ast.Call(ast.Name(SET_NAME, ast.Load()), [argument], [])
     return ast.fix_missing_locations(ast.copy_location(call, node))
-
-
-def compile_ordered(source: bytes | str, file: str) -> CodeType:
-    """Compile a module so that its set displays make ordered sets.
-
-    Raises:
-        SyntaxError: as `compile` does.
-    """
-    return compiled(with_ordered_sets(parsed(source, file)), file)
 
 
 def with_ordered_sets(tree: ast.Module) -> ast.Module:

@@ -21,6 +21,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.interpreter.host_system import check_own_builtins
+from cfepy.nodes.busy_waits import HOOK, turn_hook
 from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer
 from cfepy.nodes.module_origins import Provision
@@ -84,6 +85,7 @@ class Universe:
         overlay: files of its run, which already include that root; None lets the program read and write the host's
             files.
         accesses: where the accesses of its code are reported; None for no reports.
+        traps: gets the loops of its code that wait without a sleep.
         on_thread_start: `(task name, entry, priority) -> Task`, starts the task of a thread, so that the owner of the
             node also owns its threads; None uses `Kernel.spawn`.
     """
@@ -114,6 +116,7 @@ class Universe:
         root: str = "",
         overlay: Overlay | None = None,
         accesses: Accesses | None = None,
+        traps: list[object] | None = None,
         on_thread_start: StartThread | None = None,
     ) -> None:
         check_own_builtins()
@@ -170,6 +173,8 @@ class Universe:
             accesses=accesses,
         )
         self.builtins = sys_module.builtins_module(self, ordered_sets)
+        found = [] if traps is None else traps
+        vars(self.builtins)[HOOK] = turn_hook(kernel, call_cost_ns, lambda: self.name, found)
         self._adopt: Callable[[dict[str, Any]], None] | None = None
         if accesses is not None and accesses.is_on:
             vars(self.builtins).update(accesses.hooks())

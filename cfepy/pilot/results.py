@@ -215,8 +215,8 @@ class Results:
     entries of the startup script that could not be started. `endless_waits` has a line for each task that no task can
     wake any more. `missed_steps` are the failed steps of the script. `never_judged` are the rules of the mission file
     without input. `loose_ends` are topics that connect to nothing, idle nodes, and applications that kept others from
-    running. `missed_moves` are the moves of the schedule that were not possible. `why_tasks` is why tasks are threads
-    by default although greenlets are installed.
+    running. `traps` are loops that wait without a sleep, and similar. `missed_moves` are the moves of the schedule that
+    were not possible. `why_tasks` is why tasks are threads by default although greenlets are installed.
     """
 
     mission: str
@@ -250,6 +250,7 @@ class Results:
     missed_steps: list[str]
     never_judged: list[str]
     loose_ends: list[str]
+    traps: list[str]
     invariants: list[InvariantResult]
     problems: list[str]
 
@@ -306,6 +307,7 @@ class Results:
             missed_moves=_missed_moves(mission),
             never_judged=rules_without_input(mission) if never_judged is None else list(never_judged),
             loose_ends=[*_loose_ends(mission), *at.idle_nodes, *at.returned, *at.starved],
+            traps=[str(each) for each in mission.record.traps],
             missed_steps=[each.text for each in problems if each.is_step],
             invariants=[_invariant(each) for each in record.part(InvariantRecords).values()],
             problems=[each.text for each in problems],

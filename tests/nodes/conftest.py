@@ -22,11 +22,13 @@ class Program:
     Args:
         kernel: the computer it runs on.
         universe: its universe.
+        traps: the loops in it that waited without a sleep.
     """
 
-    def __init__(self, kernel: Kernel, universe: Universe) -> None:
+    def __init__(self, kernel: Kernel, universe: Universe, traps: list[object]) -> None:
         self.kernel = kernel
         self.universe = universe
+        self.traps = traps
 
     @property
     def lines(self) -> list[str]:
@@ -58,9 +60,10 @@ def start(context: str, tmp_path: Path) -> Iterator[Callable[..., Program]]:
         def begin(source: str, name: str = "node", **options: Any) -> Program:
             script = tmp_path / f"{name}.py"
             script.write_text(textwrap.dedent(source), encoding="utf-8")
-            universe = Universe(kernel, name=name, script=script, **options)
+            traps: list[object] = []
+            universe = Universe(kernel, name=name, script=script, traps=traps, **options)
             universe.spawn()
-            return Program(kernel, universe)
+            return Program(kernel, universe, traps)
 
         yield begin
 

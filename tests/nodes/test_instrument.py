@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from cfepy.interpreter.syntax_trees import compiled
+from cfepy.interpreter.syntax_trees import compiled, parsed
 from cfepy.nodes.accesses import Accesses, Touch
-from cfepy.nodes.instrument import Kinds, compile_with_hooks
+from cfepy.nodes.instrument import Kinds, with_hooks
 from cfepy.rtos import Policy
 from cfepy.schedules import make_kernel
 from tests.nodes.programs import PROGRAMS
@@ -32,7 +32,7 @@ def flown(source: str, kinds: Kinds | None, policy: Policy | None = None) -> tup
     vars(module).update(vars(builtins))
     vars(module).update(accesses.hooks())
     names["__builtins__"] = vars(module)
-    code = compiled(source, FILE) if kinds is None else compile_with_hooks(source, FILE, kinds)
+    code = compiled(source, FILE) if kinds is None else compiled(with_hooks(parsed(source, FILE), kinds), FILE)
     accesses.adopt(names)
     ended: Any = None
     linecache.cache[FILE] = (len(source), None, source.splitlines(True), FILE)

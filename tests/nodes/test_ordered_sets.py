@@ -9,7 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cfepy.nodes.ordered_sets import SET_NAME, OrderedSet, compile_ordered
+from cfepy.interpreter.syntax_trees import compiled, parsed
+from cfepy.nodes.node_sources import code_of_file
+from cfepy.nodes.ordered_sets import SET_NAME, OrderedSet, with_ordered_sets
 
 items = st.lists(st.integers(0, 9), max_size=8)
 
@@ -82,13 +84,15 @@ def test_copies_and_instances():
 def test_set_displays_become_ordered():
     source = "a = {'c', 'a', 'b'}\nb = {x for x in 'zyx'}\nc = 'a' in {'a', 'b'}\n"
     names = {SET_NAME: OrderedSet}
-    exec(compile_ordered(source, "node.py"), names)
+    exec(compiled(with_ordered_sets(parsed(source)), "node.py"), names)
     assert list(names["a"]) == ["c", "a", "b"]
     assert list(names["b"]) == ["z", "y", "x"]
     assert names["c"] is True
 
 
-def test_errors_keep_their_line():
+def test_errors_keep_their_line(tmp_path):
+    file = tmp_path / "node.py"
+    file.write_text("x = 1\ny = = 2\n", encoding="utf-8")
     with pytest.raises(SyntaxError) as caught:
-        compile_ordered("x = 1\ny = = 2\n", "node.py")
+        code_of_file(str(file), True, "node.py")
     assert (caught.value.filename, caught.value.lineno) == ("node.py", 2)

@@ -70,7 +70,7 @@ class NodeView(View):
             print("".join(f"{line}\n" for line in failed_steps(flown)), end="")
         else:
             show_tables(self.tables, sys.stdout)
-            tell(flown.results.never_happened)
+            tell([*flown.results.never_happened, *flown.results.traps])
             if flown.outcome is not None:
                 print(flown.outcome.text())
         return _status(flown, longer)

@@ -249,7 +249,8 @@ class _Runner:
         if test.compiled is not None:
             _keep_results(test, flown)
         results = self._judged(test, node, suite, flown)
-        tell([*flown.results.never_happened, *(() if results.passed else flown.results.loose_ends)])
+        numbers = flown.results
+        tell([*numbers.never_happened, *(() if results.passed else numbers.loose_ends), *numbers.traps])
         return results
 
     def _program(self, node: CppNode) -> BuiltProgram:

@@ -185,7 +185,7 @@ def _nothing() -> None:
 
 def _explain(flown: Flown) -> None:
     results = flown.results
-    tell((*told_problems(flown), *results.never_happened, *results.loose_ends))
+    tell((*told_problems(flown), *results.never_happened, *results.loose_ends, *results.traps))
     if results.script_problems:
         script = flown.mission.spec.script
         tell([f'the console output shows the reason; "cfepy check {script}" checks the mission without running it'])

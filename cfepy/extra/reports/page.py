@@ -238,8 +238,9 @@ def _problems(flown: Flown, collector: Collector, story: PageStory | None) -> st
 
 
 def _silent(results: Results) -> str:
-    """List the checks of the mission file without data, and the topics that connect to nothing; empty without any."""
-    items = "".join(element("li", escaped(text)) for text in (*results.never_judged, *results.loose_ends))
+    """List the checks of the mission file without data, the topics that connect to nothing, and the traps."""
+    texts = (*results.never_judged, *results.loose_ends, *results.traps)
+    items = "".join(element("li", escaped(text)) for text in texts)
     return element("ul", items, class_="silent") if items else ""
 
 
