@@ -119,7 +119,7 @@ def _add_stall(parser: Options) -> None:
         type=stall_of,
         default=DEFAULT_STALL_S,
         metavar="SECONDS",
-        help="fail if a task computes for so many seconds of wall time without giving up the CPU "
+        help="fail if a task computes for so many seconds of CPU time without giving up the CPU "
         f"(default: {DEFAULT_STALL_S:g}; 0: never)",
     )
 

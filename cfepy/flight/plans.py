@@ -42,7 +42,7 @@ class MissionOptions(TypedDict, total=False):
         play: a bag or an MCAP file to play into the mission.
         play_options: options as for `rosbag play`, such as "--rate 2 --topics /a /a:=/b".
         args: arguments of a launch file.
-        stall: wall time in s after which the run is ended if a task does not give up the CPU; 0 for no limit.
+        stall: CPU time in s after which the run is ended if a task does not give up the CPU; 0 for no limit.
         races: whether to detect unordered accesses of Python code and report them as problems.
         guard: whether compiled applications fault if they write past a buffer or use a freed one.
         cpp_nodes: how nodes in C++ of launch files are built: "host", "pool", "strict", or a mission whose file has the

@@ -78,8 +78,8 @@ class RunPlan:
         faults: the faults: path of a fault plan, or seed:N; None for none.
         play: path of a bag or an MCAP file to play into the mission; None for none.
         play_options: options as for `rosbag play`: "--rate 2 --start 5 --topics /a /a:=/b"; None plays it as recorded.
-        stall: wall time in s for which virtual time may stand still, because a task does not give up the CPU, before
-            the run is ended; 0 for no limit. It does not affect the trace of a run that reaches its end.
+        stall: CPU time in s that the run may use while virtual time stands still, because a task does not give up the
+            CPU, before it is ended; 0 for no limit. It does not affect the trace of a run that reaches its end.
         races: whether to detect unordered accesses of Python code; it does not affect the trace.
         guard: whether compiled applications get guarded, nonzero memory.
         cpp_nodes: how nodes in C++ are built: a profile, or a YAML file with a section `cpp_nodes:` that overrides the

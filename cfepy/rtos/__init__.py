@@ -51,7 +51,7 @@ if TYPE_CHECKING:
     from cfepy.rtos.task_starters import StartersFirst
     from cfepy.rtos.wait_graph import Wait, circles, endless
     from cfepy.rtos.wait_list import WaitList
-    from cfepy.rtos.watchdog import STALL_S, StallWatch
+    from cfepy.rtos.watchdog import STALL_S, StallWatch, kept_waiting_ns
     from cfepy.rtos.wrapped_calls import wrapping
 
 __all__ = [
@@ -104,6 +104,7 @@ __all__ = [
     "circles",
     "endless",
     "has_greenlets",
+    "kept_waiting_ns",
     "missed_notes",
     "task_kind",
     "wrapping",
@@ -183,6 +184,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".watchdog": (
                 "STALL_S",
                 "StallWatch",
+                "kept_waiting_ns",
             ),
             ".wrapped_calls": ("wrapping",),
         },

@@ -1,12 +1,12 @@
 """The stall watch: a thread of the host that ends a run in which a task does not give up the CPU.
 
 The simulation cannot do that itself: while a task computes, nothing else runs, and virtual time stands still. So a
-thread watches in wall-clock time. It changes nothing in a run that continues. A run that it ends has failed.
+thread watches. It changes nothing in a run that continues. A run that it ends has failed.
 
-A stall is a virtual clock that stands still for a given number of seconds while this process uses the CPU. Either one
-task computes, or tasks make calls that cost nothing, a thousand or more a second. For longer computations, raise the
-limit. A task that waits for something outside of the simulation, such as `input()` or a debugger, uses no CPU and is
-only reported. Time in which the process is stopped or the computer sleeps does not count.
+A stall is a virtual clock that stands still while the run's threads use the CPU for a given number of seconds. Either
+one task computes, or tasks make calls that cost nothing, a thousand or more a second. For longer computations, raise
+the limit. A task that waits for something outside of the simulation, such as `input()` or a debugger, uses no CPU and
+is only reported. Only CPU time of the run counts: no other program, and no other thread of this process, can end it.
 """
 
 from __future__ import annotations
@@ -17,9 +17,9 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field
-from types import CodeType, FrameType
+from types import CodeType, FrameType, MappingProxyType
 from typing import NamedTuple
 
 from cfepy.rtos.context import frame_of_thread, insist, raise_in_thread
@@ -32,9 +32,10 @@ from cfepy.writing.escapes import visible
 
 STALL_S = 10.0
 LOOK_S, SOON_S = 0.25, 0.05  # wall time between two checks; the second while the run is being ended
-GRACE_S = 0.6  # CPU time between the user's request and the end of the run; wall time for a task that uses no CPU
+# CPU time, or wall time for a task that uses no CPU:
+GRACE_S = 0.6  # between the user's request and the end of the run
 SPUN_S = 0.3  # part of it without a call, after which the user gets a report
-END_S = 0.8  # wall time for all tasks of a broken-off run to end
+END_S = 0.8  # for all tasks of a broken-off run to end
 PRESS_S = 0.15  # part of it for each task
 BUSY = 0.1  # minimum share of a CPU that this process uses, or could use, while a task computes
 TURNS_PER_S = 1000  # this many calls that let another task run, while the clock stands still, are also a stall
@@ -44,6 +45,7 @@ LINES = 5
 SPARE_S = 2.0  # CPU time above the limit before the last resort
 COLLECTOR = "a finalizer"
 THREADS = "/proc/self/task"
+THREADS_OF = "/proc/{}/task"
 
 
 def to_stderr(text: str) -> None:
@@ -59,18 +61,36 @@ class Spent(NamedTuple):
         wall_s: wall-clock time.
         used_s: CPU time of its threads, without the calling one.
         ready_s: time in which these threads were ready but other programs had the CPU.
+        by_thread: CPU time of each of these threads, and time in which it was ready, by native number; empty if the
+            system does not report it.
     """
 
     wall_s: float
     used_s: float
     ready_s: float
+    by_thread: Mapping[int, tuple[float, float]] = MappingProxyType({})
+
+    def since(self, before: Spent, threads: Set[int]) -> tuple[float, float]:
+        """Return the CPU time and the time ready of some threads since an earlier measurement, in s.
+
+        If the system does not report them, the times are those of the whole process.
+        """
+        if not self.by_thread:
+            return self.used_s - before.used_s, self.ready_s - before.ready_s
+        used_s = ready_s = 0.0
+        for each in threads & self.by_thread.keys() & before.by_thread.keys():
+            now, then = self.by_thread[each], before.by_thread[each]
+            used_s += max(0.0, now[0] - then[0])  # less: another thread has its number
+            ready_s += max(0.0, now[1] - then[1])
+        return used_s, ready_s
 
 
 class Expenses:
     """Measures the time that this process has used so far, each time it is called.
 
     Only Linux reports how long threads were ready. Without it, a computing task looks like a waiting one if many
-    programs compute. The time counted for a thread is kept when the thread ends or cannot be read.
+    programs compute, and other threads of this process count as well. The time ready of the process keeps the time of a
+    thread that ends or cannot be read.
     """
 
     def __init__(self) -> None:
@@ -79,18 +99,18 @@ class Expenses:
 
     def __call__(self) -> Spent:
         """Return the present values, without the calling thread, which only watches."""
+        times: dict[int, tuple[float, float]] = {}
         with contextlib.suppress(OSError):
             threads = {*os.listdir(THREADS)} - {str(threading.get_native_id())}
             for gone in self._of_threads.keys() - threads:
                 del self._of_threads[gone]
             for thread in threads:
-                with (
-                    contextlib.suppress(OSError, IndexError, ValueError),
-                    open(f"{THREADS}/{thread}/schedstat", encoding="utf-8") as told,
-                ):
-                    self._count(thread, int(told.read().split()[1]))
+                with contextlib.suppress(OSError, ValueError):
+                    used_ns, ready_ns = _times_of(f"{THREADS}/{thread}")
+                    times[int(thread)] = used_ns / NS_PER_S, ready_ns / NS_PER_S
+                    self._count(thread, ready_ns)
         used_s = time.process_time() - time.thread_time()
-        return Spent(time.monotonic(), used_s, self._ready_ns / NS_PER_S)
+        return Spent(time.monotonic(), used_s, self._ready_ns / NS_PER_S, times)
 
     def _count(self, thread: str, ready_ns: int) -> None:
         before = self._of_threads.get(thread, 0)
@@ -98,12 +118,35 @@ class Expenses:
         self._of_threads[thread] = ready_ns
 
 
+def _times_of(folder: str) -> tuple[int, int]:
+    """Return the CPU time of a thread, and the time in which it was ready while others had the CPU, in ns."""
+    with open(f"{folder}/schedstat", encoding="utf-8") as told:
+        used_ns, ready_ns = told.read().split()[:2]
+    return int(used_ns), int(ready_ns)
+
+
+def kept_waiting_ns(pid: int) -> int:
+    """Return how long a process and its children were ready while other programs had the CPU, in ns.
+
+    It is 0 on systems that do not report it.
+    """
+    folder, found = f"/proc/{pid}/task", 0
+    with contextlib.suppress(OSError):
+        for thread in os.listdir(folder):
+            with contextlib.suppress(OSError, ValueError):
+                found += _times_of(f"{folder}/{thread}")[1]
+            with contextlib.suppress(OSError), open(f"{folder}/{thread}/children", encoding="utf-8") as children:
+                found += sum(kept_waiting_ns(int(child)) for child in children.read().split())
+    return found
+
+
 class StallWatch:
     """Watches a kernel, from the first `begin` to `end`.
 
     Args:
         kernel: the kernel to watch.
-        limit_s: wall-clock seconds for which the virtual clock may stand still; 0 for no limit.
+        limit_s: CPU time in s that the run may use while the virtual clock stands still; 0 for no limit. A task that
+            uses no CPU is reported after so many seconds of wall time.
         is_own: whether a source file belongs to the user, not to the simulator or a library.
         tell: gets the report about a task that waits for something outside of the simulation.
 
@@ -134,7 +177,7 @@ class StallWatch:
         self._over = threading.Event()
         self._thread: threading.Thread | None = None
         self._process = 0  # the process of the watching thread
-        self._host_ident = 0
+        self._host_ident = self._host_native = 0
         self._waker = Waker()
         self._is_paused = self._has_lost = self._was_wanted = False
         self._stand: _Stand | None = None
@@ -148,7 +191,7 @@ class StallWatch:
         A forked process has none of its parent's threads, so watching starts anew. Observations from the previous part
         are dropped.
         """
-        self._host_ident = threading.get_ident()
+        self._host_ident, self._host_native = threading.get_ident(), threading.get_native_id()
         self._stand = None
         if self._process != os.getpid():
             self._process = os.getpid()
@@ -206,10 +249,14 @@ class StallWatch:
         else:
             now = self.spent()
             wall_s = min(now.wall_s - before.wall_s, 2 * interval)  # this process may have been stopped
-            used_s = now.used_s - before.used_s
-            is_busy = used_s + now.ready_s - before.ready_s >= BUSY * wall_s
+            used_s, ready_s = now.since(before, self._threads())
+            is_busy = used_s + ready_s >= BUSY * wall_s
             self._look(wall_s, is_busy, min(used_s, wall_s))
             self._before = self.spent()
+
+    def _threads(self) -> set[int]:
+        """Return the native numbers of the threads of the run."""
+        return {self._host_native, *(getattr(task.carrier, "native_id", 0) for task in list(self._kernel.tasks))}
 
     def _may_stall(self) -> bool:
         """Return whether the clock of a run has stood still since the last check, or the run should end."""
@@ -228,10 +275,9 @@ class StallWatch:
 
         Args:
             wall_s: wall time since the check before.
-            is_busy: whether the process used the CPU or was ready for it.
-            used_s: CPU time since then. A run that should end gets a grace period in CPU time, so that it reaches the
-                end of its part however busy the computer is. A waiting task uses no CPU, so its grace period is in wall
-                time.
+            is_busy: whether the run used the CPU or was ready for it.
+            used_s: CPU time since then, which counts for a busy run, so that no verdict depends on other programs. A
+                waiting task uses no CPU, so its wall time counts.
         """
         kernel = self._kernel
         self._arm()
@@ -239,12 +285,13 @@ class StallWatch:
             self._stand = None
             return
         # Time before the request does not count, so the first check that sees the request counts nothing.
-        given_s = (used_s if is_busy else wall_s) if self._was_wanted else 0.0
+        passed_s = used_s if is_busy else wall_s
+        given_s = passed_s if self._was_wanted else 0.0
         self._was_wanted = self.wanted()
         self._wanted_s = self._wanted_s + given_s if self._was_wanted else 0.0
-        self._stand = self._standing(wall_s, is_busy) if kernel.is_running else None
+        self._stand = self._standing(passed_s, is_busy) if kernel.is_running else None
         if kernel.broken is not None:
-            self._hurry(wall_s)
+            self._hurry(passed_s)
         elif self._stand is not None and self._wanted_s >= GRACE_S:
             stand = self._stand
             if stand.still_s + stand.idle_s >= SPUN_S or stand.is_turning:
@@ -258,17 +305,17 @@ class StallWatch:
         if self.last_resort is not None:
             self.last_resort.arm(self.limit_s + SPARE_S if self.limit_s and not self._is_paused else 0)
 
-    def _standing(self, wall_s: float, is_busy: bool) -> _Stand:
-        """Return the record of how long the clock has been standing still."""
+    def _standing(self, passed_s: float, is_busy: bool) -> _Stand:
+        """Return the record of how long the clock has been standing still; `passed_s` is CPU time if `is_busy`."""
         kernel, stand = self._kernel, self._stand
         now_ns, sequence, front = kernel.progress()
         task, calls = kernel.current, sequence - front
         if stand is None or stand.now_ns != now_ns:
             return _Stand(now_ns, calls, calls, task.ident)
-        stand.standing_s += wall_s if is_busy else 0.0
+        stand.standing_s += passed_s if is_busy else 0.0
         if stand.calls == calls and stand.seen == task.ident:
-            stand.still_s += wall_s if is_busy else 0.0
-            stand.idle_s += 0.0 if is_busy else wall_s
+            stand.still_s += passed_s if is_busy else 0.0
+            stand.idle_s += 0.0 if is_busy else passed_s
         else:
             stand.still_s = stand.idle_s = 0.0
         stand.calls, stand.seen = calls, task.ident
@@ -314,9 +361,9 @@ class StallWatch:
         is_host = task is self._kernel.host
         lines = lines_of(self._looks(stand), self._is_own)  # this also records which tasks have the CPU meanwhile
         app = "" if is_host or task.owner is None else str(task.owner.name)
+        spent = f"{stand.idle_s:.1f} s of wall time" if stand.is_idle else f"{stand.standing_s:.1f} s of CPU time"
         return StallError(
-            f"{self._subject(stand, app)} since {instant_text(stand.now_ns)} of virtual time, "
-            f"for {stand.standing_s + stand.idle_s:.1f} s of wall time; {end}",
+            f"{self._subject(stand, app)} since {instant_text(stand.now_ns)} of virtual time, for {spent}; {end}",
             tuple(map(str, lines)),
             app=app,
             task=COLLECTOR if is_host else task.name,
@@ -359,10 +406,10 @@ class StallWatch:
             kernel.break_off(why)
         self._press()
 
-    def _hurry(self, wall_s: float) -> None:
+    def _hurry(self, passed_s: float) -> None:
         """Press the tasks of a run that was broken off to end, one after the other, each within a short time."""
         kernel, stand = self._kernel, self._stand
-        self._ending_s += wall_s
+        self._ending_s += passed_s
         if stand is None:
             return
         if self._ending_s >= END_S:
@@ -406,12 +453,22 @@ class StallWatch:
         return task is not kernel.host or kernel.is_collecting
 
     def _is_back(self, task: Task, seconds: float) -> bool:
+        before = self.spent() if seconds > POLL_S else None  # it takes longer than a short time
         until = time.monotonic() + seconds
         while self._has_cpu(task):
             if time.monotonic() >= until:
-                return False
+                late_s = 0.0 if before is None else seconds - self._own_s(before)
+                if late_s <= 0:
+                    return False
+                until += late_s
             time.sleep(min(seconds, POLL_S))
         return True
+
+    def _own_s(self, before: Spent) -> float:
+        """Return the wall time since a measurement in which other programs did not keep the run from the CPU."""
+        now = self.spent()
+        used_s, ready_s = now.since(before, self._threads())
+        return max(used_s, now.wall_s - before.wall_s - ready_s)
 
     def _lose(self, task: Task) -> None:
         """Give up a task that cannot be ended. If the host has its own thread, it continues without the task."""
@@ -436,9 +493,9 @@ class _Stand:
         first_calls, calls: number of calls that may let another task run: at first, and now.
         seen: number of the task that has the CPU. The task object itself is not kept, because an ended task would keep
             its whole processor alive until the next check.
-        standing_s: wall time of the stall in which the CPU was used.
-        still_s: time in which this task made no such call and used the CPU.
-        idle_s: time in which it made no such call and used no CPU.
+        standing_s: CPU time of the stall.
+        still_s: CPU time in which this task made no such call.
+        idle_s: wall time in which it made no such call and used no CPU.
         is_told: whether the wait was reported.
         names: names of the tasks seen.
     """

@@ -36,7 +36,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     )
     group.addoption("--cfepy-tasks", choices=["auto", "thread", "greenlet"], help="kind of the tasks of missions")
     stall = (
-        "seconds of wall time after which a task that does not give up the CPU fails its test; 0: never (default: 10)"
+        "seconds of CPU time after which a task that does not give up the CPU fails its test; 0: never (default: 10)"
     )
     group.addoption("--cfepy-stall", type=float, default=None, metavar="SECONDS", help=stall)
     parser.addini("cfepy_stall", f"as --cfepy-stall: {stall}", default="10")

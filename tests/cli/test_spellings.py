@@ -65,7 +65,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--script": ("FILE", "send commands and check their effects"),
     "--seed": ("N", "(seed of all random values|seeds|plan of this seed)"),
     "--set": ("/PARAM=VALUE", "a ROS parameter"),
-    "--stall": ("SECONDS", "fail if a task computes for so many seconds of wall time"),
+    "--stall": ("SECONDS", "fail if a task computes for so many seconds of CPU time"),
     "--stop-on-failure": (None, "end the run with the script's first failed step"),
     "--tasks": (None, "kind of tasks"),
     "--trace": ("FILE", "write all records of the run to a file"),

@@ -17,7 +17,7 @@ import pytest
 
 from cfepy.rtos import Kernel, Task, watchdog
 from cfepy.rtos.context import UNWIND_S, drain
-from cfepy.rtos.watchdog import Expenses, Spent, StallWatch
+from cfepy.rtos.watchdog import Expenses, Spent, StallWatch, kept_waiting_ns
 from cfepy.status import StallError
 from cfepy.units import NS_PER_S
 from tests.rtos.helpers import Clocks
@@ -262,6 +262,55 @@ def test_request_waits_while_other_programs_use_the_cpu(
             watch.end()
 
 
+@pytest.mark.usefixtures("soon")
+@pytest.mark.parametrize("used", [0.2, 0.9])
+def test_only_cpu_time_counts_against_the_limit(
+    make_kernel: Callable[[], Kernel], monkeypatch: pytest.MonkeyPatch, used: float
+) -> None:
+    """While other programs have the CPU for most of the time, a run may take longer by the clock on the wall."""
+    clocks = Clocks(monkeypatch, used, 1.0 - used)
+    wall_s = list[float]()
+    with make_kernel() as kernel:
+        watch = watched(kernel)
+        watch.limit_s, watch.spent = 0.5, clocks
+        monkeypatch.setattr(watch, "_break_off", lambda *_: wall_s.append(clocks().wall_s))
+
+        def compute() -> None:
+            while not wall_s:
+                threading.Event().wait(0.001)
+
+        kernel.spawn("computing", compute)
+        watch.begin()
+        kernel.run(10)
+        watch.end()
+    assert 0.5 / used <= wall_s[0] / 2 < 0.5 / used + 0.2  # these clocks also advance while a look lasts
+
+
+def test_other_threads_of_the_process_do_not_count() -> None:
+    before = Spent(0.0, 0.0, 0.0, {1: (1.0, 0.0), 2: (5.0, 0.5)})
+    now = Spent(1.0, 9.0, 9.0, {1: (1.25, 0.5), 2: (9.0, 1.0), 3: (0.5, 0.0)})
+    assert now.since(before, {1}) == (0.25, 0.5)
+    assert now.since(before, {1, 3, 4}) == (0.25, 0.5)  # 3 is new, or could not be read before
+    assert Spent(1.0, 9.0, 8.0).since(before, {1}) == (9.0, 8.0)
+
+
+def test_threads_of_the_run_are_those_of_its_tasks(kernel: Kernel) -> None:
+    watch = watched(kernel)
+    watch.limit_s = 1000
+    seen = set[int]()
+
+    def task() -> None:
+        seen.add(threading.get_native_id())
+        kernel.delay(10)
+
+    kernel.spawn("first", task)
+    kernel.spawn("second", task)
+    watch.begin()
+    kernel.run(1)
+    assert seen <= watch._threads()
+    watch.end()
+
+
 def test_task_that_waits_for_the_host_is_reported_once(make_kernel: Callable[[], Kernel]) -> None:
     reader, writer = os.pipe()
     told: list[str] = []
@@ -433,7 +482,8 @@ def test_time_used_by_other_programs_counts(tmp_path: Path, monkeypatch: pytest.
     monkeypatch.setattr(time, "process_time", lambda: 1.5)
     monkeypatch.setattr(time, "thread_time", lambda: 0.5)
     monkeypatch.setattr(time, "monotonic", lambda: 9.0)
-    assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5)
+    by_thread = {1: (5e-9, 2.0), 2: (5e-9, 0.5)}
+    assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5, by_thread=by_thread)
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
     assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
 
@@ -471,6 +521,11 @@ def test_time_counted_for_an_ended_thread_is_kept(tmp_path: Path, monkeypatch: p
     assert spent().ready_s == 11
     monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
     assert spent().ready_s == 11
+
+
+def test_time_that_a_process_was_kept_waiting_is_read() -> None:
+    assert kept_waiting_ns(os.getpid()) >= 0
+    assert kept_waiting_ns(2**30) == 0
 
 
 def test_new_piece_of_a_run_starts_without_observations(kernel: Kernel) -> None:

@@ -28,7 +28,7 @@ from cfepy.extra.exploration.worker import READY
 from cfepy.interpreter.child_pipes import popen_options
 from cfepy.interpreter.host_system import signal_number
 from cfepy.reading.resources import import_path, python_command
-from cfepy.rtos import Stopwatch, allowed_cpus
+from cfepy.rtos import Stopwatch, allowed_cpus, kept_waiting_ns
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
@@ -79,7 +79,7 @@ class Worker:
     def __init__(self, trial: bytes, folder: Path | None = None, environ: Mapping[str, str] | None = None) -> None:
         self.jobs: list[Job] = []
         self.ready = False
-        self._watch = Stopwatch()
+        self._watch, self._waited_ns = Stopwatch(), 0
         self._said = tempfile.TemporaryFile(buffering=0)  # noqa: SIM115  # as long as the worker
         self._scratch = tempfile.TemporaryDirectory(prefix="cfepy-worker-")  # a killed worker cannot clean up
         _let_append(self._said)  # so that it can be emptied while the worker writes
@@ -111,11 +111,19 @@ class Worker:
         """Wall time since it began with its batch."""
         return self._watch.elapsed_ns()
 
+    @property
+    def own_ns(self) -> int:
+        """The same without the time in which other programs kept it from the CPU."""
+        return self.busy_ns - max(0, kept_waiting_ns(self.pid) - self._waited_ns)
+
     def give(self, jobs: Sequence[Job]) -> None:
         """Give it a batch."""
         self.jobs = list(jobs)
-        self._watch = Stopwatch()
+        self._begin()
         self._send(pickle.dumps(self.jobs))
+
+    def _begin(self) -> None:
+        self._watch, self._waited_ns = Stopwatch(), kept_waiting_ns(self.pid)
 
     def answer(self) -> list[NumberedVerdict]:
         """Return its verdicts; an empty list for its message that it has started.
@@ -130,7 +138,7 @@ class Worker:
             raise EOFError from None
         if answer == READY:
             self.ready = True
-            self._watch = Stopwatch()
+            self._begin()
             return []
         if isinstance(answer, UsageError):
             raise answer
@@ -263,7 +271,9 @@ class Processes:
                 yield from self._bury(worker, f"did not end within {self._longest_ns / NS_PER_S:g} s of wall time")
 
     def _left_ns(self, worker: Worker) -> int:
-        return (self._longest_ns if worker.ready else START_NS) - worker.busy_ns
+        longest_ns = self._longest_ns if worker.ready else START_NS
+        left_ns = longest_ns - worker.busy_ns
+        return left_ns if left_ns > 0 else longest_ns - worker.own_ns
 
     def _listen(self, worker: Worker) -> list[NumberedVerdict]:
         busy_ns, size = worker.busy_ns, len(worker.jobs)

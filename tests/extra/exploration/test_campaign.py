@@ -9,6 +9,8 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 
@@ -30,6 +32,7 @@ from cfepy.extra.exploration.workers import PROCESS_DIED, Processes, Worker
 from cfepy.reading.resources import import_path
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
 from tests.extra.exploration.fake_trials import Environment, FakeTrial, Seeds
 
 IDENTITY = {"plan": {"words": ["a"], "seed": 0}, "search": "random"}
@@ -309,3 +312,10 @@ def test_workers_end_with_their_parent() -> None:
             assert select.select([ended], [], [], 30)[0]
         finally:
             os.close(ended)
+
+
+def test_time_in_which_other_programs_had_the_cpu_does_not_count() -> None:
+    starved: Any = SimpleNamespace(ready=True, busy_ns=3 * NS_PER_S, own_ns=NS_PER_S)
+    sleeping: Any = SimpleNamespace(ready=True, busy_ns=3 * NS_PER_S, own_ns=3 * NS_PER_S)
+    crew = Processes(1, longest_s=2.0)
+    assert (crew._left_ns(starved), crew._left_ns(sleeping)) == (NS_PER_S, -NS_PER_S)

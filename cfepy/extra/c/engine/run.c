@@ -182,7 +182,6 @@ HIDDEN PyTypeObject table_type = {
 /* ---- run ---------------------------------------------------------------------------------------------------------- */
 
 enum { ENTRY_ARGUMENTS = 6 };
-#define LONGEST_LOOK_S 0.25
 
 /* Where a function was called that faulted, or that is not there; 0 for a fault of the application's own code. */
 static uint64_t caller_of_fault(const Coroutine *coroutine)
@@ -235,21 +234,21 @@ static __attribute__((noinline)) int serve_native(Coroutine *coroutine, const Fu
     return PyErr_Occurred() ? -1 : 0;
 }
 
-static double wall_s(void)
+static double cpu_s(void)
 {
     struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return now.tv_sec + now.tv_nsec / 1e9;
 }
 
-/* It computes without a call: Python does what waits to be done, and may have it end. Time in which the whole process
- * was stopped does not count. */
+/* It computes without a call: Python does what waits to be done, and may have it end. Time in which other programs had
+ * the CPU does not count. */
 static int let_others_in(Coroutine *coroutine)
 {
     running = NULL;
-    double now = wall_s(), since = coroutine->computes_since ? now - coroutine->computes_since : 0;
+    double now = cpu_s();
+    coroutine->computed_s += coroutine->computes_since ? now - coroutine->computes_since : 0;
     coroutine->computes_since = now;
-    coroutine->computed_s += since < LONGEST_LOOK_S ? since : LONGEST_LOOK_S;
     PyObject *pc = PyLong_FromUnsignedLongLong(coroutine->fault_pc);
     PyObject *function = pc ? PyObject_GetItem(coroutine->table->preempted, pc) : NULL;
     PyObject *answer = function ? PyObject_CallFunction(function, "dK", coroutine->computed_s,
