@@ -184,7 +184,7 @@ class RosRuntime:
         self._network = network
         self._files = files
         self._accesses = accesses
-        self.traps = [] if traps is None else traps
+        self.traps = self.graph.traps = [] if traps is None else traps
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
         self.monitor = ProcessMonitor(config, console, kernel.stop)

@@ -15,7 +15,7 @@ from cfepy.ports import PEND_FOREVER
 
 if TYPE_CHECKING:
     from cfepy.sb.buffers import BUFFER_BYTES
-    from cfepy.sb.bus import POLL, SoftwareBus
+    from cfepy.sb.bus import POLL, SoftwareBus, Waiting
     from cfepy.sb.direct_subscriber import Outlet
     from cfepy.sb.message_buffer import MessageBuffer
     from cfepy.sb.packet_listener import listened
@@ -44,6 +44,7 @@ __all__ = [
     "Route",
     "SbTask",
     "SoftwareBus",
+    "Waiting",
     "listened",
 ]
 
@@ -55,6 +56,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".bus": (
                 "POLL",
                 "SoftwareBus",
+                "Waiting",
             ),
             ".message_buffer": ("MessageBuffer",),
             ".direct_subscriber": ("Outlet",),

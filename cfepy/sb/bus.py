@@ -389,6 +389,31 @@ class SoftwareBus(SubscriptionServices):
             self._record(pipe.drop_mark)
         return len(items)
 
+    # -- messages that wait elsewhere ----------------------------------------------------------------------------------
+
+    def set_aside(self, pipe: Pipe) -> list[Waiting]:
+        """Take the messages out of a pipe and its memory; they count as waiting, and observers do not notice.
+
+        ROS subscribers do so with messages that, on ROS, wait in sockets.
+        """
+        waiting = list(pipe.items)
+        pipe.items.clear()
+        self._queued_bytes -= sum(len(packet) + BUFFER_BYTES for packet, _ in waiting)
+        return waiting
+
+    def put_back(self, pipe: Pipe, waiting: list[Waiting]) -> None:
+        """Put messages from `set_aside` in front of a pipe, even if it then holds more than its depth."""
+        pipe.items.extendleft(reversed(waiting))
+        self._queued_bytes += sum(len(packet) + BUFFER_BYTES for packet, _ in waiting)
+
+    def discard(self, pipe: Pipe, waiting: list[Waiting]) -> None:
+        """Drop messages from `set_aside`, like a pipe that `keeps_newest`."""
+        others = self.set_aside(pipe)
+        self.put_back(pipe, waiting)
+        while pipe.items:
+            self._drop_oldest(pipe)
+        self.put_back(pipe, others)
+
     # -- receiving -------------------------------------------------------------------------------------------------
 
     def receive_buffer(self, pipe_id: int, timeout_ms: int = PEND_FOREVER) -> bytes | None:
@@ -510,6 +535,8 @@ class SoftwareBus(SubscriptionServices):
 
 
 Failures = list[tuple[int, Destination]]
+Waiting = tuple[bytes, Destination]
+"""A packet in a pipe."""
 
 
 def _limited(failures: Failures | None, destination: Destination) -> Failures:

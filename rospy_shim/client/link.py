@@ -29,9 +29,8 @@ if TYPE_CHECKING:
     from rospy_shim.graph.graph import Header
     from rospy_shim.types.msgs import MessageClass
 
-PACE_NS = 100_000  # period of looking for room for the next segment
+PACE_NS = 100_000  # period of looking for room for the next segment in pipes of cFE applications
 PATIENCE = 100  # looks, before a segment is sent to a full queue and lost there
-FULL = 1 << 16  # more packets than any pipe holds
 _EMPTY_LAYOUT = 12  # bytes of a UInt8MultiArray before its data: an empty layout, and the length
 
 
@@ -62,6 +61,7 @@ class Link(TopicSide):
         self._pack = packer(data_class)
         self.seq = 0
         self.message_data_sent = 0  # bytes
+        self.queue_size: int | None = None  # long messages that wait while sockets are full; None waits in `publish`
         self.is_latch = False
         self.latch: Any = None  # the last message
         self.subscriber_listeners: list[SubscribeListener] = []
@@ -298,16 +298,24 @@ class Link(TopicSide):
         self._bus.transmit_msg(packet)
 
     def _send_segments(self, payload: bytes) -> None:
-        """Send one long message. As with a full socket, the caller waits while a subscriber's queue is full."""
+        """Send one long message.
+
+        Subscribers that are behind get it through their sockets; for a full pipe of an application, the caller waits.
+        """
         count = -(-len(payload) // self._room)
-        for subscription in self.peers:
+        peers = [each for each in self.peers if not each.is_outside]
+        for subscription in peers:
             subscription.expect_segments(count)
         self.acquire()
         try:
+            for subscription in peers:
+                subscription.expect_message(self, len(payload))
             for index, packet in enumerate(segments(self.msg_id, payload, self._room)):
-                self._wait_for_room(packet, count)
+                self._wait_for_room(packet, peers)
                 self._note(index)
                 self._bus.transmit_msg(packet)
+            for subscription in peers:
+                subscription.has_sent(self)
         finally:
             self.release()
 
@@ -317,25 +325,33 @@ class Link(TopicSide):
         if self.topic is not None and route is not None:
             self.topic.notes[(route.sequence + 1) & 0x3FFF] = (self.header, index)
 
-    def _wait_for_room(self, packet: bytes, count: int) -> None:
-        """Give subscribers time to take their messages; one that is busy with a callback then loses old ones."""
+    def _wait_for_room(self, packet: bytes, peers: list[Subscription]) -> None:
+        """Make room for a packet.
+
+        Args:
+            packet: the packet.
+            peers: subscriptions of nodes in Python, whose messages can wait in sockets; applications get time.
+        """
         if self._has_room(packet):
             return
         kernel = self.node.kernel
         kernel.yield_cpu()
-        for look in range(PATIENCE):
-            if self._has_room(packet, count if look else FULL):
+        if self._has_room(packet):
+            return
+        for subscription in peers:
+            subscription.fall_behind(self._bus.has_room(packet))
+        for _ in range(PATIENCE):
+            if self._has_room(packet):
                 return
             kernel.delay(PACE_NS)
 
-    def _has_room(self, packet: bytes, count: int = FULL) -> bool:
-        """Return True if the bus and every pipe take a packet, or drop old messages for one of `count` packets."""
+    def _has_room(self, packet: bytes) -> bool:
+        """Return True if the bus and every pipe take a packet."""
         route = self._routes.get(self.msg_id)
         return route is None or (
             self._bus.has_room(packet)
             and all(
                 (each.puts - each.gets < each.limit and len(each.pipe.items) < each.pipe.depth)
-                or (each.pipe.keeps_newest and count <= each.pipe.depth)
                 or self.node.owner in each.pipe.unheard
                 for each in route.active
             )

@@ -14,6 +14,7 @@ from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.status import CfeError
 from rospy_shim.client import connection_setup as connecting
 from rospy_shim.client.message import packer, unpacker
+from rospy_shim.client.socket_buffers import Lag, SocketBuffers, is_full
 from rospy_shim.client.topic_side import INBOUND, TopicConnection, TopicSide
 from rospy_shim.types.exceptions import ROSException
 from rospy_shim.types.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, Assembler, is_for_another, sequence_of
@@ -61,6 +62,8 @@ class Subscription(TopicSide):
         self._late: list[Link] = []  # publishers that give their latched message at another time
         self._attention = False  # the task has other work than receiving
         self._segments = 1  # packets of the longest message so far
+        self._sockets: SocketBuffers | None = None  # while it is behind with long messages
+        self._lag: Lag | None = None
         self._pipe = NO_PIPE
         self._assembler = Assembler()
         self._unreadable = 0  # messages
@@ -128,7 +131,7 @@ class Subscription(TopicSide):
         return size is not None and pipe.depth < size * self._segments and self._find_pipe() is pipe
 
     def set_buff_size(self, buff_size: object) -> None:
-        """Check a buffer size; a packet is always read as a whole.
+        """Read so many bytes at once.
 
         Raises:
             ROSException: it is not a positive integer.
@@ -205,6 +208,84 @@ class Subscription(TopicSide):
 
         self._calls = [(count, None), *self._calls]
 
+    # -- long messages -------------------------------------------------------------------------------------------------
+
+    def fall_behind(self, has_memory: bool) -> None:
+        """Let messages wait in the sockets instead of the pipe, if the pipe is full or the bus has no memory."""
+        pipe = self._find_pipe()
+        if pipe is not None and pipe.items and not (has_memory and len(pipe.items) < pipe.depth):
+            self._use_sockets(pipe)
+
+    def _use_sockets(self, pipe: Pipe) -> SocketBuffers:
+        if self._sockets is None:
+            self._sockets = SocketBuffers(self.node.kernel, f"{self.name} to {self.node.names.name}")
+            self._attention = True
+        self._set_aside(self._sockets, pipe)
+        return self._sockets
+
+    def _set_aside(self, sockets: SocketBuffers, pipe: Pipe) -> None:
+        """Move the packets in the pipe behind those in the sockets, except those that were just read from there."""
+        packets = self._bus.set_aside(pipe)
+        loose = sockets.loose
+        self._bus.put_back(pipe, packets[:loose])
+        sockets.add(packets[loose:])
+
+    def expect_message(self, link: Link, size: int) -> None:
+        """Wait until the sockets have room for a long message, if its publisher has no queue.
+
+        Args:
+            link: the publisher.
+            size: bytes of the message.
+        """
+        sockets, pipe = self._sockets, self._find_pipe()
+        if sockets is None and pipe is not None and is_full(pipe.items, size):
+            sockets = self._use_sockets(pipe)
+        if sockets is None or link.queue_size is not None or self not in link.peers:
+            return
+        kernel = self.node.kernel
+        begun, name = kernel.now, link.node.names.name
+        sockets.wait_for_room(size)
+        if kernel.now > begun and self._lag is not None and name not in self._lag.held_up:
+            self._lag.held_up = (*self._lag.held_up, name)
+
+    def has_sent(self, link: Link) -> None:
+        """Handle the end of a long message: if the subscription is behind, the message waits in its sockets."""
+        sockets, pipe = self._sockets, self._find_pipe()
+        if sockets is None or pipe is None:
+            return
+        self._set_aside(sockets, pipe)
+        if link.queue_size is not None:
+            self._bus.discard(pipe, sockets.queue_last(link.queue_size))
+
+    def _read_sockets(self, sockets: SocketBuffers, pipe: Pipe) -> None:
+        """Put the next message back into the pipe."""
+        self._attention = True
+        if sockets.loose:
+            return
+        self._set_aside(sockets, pipe)
+        self._bus.discard(pipe, sockets.read(self.buff_size, self.queue_size))
+        packets, late_ns = sockets.take()
+        self._bus.put_back(pipe, packets)
+        if sockets.leaves_newer and self.queue_size is not None:
+            self._note_lag(sum(len(packet) - HEADER_BYTES for packet, _ in packets), late_ns)
+        if not sockets:
+            self._catch_up()
+
+    def _note_lag(self, size: int, late_ns: int) -> None:
+        """Note that an old message is handled although there is a newer one."""
+        lag = self._lag
+        if lag is None:
+            assert self.queue_size is not None
+            lag = self._lag = Lag(self.name, self.node.names.name, self.queue_size, self.buff_size)
+            self.node.graph.traps.append(lag)
+        lag.size, lag.worst_ns = max(lag.size, size), max(lag.worst_ns, late_ns)
+
+    def _catch_up(self) -> None:
+        """Use the pipe alone again."""
+        sockets, self._sockets = self._sockets, None
+        if sockets is not None:
+            sockets.wake()
+
     def close(self) -> None:
         """Leave the graph. After this, the serving task ends once it has returned from its callbacks."""
         topic, self.topic = self.topic, None
@@ -217,6 +298,7 @@ class Subscription(TopicSide):
             if pipe != NO_PIPE:
                 self._bus.unsubscribe(topic.msg_id, pipe)
                 topic.tell_left(self._bus, pipe)
+        self._catch_up()
         self.closed = True  # not earlier: the task deletes the pipe as soon as it sees this
         self._call_attention()
 
@@ -343,6 +425,8 @@ class Subscription(TopicSide):
         pipe = self._find_pipe()
         if pipe is not None:
             pipe.is_called = False
+            if self._sockets is not None:
+                self._read_sockets(self._sockets, pipe)
         while self._backlog and not self.closed:
             if self._has_earlier(self._backlog[0][0]):
                 self._attention = True

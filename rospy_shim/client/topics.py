@@ -94,7 +94,9 @@ class Publisher(TopicHandle):
             tcp_nodelay: accepted.
             latch: later subscribers get the last message.
             headers: added to the connection header.
-            queue_size: accepted; if it is missing, a warning is printed, as in rospy.
+            queue_size: long messages that wait while the sockets of a slow subscriber are full
+                (`rospy_shim.client.socket_buffers`); 0 for no limit. If it is missing, `publish` waits then, and a
+                warning is printed, as in rospy. The last publisher of a node on a topic that sets it decides.
 
         Raises:
             ValueError: see `TopicHandle`.
@@ -105,6 +107,8 @@ class Publisher(TopicHandle):
         if queue_size is None:
             node.warn(NO_QUEUE_SIZE, SyntaxWarning)
         self.impl = link = node.link(self.resolved_name, data_class)
+        if queue_size is not None:
+            link.queue_size = queue_size
         link.ref_count += 1
         if latch:
             link.enable_latch()
@@ -175,7 +179,8 @@ class Subscriber(TopicHandle):
             callback_args: second argument of the callback.
             queue_size: messages that may wait before the oldest ones are dropped; None is as many as the platform
                 allows. The last subscriber of a node on a topic that sets it decides.
-            buff_size: checked, and without effect.
+            buff_size: bytes of one read, among which a queue size drops long messages
+                (`rospy_shim.client.socket_buffers`).
             tcp_nodelay: accepted.
 
         Raises:

@@ -239,6 +239,7 @@ class Graph:
         self.compiled: dict[str, CompiledNode] = {}
         self.services: dict[str, ServiceEntry] = {}
         self.displaced: list[tuple[str, str, str]] = []
+        self.traps: list[object] = []  # for the report of the run
         """Nodes that gave way to another one: name, the former application, the new one."""
         self.params = ParameterTree(config.params)
         self.ids = MsgIds(config)

@@ -102,7 +102,8 @@ def test_slow_callback_gets_the_newest_long_message_completely(tmp_path: Path) -
         tmp_path,
         'publisher = rospy.Publisher("big", String, queue_size=1)\n'
         "for n in range(30):\n    publisher.publish(chr(65 + n) * 100_000)\n    rospy.sleep(0.05)",
-        'rospy.Subscriber("big", String, lambda m: (seen.append(m.data), rospy.sleep(0.52)), queue_size=1)\n'
+        'rospy.Subscriber("big", String, lambda m: (seen.append(m.data), rospy.sleep(0.52)), queue_size=1,'
+        " buff_size=2**24)\n"
         "rospy.sleep(4.0)\nprint([sorted(set(text)) for text in seen], {len(text) for text in seen})",
     )
     assert result.printed["sub"][-1] == "[['A'], ['K'], ['U'], ['^']] {100000}"
