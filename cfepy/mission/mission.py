@@ -19,6 +19,7 @@ from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.config.platform import FAIR
 from cfepy.es import NODE_SYMBOL
+from cfepy.interpreter.blas_threads import use_one_blas_thread
 from cfepy.interpreter.own_code import is_own_code
 from cfepy.mission.failed_code import FailedCode
 from cfepy.mission.host_actions import HostActs
@@ -117,6 +118,7 @@ class Mission:
         trace: Trace | None = None,
         attachments: Sequence[Attachment] = (),
     ) -> None:
+        use_one_blas_thread()
         self.spec = mission if isinstance(mission, MissionSpec) else read_mission(mission)
         self.seed = seed
         self.tasks, self.why_tasks = kind = task_kind(tasks)

@@ -22,6 +22,7 @@ from cfepy.cli.run.record_event import MESSAGE, OTHER, OVER, RecordEvent, due_ti
 from cfepy.cli.trace_text import TraceText
 from cfepy.cli.watched_host import Interrupts, WatchedHost
 from cfepy.ground import dictionary_of, flat, library_of, plain, text_of, topics_of
+from cfepy.interpreter.blas_threads import use_one_blas_thread
 from cfepy.interpreter.child_pipes import descriptor_of
 from cfepy.journal import Replay, read_journal, staged
 from cfepy.mission import Mission, MissionSpec
@@ -121,7 +122,7 @@ class RecordPipe(Recorder):
 
     def __exit__(self, kind: type[BaseException] | None, *error: object) -> None:
         if kind is None:
-            contacts = [*self._world.contacts, *outside_lines()]
+            contacts = [*self._world.contacts, *outside_lines(), *filter(None, [use_one_blas_thread()])]
             self._writer.end({"digest": self.trace.digest(), "contacts": contacts, "problems": self.problems})
 
     def begin(self, mission: Mission) -> None:
