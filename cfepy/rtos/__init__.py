@@ -1,8 +1,8 @@
 """The simulated real-time kernel: virtual time, tasks with priorities, and the objects that tasks wait for.
 
 Code that makes tasks run or wait, decides which task runs next, or charges virtual time for it belongs here. Tasks,
-queues and mutexes of OSAL are in OSAL, which builds them on the names below. Only `context`, `cpus`, `realtime` and
-`watchdog` use the host's threads, CPUs and clock, and no package above does. The central file is
+queues and mutexes of OSAL are in OSAL, which builds them on the names below. Only `context`, `cpus`, `cpu_time`,
+`realtime` and `watchdog` use the host's threads, CPUs and clock, and no package above does. The central file is
 `cfepy/rtos/scheduler.py`.
 """
 
@@ -15,6 +15,7 @@ from cfepy.interpreter.faces import face
 if TYPE_CHECKING:
     from cfepy.rtos.context_choice import AUTO, GREENLET, THREAD, TaskKind, has_greenlets, task_kind
     from cfepy.rtos.costs import CpuCosts
+    from cfepy.rtos.cpu_time import kept_waiting_ns
     from cfepy.rtos.cpus import allowed_cpus
     from cfepy.rtos.errors import DeadlockError, InjectedCrash
     from cfepy.rtos.kept_back import KeptBack
@@ -51,7 +52,7 @@ if TYPE_CHECKING:
     from cfepy.rtos.task_starters import StartersFirst
     from cfepy.rtos.wait_graph import Wait, circles, endless
     from cfepy.rtos.wait_list import WaitList
-    from cfepy.rtos.watchdog import STALL_S, StallWatch, kept_waiting_ns
+    from cfepy.rtos.watchdog import STALL_S, StallWatch
     from cfepy.rtos.wrapped_calls import wrapping
 
 __all__ = [
@@ -123,6 +124,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "task_kind",
             ),
             ".costs": ("CpuCosts",),
+            ".cpu_time": ("kept_waiting_ns",),
             ".cpus": ("allowed_cpus",),
             ".errors": (
                 "DeadlockError",
@@ -184,7 +186,6 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".watchdog": (
                 "STALL_S",
                 "StallWatch",
-                "kept_waiting_ns",
             ),
             ".wrapped_calls": ("wrapping",),
         },

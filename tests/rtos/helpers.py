@@ -8,7 +8,8 @@ from collections.abc import Callable
 import pytest
 
 from cfepy.rtos import watchdog
-from cfepy.rtos.watchdog import GRACE_S, Spent
+from cfepy.rtos.cpu_time import Spent
+from cfepy.rtos.watchdog import GRACE_S
 
 LOOK_S = 0.01  # between two looks of a watch with `Clocks`
 

@@ -15,9 +15,10 @@ from types import FunctionType
 
 import pytest
 
-from cfepy.rtos import Kernel, Task, watchdog
+from cfepy.rtos import Kernel, Task, cpu_time, watchdog
 from cfepy.rtos.context import UNWIND_S, drain
-from cfepy.rtos.watchdog import Expenses, Spent, StallWatch, kept_waiting_ns
+from cfepy.rtos.cpu_time import Expenses, Spent, kept_waiting_ns
+from cfepy.rtos.watchdog import StallWatch
 from cfepy.status import StallError
 from cfepy.units import NS_PER_S
 from tests.rtos.helpers import Clocks
@@ -478,13 +479,13 @@ def test_time_used_by_other_programs_counts(tmp_path: Path, monkeypatch: pytest.
         (tmp_path / thread).mkdir()
         (tmp_path / thread / "schedstat").write_text(text, encoding="utf-8")
     (tmp_path / "4").mkdir()  # a thread that has just ended
-    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
+    monkeypatch.setattr(cpu_time, "THREADS", str(tmp_path))
     monkeypatch.setattr(time, "process_time", lambda: 1.5)
     monkeypatch.setattr(time, "thread_time", lambda: 0.5)
     monkeypatch.setattr(time, "monotonic", lambda: 9.0)
     by_thread = {1: (5e-9, 2.0), 2: (5e-9, 0.5)}
     assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=2.5, by_thread=by_thread)
-    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
+    monkeypatch.setattr(cpu_time, "THREADS", str(tmp_path / "none"))
     assert Expenses()() == Spent(wall_s=9.0, used_s=1.0, ready_s=0.0)
 
 
@@ -498,7 +499,7 @@ def test_time_of_the_check_itself_is_not_counted() -> None:
 
 
 def test_time_counted_for_an_ended_thread_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path))
+    monkeypatch.setattr(cpu_time, "THREADS", str(tmp_path))
 
     def tell(thread: str, ready_s: int) -> None:
         (tmp_path / thread).mkdir(exist_ok=True)
@@ -519,7 +520,7 @@ def test_time_counted_for_an_ended_thread_is_kept(tmp_path: Path, monkeypatch: p
     assert spent().ready_s == 10
     tell("1", 1)  # the same between two looks
     assert spent().ready_s == 11
-    monkeypatch.setattr(watchdog, "THREADS", str(tmp_path / "none"))
+    monkeypatch.setattr(cpu_time, "THREADS", str(tmp_path / "none"))
     assert spent().ready_s == 11
 
 
