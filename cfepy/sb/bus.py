@@ -334,7 +334,7 @@ class SoftwareBus(SubscriptionServices):
                 if not (pipe.keeps_newest and waiting):
                     failures = _overflowed(failures, destination)
                     continue
-                waiting = self._drop_oldest(pipe)
+                waiting = self._make_room(pipe, size)
                 puts = destination.puts
             if hook is not None:
                 hook.put(destination)
@@ -373,6 +373,12 @@ class SoftwareBus(SubscriptionServices):
             raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         route.relayed += 1
         return bytes(packet)
+
+    def _make_room(self, pipe: Pipe, size: int) -> int:
+        """Make room for a packet in a full pipe that `keeps_newest`; return the number of packets left."""
+        if pipe.spill is not None and pipe.spill(size):
+            return len(pipe.items)
+        return self._drop_oldest(pipe)
 
     def _drop_oldest(self, pipe: Pipe) -> int:
         """Remove the oldest message with all its segments from a pipe; return the number of packets left."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from cfepy import trace
 from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.rtos import TIMEOUT, Kernel, Queue
@@ -17,7 +19,8 @@ class Pipe(Queue):
     `send_errors` counts messages refused by a message limit, like NASA's SendErrors, and `overflows` those that did not
     fit. A pipe that `keeps_newest` drops its oldest message to make room, as the queue of a ROS subscriber does.
     Messages of the applications in `unheard` are refused: of its own application by a pipe option, and of ROS nodes not
-    connected yet. If NOBODY_HEARD is in it, all messages are refused. If `is_called`, the reader returns without a
+    connected yet. If `spill` returns True for the size of the next packet, it has made room with `set_aside`, and none
+    is dropped. If NOBODY_HEARD is in it, all messages are refused. If `is_called`, the reader returns without a
     message.
 
     Args:
@@ -41,6 +44,7 @@ class Pipe(Queue):
         "queue_id",
         "receive_mark",
         "send_errors",
+        "spill",
         "unheard",
     )
 
@@ -53,6 +57,7 @@ class Pipe(Queue):
         self.opts = 0
         self.unheard: tuple[object, ...] = ()
         self.keeps_newest = self.is_called = False
+        self.spill: Callable[[int], bool] | None = None
         self.send_errors = self.overflows = 0
         self.claim = 0
         self.queue_id = 0

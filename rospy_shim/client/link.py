@@ -61,7 +61,7 @@ class Link(TopicSide):
         self._pack = packer(data_class)
         self.seq = 0
         self.message_data_sent = 0  # bytes
-        self.queue_size: int | None = None  # long messages that wait while sockets are full; None waits in `publish`
+        self.queue_size: int | None = None  # messages that wait while sockets are full; None waits in `publish`
         self.is_latch = False
         self.latch: Any = None  # the last message
         self.subscriber_listeners: list[SubscribeListener] = []
@@ -82,6 +82,7 @@ class Link(TopicSide):
         self._count_items = getattr(data_class, "__count_items__", None) if node.call_ns else None
         self._slot_ns = node.publish_slot_ns
         self._slot = -1  # the slot of the last message
+        self._is_gated = bool(self._slot_ns)
         self.leftovers: Leftovers | None = None  # set once a connection was corrupted
         self._room = bus.config.sb_max_msg_size - HEADER_BYTES
 
@@ -102,6 +103,7 @@ class Link(TopicSide):
         self.msg_id = topic.msg_id
         self._head = whole_header(topic.msg_id)
         topic.add_link(self)
+        self.refresh_gate()
         for subscription in topic.subscriptions[:]:
             connecting.begin(self, subscription, connecting.delay_of(self, subscription), late=False)
 
@@ -207,8 +209,8 @@ class Link(TopicSide):
         if route is None or not route.active or (self.expected and not self.get_num_connections()):
             self._keep_back(message)
             return
-        if self._slot_ns:
-            self._hold_back()
+        if self._is_gated:
+            self._wait_before_sending()
         payload = self.serialize(message)
         if self.leftovers is not None:
             self.leftovers.go_out(payload)
@@ -237,6 +239,17 @@ class Link(TopicSide):
         self._unsent(self._unsent_head + payload)
         if self.topic is not None:
             self.topic.unsent = True
+
+    def refresh_gate(self) -> None:
+        """Check whether messages may have to wait before they are sent."""
+        self._is_gated = bool(self._slot_ns or (self.topic is not None and self.topic.lagging))
+
+    def _wait_before_sending(self) -> None:
+        if self._slot_ns:
+            self._hold_back()
+        if self.topic is not None and self.queue_size is None:
+            for subscription in self.topic.lagging[:]:
+                subscription.expect_message(self, 0)
 
     def _hold_back(self) -> None:
         """Wait for a time slot in which nothing was sent yet, on a board with a maximum publishing rate."""
@@ -315,7 +328,7 @@ class Link(TopicSide):
                 self._note(index)
                 self._bus.transmit_msg(packet)
             for subscription in peers:
-                subscription.has_sent(self)
+                subscription.has_sent()
         finally:
             self.release()
 

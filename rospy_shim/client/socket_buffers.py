@@ -5,9 +5,9 @@ bytes of all others wait in the buffers of the two sockets. So with messages lon
 handled, the oldest first, and the lag grows until the buffers are full. Then a publisher without `queue_size` waits in
 `publish`, and one with a `queue_size` drops its own oldest messages. `buff_size=2**24` is the cure.
 
-A mission's pipes and the bus's memory are too small for this. So once the pipe of a subscription has no room for the
-next packet of a long message, its messages wait in `SocketBuffers`, until the subscriber has caught up. Messages that
-fit in one packet never begin this.
+A mission's pipes and the bus's memory are too small for this. So once the pipe of a subscription is full, and more
+bytes wait than one read brings, its messages wait in `SocketBuffers` until the subscriber has caught up. While all of
+them fit in one read, the pipe alone drops the oldest message, and nothing here is used.
 """
 
 from __future__ import annotations
@@ -33,6 +33,11 @@ interface: 3.3 to 4.4 MB, depending on when the buffers grew."""
 FEW = 32  # packets that are not counted; a packet has at most 64 KiB
 LENGTH_BYTES = 4  # before each message
 CURE = "2**24"
+
+
+def wire_bytes(waiting: Waiting) -> int:
+    """Return the bytes of a whole message on the wire, from its packet."""
+    return len(waiting[0]) - HEADER_BYTES + LENGTH_BYTES
 
 
 def is_full(packets: Collection[Waiting], size: int) -> bool:
@@ -90,8 +95,23 @@ class SocketBuffers:
 
     # -- the publisher's side ------------------------------------------------------------------------------------------
 
-    def add(self, packets: list[Waiting]) -> None:
-        """Add packets behind the others."""
+    def begin_with(self, unused: int) -> None:
+        """Take all messages so far as read, and some bytes behind them."""
+        self._ahead = len(self._messages)
+        self._read = self._bytes + unused
+
+    def add(self, packets: list[Waiting], queue_size: int | None = None) -> list[Waiting]:
+        """Add packets behind the others.
+
+        Args:
+            packets: the packets.
+            queue_size: messages that their publisher keeps while the sockets are full; 0 for no limit, and None for a
+                publisher that has waited for room.
+
+        Returns:
+            The packets of the messages that the publisher's queue drops.
+        """
+        dropped: list[Waiting] = []
         for each in packets:
             packet = each[0]
             self._packets.append(each)
@@ -102,12 +122,15 @@ class SocketBuffers:
                 self._bytes += LENGTH_BYTES
                 self._messages.append(_Message(self._part + LENGTH_BYTES, self._part_packets, self._kernel.now))
                 self._part = self._part_packets = 0
+                if queue_size is not None:
+                    dropped += self._queue_last(queue_size)
+        return dropped
 
     def wait_for_room(self, size: int) -> None:
         """Wait until the sockets have room for a message, as `publish` without a queue does.
 
         Args:
-            size: bytes of the serialized message.
+            size: bytes of the serialized message; 0 if they are not known.
         """
         kernel = self._kernel
         while self._bytes and self._bytes - self._read + size + LENGTH_BYTES > SOCKET_BYTES:
@@ -115,14 +138,9 @@ class SocketBuffers:
                 return
             kernel.wait_on(self._room)
 
-    def queue_last(self, queue_size: int) -> list[Waiting]:
-        """Let the last message wait in its publisher's queue if the sockets are full.
-
-        Args:
-            queue_size: messages that this queue holds; 0 for no limit.
-
-        Returns:
-            The packets of the message that the queue drops; empty for none.
+    def _queue_last(self, queue_size: int) -> list[Waiting]:
+        """Let the last message wait in its publisher's queue if the sockets are full; return the packets that the
+        queue drops.
         """
         self._queue_holds(self._queued + 1)
         if not queue_size or self._queued <= queue_size:

@@ -14,7 +14,7 @@ from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.status import CfeError
 from rospy_shim.client import connection_setup as connecting
 from rospy_shim.client.message import packer, unpacker
-from rospy_shim.client.socket_buffers import Lag, SocketBuffers, is_full
+from rospy_shim.client.socket_buffers import LENGTH_BYTES, Lag, SocketBuffers, is_full, wire_bytes
 from rospy_shim.client.topic_side import INBOUND, TopicConnection, TopicSide
 from rospy_shim.types.exceptions import ROSException
 from rospy_shim.types.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, Assembler, is_for_another, sequence_of
@@ -22,7 +22,7 @@ from rospy_shim.types.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, Assemb
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from cfepy.sb import Pipe
+    from cfepy.sb import Destination, Pipe
     from rospy_shim.client.link import Link
     from rospy_shim.client.node import Node
     from rospy_shim.graph.compiled import CompiledNode
@@ -64,6 +64,8 @@ class Subscription(TopicSide):
         self._segments = 1  # packets of the longest message so far
         self._sockets: SocketBuffers | None = None  # while it is behind with long messages
         self._lag: Lag | None = None
+        self._dropped_since: tuple[Destination, int] | None = None  # and the number of packets taken at that time
+        self._dropped_bytes = 0  # since then, which wait in ROS's sockets
         self._pipe = NO_PIPE
         self._assembler = Assembler()
         self._unreadable = 0  # messages
@@ -112,7 +114,7 @@ class Subscription(TopicSide):
     def _size_pipe(self) -> None:
         pipe = self._find_pipe()
         if pipe is not None:
-            pipe.depth, pipe.keeps_newest = self._depth(), self.queue_size is not None
+            pipe.depth, pipe.keeps_newest, pipe.spill = self._depth(), self.queue_size is not None, self._spill
 
     def _find_pipe(self) -> Pipe | None:
         pipe: Pipe | None = self._bus.find_pipe(self._pipe) if self._pipe != NO_PIPE else None
@@ -208,10 +210,35 @@ class Subscription(TopicSide):
 
         self._calls = [(count, None), *self._calls]
 
-    # -- long messages -------------------------------------------------------------------------------------------------
+    # -- messages that wait in sockets -------------------------------------------------------------------------------
+
+    def _spill(self, size: int) -> bool:
+        """Let the messages of the full pipe wait in the sockets, if one read would not bring all that were sent.
+
+        Args:
+            size: bytes of the next packet.
+
+        Returns:
+            False if the pipe should drop its oldest message.
+        """
+        pipe, topic = self._find_pipe(), self.topic
+        if pipe is None or topic is None or topic.raw:
+            return False
+        if self._sockets is None:
+            destination = pipe.items[0][1]
+            if (destination, destination.gets) != self._dropped_since:
+                self._dropped_since, self._dropped_bytes = (destination, destination.gets), 0
+            left = self.buff_size - self._dropped_bytes - sum(map(wire_bytes, pipe.items))
+            if size - HEADER_BYTES + LENGTH_BYTES <= left:
+                self._dropped_bytes += wire_bytes(pipe.items[0])
+                return False
+            self._use_sockets(pipe).begin_with(max(0, left))
+        else:
+            self._set_aside(self._sockets, pipe)
+        return True
 
     def fall_behind(self, has_memory: bool) -> None:
-        """Let messages wait in the sockets instead of the pipe, if the pipe is full or the bus has no memory."""
+        """Let messages wait in the sockets, if the pipe is full or the bus has no memory for a long message."""
         pipe = self._find_pipe()
         if pipe is not None and pipe.items and not (has_memory and len(pipe.items) < pipe.depth):
             self._use_sockets(pipe)
@@ -220,6 +247,8 @@ class Subscription(TopicSide):
         if self._sockets is None:
             self._sockets = SocketBuffers(self.node.kernel, f"{self.name} to {self.node.names.name}")
             self._attention = True
+            if self.topic is not None:
+                self.topic.lags(self)
         self._set_aside(self._sockets, pipe)
         return self._sockets
 
@@ -228,14 +257,14 @@ class Subscription(TopicSide):
         packets = self._bus.set_aside(pipe)
         loose = sockets.loose
         self._bus.put_back(pipe, packets[:loose])
-        sockets.add(packets[loose:])
+        self._bus.discard(pipe, sockets.add(packets[loose:], self.topic.queue_size if self.topic is not None else 1))
 
     def expect_message(self, link: Link, size: int) -> None:
-        """Wait until the sockets have room for a long message, if its publisher has no queue.
+        """Wait until the sockets have room for a message, if its publisher has no queue.
 
         Args:
             link: the publisher.
-            size: bytes of the message.
+            size: bytes of the message; 0 if they are not known.
         """
         sockets, pipe = self._sockets, self._find_pipe()
         if sockets is None and pipe is not None and is_full(pipe.items, size):
@@ -248,14 +277,11 @@ class Subscription(TopicSide):
         if kernel.now > begun and self._lag is not None and name not in self._lag.held_up:
             self._lag.held_up = (*self._lag.held_up, name)
 
-    def has_sent(self, link: Link) -> None:
+    def has_sent(self) -> None:
         """Handle the end of a long message: if the subscription is behind, the message waits in its sockets."""
         sockets, pipe = self._sockets, self._find_pipe()
-        if sockets is None or pipe is None:
-            return
-        self._set_aside(sockets, pipe)
-        if link.queue_size is not None:
-            self._bus.discard(pipe, sockets.queue_last(link.queue_size))
+        if sockets is not None and pipe is not None:
+            self._set_aside(sockets, pipe)
 
     def _read_sockets(self, sockets: SocketBuffers, pipe: Pipe) -> None:
         """Put the next message back into the pipe."""
@@ -285,9 +311,12 @@ class Subscription(TopicSide):
         sockets, self._sockets = self._sockets, None
         if sockets is not None:
             sockets.wake()
+            if self.topic is not None:
+                self.topic.has_caught_up(self)
 
     def close(self) -> None:
         """Leave the graph. After this, the serving task ends once it has returned from its callbacks."""
+        self._catch_up()
         topic, self.topic = self.topic, None
         if self.node.subscriptions.get(self.name) is self:
             del self.node.subscriptions[self.name]
@@ -298,7 +327,6 @@ class Subscription(TopicSide):
             if pipe != NO_PIPE:
                 self._bus.unsubscribe(topic.msg_id, pipe)
                 topic.tell_left(self._bus, pipe)
-        self._catch_up()
         self.closed = True  # not earlier: the task deletes the pipe as soon as it sees this
         self._call_attention()
 

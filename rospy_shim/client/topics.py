@@ -94,7 +94,7 @@ class Publisher(TopicHandle):
             tcp_nodelay: accepted.
             latch: later subscribers get the last message.
             headers: added to the connection header.
-            queue_size: long messages that wait while the sockets of a slow subscriber are full
+            queue_size: messages that wait while the sockets of a slow subscriber are full
                 (`rospy_shim.client.socket_buffers`); 0 for no limit. If it is missing, `publish` waits then, and a
                 warning is printed, as in rospy. The last publisher of a node on a topic that sets it decides.
 
@@ -179,8 +179,7 @@ class Subscriber(TopicHandle):
             callback_args: second argument of the callback.
             queue_size: messages that may wait before the oldest ones are dropped; None is as many as the platform
                 allows. The last subscriber of a node on a topic that sets it decides.
-            buff_size: bytes of one read, among which a queue size drops long messages
-                (`rospy_shim.client.socket_buffers`).
+            buff_size: bytes of one read, among which a queue size drops messages (`rospy_shim.client.socket_buffers`).
             tcp_nodelay: accepted.
 
         Raises:

@@ -70,6 +70,7 @@ class TopicEntry:
         self._members = 0
         self.links: list[Link] = []
         self.subscriptions: list[Subscription] = []
+        self.lagging: list[Subscription] = []  # those whose messages wait in sockets
         self.compiled_publishers: list[CompiledNode] = []
         self.compiled_subscribers: list[CompiledNode] = []
         self.publisher_names: list[str] = []  # all publishers so far, for the tables
@@ -142,6 +143,31 @@ class TopicEntry:
         """Add a subscriber."""
         self.subscriptions.append(subscription)
         _remember(self.subscriber_names, subscription.node.names.name)
+
+    def lags(self, subscription: Subscription) -> None:
+        """Let publishers wait for room in the sockets of a subscriber."""
+        self.lagging.append(subscription)
+        self._refresh_gates()
+
+    def has_caught_up(self, subscription: Subscription) -> None:
+        """Let publishers no longer wait for a subscriber."""
+        self.lagging.remove(subscription)
+        self._refresh_gates()
+
+    def _refresh_gates(self) -> None:
+        for link in self.links:
+            link.refresh_gate()
+
+    @property
+    def queue_size(self) -> int | None:
+        """The queue size of the publishers: messages, 0 for no limit, None if one has no queue, so that it waits.
+
+        A packet does not tell its publisher. Of several, the one that drops least counts; compiled nodes count as 1.
+        """
+        sizes = [each.queue_size for each in self.links]
+        if None in sizes:
+            return None
+        return 0 if 0 in sizes else max((size for size in sizes if size is not None), default=1)
 
     def remove_subscription(self, subscription: Subscription) -> None:
         """Remove a subscriber."""

@@ -82,6 +82,7 @@ class OutsideLink(Link):
         self.raw = topic.raw
         self.msg_id = topic.msg_id
         self.is_latch = latching
+        self.queue_size = 1  # its messages wait outside
         self.header |= self._own_header()
         topic.add_link(self)
 

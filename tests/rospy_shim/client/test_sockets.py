@@ -81,6 +81,24 @@ def test_messages_of_half_a_buffer_are_dropped_within_a_read_only(tmp_path: Path
     assert numbers[:8] == [0, 1, 3, 4, 6, 8, 9, 11]
 
 
+def test_short_messages_wait_as_well_if_one_read_does_not_bring_them_all(tmp_path: Path) -> None:
+    """Twelve laser scans come during each callback, 96 kB; the first eight of them fit in a read."""
+    _, numbers = results(flown(tmp_path, size=8000, hz=40, count=160, callback=0.3, publisher_queue=1))
+    assert numbers == [0, 8, 16, 24, 32, 40, 48, 57, 65, 73, 81, 89, 97, 105]
+
+
+def test_short_messages_hold_up_a_publisher_without_a_queue(tmp_path: Path) -> None:
+    head, numbers = results(flown(tmp_path, size=30_000, hz=200, count=300, callback=0.1))
+    assert head.startswith("took 7.")
+    assert numbers[:6] == [0, 2, 4, 6, 8, 10]
+
+
+def test_several_short_messages_within_a_read(tmp_path: Path) -> None:
+    _, numbers = results(flown(tmp_path, size=8000, hz=40, count=160, callback=0.3, publisher_queue=1, queue=3))
+    assert numbers == sorted(numbers)
+    assert numbers[:4] == [0, 6, 7, 8]
+
+
 @pytest.mark.parametrize("publisher_queue", [1, 10])
 def test_publisher_with_a_queue_drops_its_oldest_messages(tmp_path: Path, publisher_queue: int) -> None:
     """Messages that are in the sockets, or in the hands of the writing thread, are not dropped."""
@@ -97,8 +115,9 @@ def test_subscriber_without_a_queue_size_handles_all(tmp_path: Path) -> None:
     assert head == "took 10.5 lag 1.5"
 
 
-def test_both_kinds_of_tasks_give_one_trace(tmp_path: Path) -> None:
-    assert len({flown(tmp_path, tasks, count=30).digest for tasks in ("thread", "greenlet")}) == 1
+@pytest.mark.parametrize("size", [30_000, 300_000])
+def test_both_kinds_of_tasks_give_one_trace(tmp_path: Path, size: int) -> None:
+    assert len({flown(tmp_path, tasks, size=size, count=30).digest for tasks in ("thread", "greenlet")}) == 1
 
 
 FAST = """
@@ -174,8 +193,7 @@ def test_queue_of_the_publisher_drops_its_oldest(destination: Destination) -> No
     buffers = SocketBuffers(Kernel(), "a")
     dropped = []
     for number in range(10):
-        buffers.add(packets_of(number, 1 << 20, destination))
-        packets = buffers.queue_last(2)
+        packets = buffers.add(packets_of(number, 1 << 20, destination), 2)
         dropped += [number_of(packets)] if packets else []
     assert dropped == [4, 5, 6, 7]
     left = []
