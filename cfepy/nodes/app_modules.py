@@ -54,7 +54,7 @@ class AppModules:
         self,
         make: Callable[[], Universe],
         accesses: Accesses | None = None,
-        turns: Callable[[tuple[str, int]], object] | None = None,
+        turns: Callable[[tuple[str, int, bool]], object] | None = None,
     ) -> None:
         self._make = make
         self._accesses = accesses

@@ -1,13 +1,14 @@
-"""Loops that wait for another task without a sleep or a call: `while not self.image: pass`.
+"""Loops that wait for another task without a sleep: `while not self.image: pass`.
 
 On a real computer such a loop uses its processor while other threads run. Here computing takes no virtual time, so no
-other task would ever run. Therefore the code of nodes and applications gets a hook in each loop that can turn without
-doing anything. From the 1001st such turn in a row the hook uses virtual time, so other tasks run. A turn counts if the
-task used no virtual time since the turn before. Only turns count, not wall time, so every run is the same.
+other task would ever run. Therefore the code of nodes and applications gets a hook in each loop that can wait. From the
+1001st turn in a row in which the task used no virtual time, the hook uses some, so other tasks run. Only turns count,
+not wall time, so every run is the same.
 
-A loop gets the hook if one of its turns can pass without a call, and if that turn changes nothing in at least one of
-the conditions that it checks. A loop that computes changes its own conditions; `while True: pass` has none, and the
-stall watch ends it.
+A loop gets the hook if a turn can pass that changes nothing in at least one of the conditions that it checks. A loop
+that computes changes its own conditions; `while True: pass` has none, and the stall watch ends it. A method may change
+its object, and a function its arguments, so `while heap: heappop(heap)` computes. No hook is needed in a loop that
+always sleeps, or asks for the shutdown.
 """
 
 from __future__ import annotations
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
 HOOK = "__turns__"
 FREE_TURNS = 1000  # that take no virtual time, so that a short loop changes nothing
 FINE_TURNS = 1000  # that take as long as a call
-COARSE_NS = 100_000  # time of each later turn: CPython switches between threads every 5 ms
-MOST_TASKS = 64  # whose turns are counted at a time
+COARSE_NS = 100_000  # time of each later turn without calls: CPython switches between threads every 5 ms
+MOST_SEEN = 64  # loops of tasks whose turns are counted at a time
 _GIVES_WAY = ast.Await | ast.Yield | ast.YieldFrom
 # fmt: off
 _PURE = frozenset({
@@ -35,20 +36,32 @@ _PURE = frozenset({
     "tuple",
 })
 # fmt: on
+_ADVANCES = frozenset({"is_shutdown", "sleep", "spin", "spin_once", "wait"})
+"""Names of functions that always use virtual time."""
 
 
 # -- finding -----------------------------------------------------------------------------------------------------------
 
 
-def busy_loops(tree: ast.Module) -> list[ast.While]:
-    """Return the loops of a module that can wait without a call."""
-    return [node for node in ast.walk(tree) if isinstance(node, ast.While) and _may_wait(node)]
+BusyPlace = tuple[str, int, bool]
+"""File and line of a loop with a hook, and whether a turn that waits makes no calls."""
 
 
-def add_hooks(loops: Iterable[ast.While], file: str) -> None:
+def busy_loops(tree: ast.Module) -> list[tuple[ast.While, bool]]:
+    """Return the loops of a module that can wait, and whether such a turn makes no calls."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.While):
+            turn = _Turn()
+            if turn.waits_in(node):
+                found.append((node, not turn.calls))
+    return found
+
+
+def add_hooks(loops: Iterable[tuple[ast.While, bool]], file: str) -> None:
     """Let each turn of some loops call the hook with the file and the line of the loop."""
-    for loop in loops:
-        place = ast.Tuple([ast.Constant(file), ast.Constant(loop.lineno)], ast.Load())
+    for loop, is_inert in loops:
+        place = ast.Tuple([ast.Constant(each) for each in (file, loop.lineno, is_inert)], ast.Load())
         call = ast.Expr(ast.Call(ast.Name(HOOK, ast.Load()), [place], []))
         for node in ast.walk(call):
             if isinstance(node, ast.expr | ast.stmt):
@@ -57,89 +70,117 @@ def add_hooks(loops: Iterable[ast.While], file: str) -> None:
         loop.body.insert(0, call)
 
 
-def _may_wait(loop: ast.While) -> bool:
-    turn = _Turn()
-    turn.check(loop.test)
-    if any(isinstance(each, _GIVES_WAY) for each in ast.walk(loop.test)):
-        return False
-    return turn.passes(loop.body) and any(not turn.changes(each) for each in turn.conditions)
-
-
 class _Turn:
-    """One turn of a loop that makes no call except in conditions.
+    """One turn of a loop that does not leave it.
 
     Attributes:
         conditions: the parts of the conditions that it checks, without constants.
-        stored: the variables, as dotted names, that it changes.
+        changed: the variables, as dotted names, that it may change.
+        calls: whether it calls anything but Python's own functions that only look.
     """
 
     def __init__(self) -> None:
         self.conditions: list[ast.expr] = []
-        self.stored: set[str] = set()
+        self.changed: set[str] = set()
+        self.calls = False
 
-    def check(self, test: ast.expr) -> None:
-        """Add a condition."""
+    def waits_in(self, loop: ast.While) -> bool:
+        """Return whether the turn waits in a loop: whether it may be one of many that do nothing."""
+        self._check(loop.test)
+        if any(isinstance(each, _GIVES_WAY) or _called(each) in _ADVANCES for each in ast.walk(loop.test)):
+            return False
+        return self._passes(loop.body) and any(not self._changes(each) for each in self.conditions)
+
+    def _check(self, test: ast.expr) -> None:
+        """Add a condition, or a value that may raise an error."""
         if isinstance(test, ast.BoolOp):
             for each in test.values:
-                self.check(each)
+                self._check(each)
         elif isinstance(test, ast.UnaryOp) and isinstance(test.op, ast.Not):
-            self.check(test.operand)
+            self._check(test.operand)
         elif not isinstance(test, ast.Constant):
             self.conditions.append(test)
-            self.stored.update(each.target.id for each in ast.walk(test) if isinstance(each, ast.NamedExpr))
+            for node in ast.walk(test):
+                if isinstance(node, ast.NamedExpr):
+                    self.changed.add(node.target.id)
+                self.calls |= isinstance(node, ast.Call) and _called(node) not in _PURE
 
-    def passes(self, block: list[ast.stmt]) -> bool:
-        """Return whether a turn can pass through a block without a call; adds its conditions and its changes."""
+    def _passes(self, block: list[ast.stmt]) -> bool:
+        """Return whether the turn can pass through a block; adds its conditions and changes."""
         for node in block:
             if isinstance(node, ast.Continue):
                 return True
             if isinstance(node, ast.If):
-                self.check(node.test)
+                self._check(node.test)
                 if not self._passes_one_of(node.body, node.orelse):
                     return False
             elif isinstance(node, ast.Try):
-                if not self.passes([*node.body, *node.orelse, *node.finalbody]):
+                if not self._passes_try(node):
                     return False
-            elif not self._is_quiet(node):
+            elif not self._does(node):
                 return False
         return True
 
     def _passes_one_of(self, *branches: list[ast.stmt]) -> bool:
-        """Return whether a turn can pass through one of two branches; adds those that it can pass through."""
-        passed = False
-        for branch in branches:
-            inside = _Turn()
-            if inside.passes(branch):
-                passed = True
-                self.conditions += inside.conditions
-                self.stored |= inside.stored
-        return passed
+        """Return whether the turn can pass through one of several branches; adds what one that does nothing, or else
+        all of them, do.
+        """
+        inside = [(turn, turn._passes(branch)) for turn, branch in ((_Turn(), branch) for branch in branches)]
+        passed = [turn for turn, passes in inside if passes]
+        idle = [turn for turn in passed if not (turn.changed or turn.calls)]
+        for turn in idle or passed:
+            self.conditions += turn.conditions
+            self.changed |= turn.changed
+            self.calls |= turn.calls
+        return bool(passed)
 
-    def _is_quiet(self, node: ast.stmt) -> bool:
-        """Return whether a statement makes no call; adds the variables that it changes."""
+    def _passes_try(self, node: ast.Try) -> bool:
+        """Return whether the turn can pass through a `try`, or through a handler, because the block still fails."""
+        if self._passes_one_of([*node.body, *node.orelse, *node.finalbody]):
+            return True
+        for statement in node.body:
+            if isinstance(statement, ast.Expr | ast.Assign | ast.Return) and statement.value is not None:
+                self._check(statement.value)
+        return self._passes_one_of(*([*handler.body, *node.finalbody] for handler in node.handlers))
+
+    def _does(self, node: ast.stmt) -> bool:
+        """Return whether the turn can do a statement and go on without a sleep; adds what it changes."""
         if not isinstance(node, ast.Pass | ast.Expr | ast.Assign | ast.AnnAssign | ast.AugAssign | ast.For | ast.While):
             return False
         for each in ast.walk(node):
-            if isinstance(each, ast.Call) and not (isinstance(each.func, ast.Name) and each.func.id in _PURE):
-                return False
-            if isinstance(each, _GIVES_WAY | ast.Return | ast.Raise):
+            if isinstance(each, _GIVES_WAY | ast.Return | ast.Raise) or _called(each) in _ADVANCES:
                 return False
             if isinstance(each, ast.Name | ast.Attribute | ast.Subscript) and not isinstance(each.ctx, ast.Load):
-                self.stored.add(_dotted(each))
+                self.changed.add(_dotted(each))
+            if isinstance(each, ast.Call) and _called(each) not in _PURE:
+                self.calls = True
+                receiver = [each.func.value] if isinstance(each.func, ast.Attribute) else []
+                self.changed.update(filter(None, map(_dotted, [*receiver, *each.args])))
         return True
 
-    def changes(self, condition: ast.expr) -> bool:
-        """Return whether the turn changes a variable of a condition."""
+    def _changes(self, condition: ast.expr) -> bool:
+        """Return whether the turn may change a variable of a condition."""
         names = {_dotted(each) for each in ast.walk(condition) if isinstance(each, ast.Name | ast.Attribute)}
-        return any(f"{name}.".startswith(f"{each}.") for name in names for each in self.stored)
+        return any(f"{name}.".startswith(f"{each}.") for name in names for each in self.changed)
+
+
+def _called(node: ast.AST) -> str:
+    """Return the name of the called function or method; empty if the node is no such call."""
+    if not isinstance(node, ast.Call):
+        return ""
+    function = node.func
+    return (
+        function.attr if isinstance(function, ast.Attribute) else function.id if isinstance(function, ast.Name) else ""
+    )
 
 
 def _dotted(node: ast.expr) -> str:
-    """Return the variable of an expression such as `self.a.b`; for an item, that is its container."""
+    """Return the variable of an expression such as `self.a.b`; for an item, its container; for others, nothing."""
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):
-        return f"{_dotted(node.value)}.{node.attr}"
+        inner = _dotted(node.value)
+        return f"{inner}.{node.attr}" if inner else ""
     return _dotted(node.value) if isinstance(node, ast.Subscript | ast.Starred) else ""
 
 
@@ -172,9 +213,7 @@ class BusyWait:
         )
 
 
-def turn_hook(
-    kernel: Kernel, turn_ns: int, who: Callable[[], str], traps: list[object]
-) -> Callable[[tuple[str, int]], None]:
+def turn_hook(kernel: Kernel, turn_ns: int, who: Callable[[], str], traps: list[object]) -> Callable[[BusyPlace], None]:
     """Return the hook for the code of a node or an application.
 
     Args:
@@ -183,40 +222,41 @@ def turn_hook(
         who: returns the name for the report.
         traps: gets a `BusyWait` for each loop that uses time.
     """
-    seen: dict[int, _Seen] = {}  # by task
+    seen: dict[tuple[int, BusyPlace], _Seen] = {}  # by task and loop
 
-    def turns(place: tuple[str, int]) -> None:
+    def turns(place: BusyPlace) -> None:
         task = kernel.current
-        last = seen.get(task.ident)
+        last = seen.get((task.ident, place))
         if last is None or last.cpu_ns != task.cpu_ns or last.now_ns != kernel.now:
-            if last is None and len(seen) >= MOST_TASKS:
+            if last is None and len(seen) >= MOST_SEEN:
                 seen.clear()
-            seen[task.ident] = _Seen(task.cpu_ns, kernel.now)
+            seen[task.ident, place] = _Seen(task.cpu_ns, kernel.now)
             return
         last.turns = count = last.turns + 1
         if count <= FREE_TURNS or not turn_ns or task is kernel.host:
             return
-        spent_ns = turn_ns if count <= FREE_TURNS + FINE_TURNS else max(turn_ns, COARSE_NS)
-        _wait_of(who(), place, kernel.now, traps).used_ns += spent_ns
+        file, line, is_inert = place
+        spent_ns = max(turn_ns, COARSE_NS) if is_inert and count > FREE_TURNS + FINE_TURNS else turn_ns
+        _wait_of(who(), file, line, kernel.now, traps).used_ns += spent_ns
         kernel.compute(spent_ns)
         last.cpu_ns, last.now_ns = task.cpu_ns, kernel.now
 
     return turns
 
 
-def _wait_of(who: str, place: tuple[str, int], now_ns: int, traps: list[object]) -> BusyWait:
+def _wait_of(who: str, file: str, line: int, now_ns: int, traps: list[object]) -> BusyWait:
     """Return the record of a loop, added at its first turn."""
     for each in traps:
-        if isinstance(each, BusyWait) and (each.who, each.file, each.line) == (who, *place):
+        if isinstance(each, BusyWait) and (each.who, each.file, each.line) == (who, file, line):
             return each
-    made = BusyWait(who, *place, now_ns)
+    made = BusyWait(who, file, line, now_ns)
     traps.append(made)
     return made
 
 
 @dataclass(slots=True)
 class _Seen:
-    """The virtual times of a task at its last turn, and the number of turns since it last did something."""
+    """The virtual times of a task at its last turn of a loop, and the number of turns since it used virtual time."""
 
     cpu_ns: int
     now_ns: int

@@ -95,37 +95,27 @@ def code_of_source(source: bytes, name: str, kinds: Kinds | None = None) -> Code
 
 
 def _compile(source: bytes, path: str, ordered: bool, kinds: Kinds | None) -> CodeType:
-    """Compile a module; its tree is built only if code must be added to it."""
-    has_loops = _LOOP in source and _has_busy_loops(source, path)
+    """Compile a module; its tree is built only if code may be added to it."""
     is_plain = kinds is None and not ordered
-    if is_plain and not has_loops:
+    if is_plain and _LOOP not in source:
         return compiled(source, path)
-    tree = parsed(source, path)
-    loops = busy_loops(tree) if has_loops else []
-    if ordered:
-        from cfepy.nodes.ordered_sets import with_ordered_sets
-
-        tree = with_ordered_sets(tree)
-    if kinds is not None:
-        from cfepy.nodes.instrument import with_hooks
-
-        tree = with_hooks(tree, kinds)
-    add_hooks(loops, path)
     try:
+        tree = parsed(source, path)
+        loops = busy_loops(tree)
+        if ordered:
+            from cfepy.nodes.ordered_sets import with_ordered_sets
+
+            tree = with_ordered_sets(tree)
+        if kinds is not None:
+            from cfepy.nodes.instrument import with_hooks
+
+            tree = with_hooks(tree, kinds)
+        add_hooks(loops, path)
         return compiled(tree, path)
-    except RecursionError:
+    except (RecursionError, TooDeepError):
         if not is_plain:
             raise
         return compiled(source, path)  # Python nests more deeply in a text than in a tree
-
-
-def _has_busy_loops(source: bytes, path: str) -> bool:
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the code is compiled from the text again
-        try:
-            return bool(busy_loops(parsed(source, path)))
-        except TooDeepError:
-            return False
 
 
 def code_of_library(spec: importlib.machinery.ModuleSpec) -> CodeType:

@@ -248,7 +248,7 @@ class StallWatch:
     def _hold_against_limit(self, stand: _Stand) -> None:
         if stand.still_s >= self.limit_s or (stand.standing_s >= self.limit_s and stand.is_turning):
             hint = (
-                "the run was ended; allow a long computation more time with --stall "
+                "the run was ended; let a loop that waits sleep, or allow a long computation more time with --stall "
                 f"{6 * self.limit_s:g}, or any time with --stall 0"
             )
             self._break_off(self._error(stand, hint), stand)

@@ -30,7 +30,6 @@ WAITS = {
     "break": "while True:\n    if flag: break",
     "return": "def f():\n    while True:\n        if flag:\n            work()\n            return",
     "method": "while not self.ready():\n    pass",
-    "poll": "while not rospy.is_shutdown():\n    if data: break",
     "clock": "while time.time() < t: pass",
     "main loop": "while True:\n    if self.image is not None:\n        show(self.image)\n        self.image = None",
     "counter": "while not done:\n    turns += 1",
@@ -38,11 +37,20 @@ WAITS = {
     "shown": "while not done:\n    print('waiting')",
     "caught": "while True:\n    try:\n        if self.pose: break\n    except AttributeError:\n        pass",
     "inside": "while True:\n    while not go: pass\n    work()",
+    "log": "while self.pose is None:\n    rospy.loginfo_throttle(1, 'no pose for %s' % self.name)",
+    "other call": "while not done:\n    n = work(n)",
+    "missing item": "while True:\n    try:\n        y = seen[0]\n        break\n    except IndexError: pass",
+    "poll": "while True:\n    try:\n        return_to(q.get_nowait())\n        break\n    except queue.Empty: continue",
     "searching": "while True:\n    for each in things:\n        turns += 1\n    if found: break",
 }
 OTHERS = {
     "no condition": "while True:\n    pass",
-    "call": "while not done:\n    work()",
+    "method": "while not self.done:\n    self.work()",
+    "argument": "while heap:\n    best = heappop(heap)",
+    "element": "while queue:\n    see(queue.pop())",
+    "shutdown": "while not rospy.is_shutdown():\n    if data: break",
+    "rate": "while not done:\n    rate.sleep()",
+    "sleeping": "while True:\n    if done: break\n    time.sleep(0.1)",
     "gcd": "while a != b:\n    if a > b:\n        a -= b\n    else:\n        b -= a",
     "count": "while i < n:\n    total += i\n    i += 1",
     "items": "while i < n:\n    if a[i] > most: most = a[i]\n    i += 1",
@@ -163,6 +171,23 @@ def test_compiler_warns_once(tmp_path: Path) -> None:
     script = tmp_path / "node.py"
     script.write_text("x = 1\nwhile not x: pass\ny = x is 1\n", encoding="utf-8")
     assert len(doubts_of(code_of_file(str(script), False, "node.py"))) == 1
+
+
+def test_each_loop_has_its_own_free_turns(run: Run) -> None:
+    program = run("""
+        import threading, time
+        seen = []
+        threading.Timer(0.01, seen.append, (1,)).start()
+        while not seen: pass
+        begun, left = time.monotonic(), 500
+        def more():
+            global left
+            left -= 1
+            return left
+        while more(): pass
+        print(round((time.monotonic() - begun) * 1e6))
+    """)
+    assert program.lines == ["1"]
 
 
 def test_two_tasks_wait_for_each_other_in_turn(run: Run) -> None:
