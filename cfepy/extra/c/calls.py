@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from cfepy.extra.c.arena import PAGE, Arena
 from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.engine import engine
+from cfepy.extra.c.refused import REASONS
 
 STUB = 32
 """Bytes of a stub."""
@@ -29,15 +30,25 @@ class Declared(NamedTuple):
     on_null: Callable[[int, int, int], object] | None = None
 
 
+_LIBC_VARIABLES = {"signgam": 8, "daylight": 12, "timezone": 16, "tzname": 24}
+_LIBC_VARIABLES |= {f"__{name}": offset for name, offset in _LIBC_VARIABLES.items()}
+"""Offsets in `LibcState` of engine/natives.h; linkers add the second names."""
+
+
 class Declarations:
     """The functions of the API, by name.
 
     Attributes:
         functions: the declared functions.
         data: variables of libc, by name: their first value.
+        places: variables of libc that the engine has, by name: their addresses.
+
+    Args:
+        libc: address of the state of libc.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, libc: int = 0) -> None:
+        self.places = {name: libc + offset for name, offset in _LIBC_VARIABLES.items()}
         self.functions: dict[str, Declared] = {name: Declared(None, "", 0) for name in engine().natives()}
         self.data: dict[str, bytes] = {}
 
@@ -53,7 +64,7 @@ class Declarations:
         self.functions[name] = Declared(function, signature, null_status, on_null)
 
     def __contains__(self, name: str) -> bool:
-        return name in self.functions or name in self.data
+        return name in self.functions or name in self.data or name in self.places
 
 
 class CallTable:
@@ -101,19 +112,9 @@ class CallTable:
         return self._next - STUB
 
 
-_INSTEAD = {
-    "pthread_create": "a task is made by OS_TaskCreate or CFE_ES_CreateChildTask, also in place of std::thread",
-    "pthread_cond_init": "a task waits for another by OS_BinSemTake, or by a pipe",
-    "pthread_condattr_init": "a task waits for another by OS_BinSemTake, or by a pipe",
-    "fork": "a flight computer has no processes; a task is made by OS_TaskCreate",
-    "system": "a flight computer has no shell; see OS_ShellOutputToFile",
-}
-"""Flight software's replacements for functions of a workstation."""
-
-
 def _absent(name: str) -> Callable[[], object]:
     def fail() -> None:
-        instead = f"; {_INSTEAD[name]}" if name in _INSTEAD else ""
+        instead = f"; {REASONS[name]}" if name in REASONS else ""
         raise CFault(f"{name}() was called, but cfepy and the libraries of the mission do not define it{instead}")
 
     return fail

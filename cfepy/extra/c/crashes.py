@@ -27,6 +27,18 @@ class CFault(Exception):
     registers: tuple[bytes, bool] = (b"", False)
 
 
+class CJump(CFault):
+    """A longjmp() to code that called this one through cfepy. It is a fault if that code does not exist.
+
+    Its arguments are the text of the fault, the buffer of setjmp() and the value.
+    """
+
+    __module__ = "builtins"
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 _BAD_ADDRESSES = frozenset({signal_number("SIGSEGV"), signal_number("SIGBUS")})
 _WORDS = {
     signal_number("SIGSEGV"): "SIGSEGV (invalid or read-only memory)",

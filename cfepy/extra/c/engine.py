@@ -60,7 +60,7 @@ def built(folder: Path | None = None) -> Path:
     sources = sorted([*SOURCES.glob("*.c"), SOURCES / f"switch_{platform.machine()}.S"])
     suffix = sysconfig.get_config_var("EXT_SUFFIX")
     digest = hashlib.sha256(repr((FLAGS, suffix)).encode())
-    for source in [*sources, SOURCES / "engine.h"]:
+    for source in [*sources, *sorted(SOURCES.glob("*.h"))]:
         digest.update(source.read_bytes())
     where = folder or cache_folder()
     target = where / (f"_engine{suffix}" if folder else f"_engine-{digest.hexdigest()[:16]}{suffix}")

@@ -19,6 +19,7 @@ from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.image import Image
 from cfepy.extra.c.lifetimes import ThreadLocals
 from cfepy.extra.c.memory import CMemory
+from cfepy.extra.c.refused import REASONS
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
 
@@ -30,14 +31,20 @@ UNUSED = frozenset(
     (
         *("__strftime_l", "__wcscoll_l", "__wcsftime_l", "__wcsxfrm_l", "bind_textdomain_codeset"),
         *("bindtextdomain", "dgettext", "fileno", "fopen64", "fseeko64", "fstat", "fstat64", "ftello64"),
-        *("iconv", "iconv_close", "iconv_open", "ioctl", "lseek64", "mbrtowc", "mbsnrtowcs", "mbsrtowcs"),
-        *("poll", "putwc", "read", "setvbuf", "strdup", "strerror", "strtold_l", "ungetc", "ungetwc"),
-        *("wcrtomb", "wcsnrtombs", "write", "writev"),
+        *("iconv", "iconv_close", "iconv_open", "ioctl", "lseek64", "mbsnrtowcs", "poll", "putwc", "read"),
+        *("ungetwc", "wcsnrtombs", "write", "writev"),
     )
 )
 """libc functions of libstdc++ for files, other locales and wide characters, which cfepy does not provide."""
 GUARDS = ("__cxa_guard_acquire", "__cxa_guard_release", "__cxa_guard_abort")
 """Functions that libstdc++ also has; the API's versions know waits of tasks and their order."""
+STAND_INS = frozenset(
+    (
+        *("access", "arc4random", "close", "fclose", "fcntl", "fdopen", "fopen", "fread", "fseek", "getentropy"),
+        *("getrandom", "mkdir", "mmap", "open"),
+    )
+)
+"""Refused functions that there is something of, for libgcov and libstdc++."""
 STATIC = "-static-libstdc++ -static-libgcc"
 FOLDERS = ("/lib", "/usr/lib", "/lib64", "/usr/lib64")
 
@@ -81,6 +88,17 @@ def wanted_names(source: SharedObject) -> list[str]:
     return names
 
 
+def refused_names(source: SharedObject) -> set[str]:
+    """Return the names in `wanted_names` that bring in the host, so that a call is a fault.
+
+    What libgcov and a statically linked libstdc++ need of them is provided, and tells nothing about the application.
+    It raises the errors of `wanted_names`.
+    """
+    found = {name for name in wanted_names(source) if name in REASONS}
+    has_libraries = source.has_coverage or any(each.is_defined and each.name == IN_IT for each in source.symbols)
+    return found - STAND_INS if has_libraries else found
+
+
 class Exports:
     """Names that all code can see.
 
@@ -107,6 +125,8 @@ class Exports:
 
     def declared_symbol(self, name: str) -> int | None:
         """Return a function or variable of the API or of libc; None if there is none of this name."""
+        if name in self.declared.places:
+            return self.declared.places[name]
         if name in self.declared.data:
             return self._variable(name)
         return self.calls.address(name) if name in self.declared else None

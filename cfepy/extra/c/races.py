@@ -62,15 +62,6 @@ _TABLES = (
     *("CFE_TBL_GetAddress", "CFE_TBL_GetAddresses", "CFE_TBL_ReleaseAddress", "CFE_TBL_ReleaseAddresses"),
     *("CFE_TBL_Load", "CFE_TBL_Update", "CFE_TBL_Manage", "CFE_TBL_Modified", "CFE_TBL_Share", "CFE_TBL_Validate"),
 )
-_COPYING = (
-    *("memcpy", "memmove", "memset", "memcmp", "memchr", "strlen", "strnlen", "OS_strnlen", "strcmp", "strncmp"),
-    *("strcasecmp", "strncasecmp", "strcpy", "strncpy", "strcat", "strncat", "strchr", "strrchr", "strstr", "strpbrk"),
-    *("strspn", "strcspn", "atoi", "strtol", "strtoll", "strtoul", "strtoull"),
-    *("snprintf", "sprintf", "vsnprintf", "vsprintf"),
-    *("__memcpy_chk", "__memmove_chk", "__memset_chk", "__strcpy_chk", "__strncpy_chk", "__strcat_chk"),
-    *("__strncat_chk", "__snprintf_chk", "__sprintf_chk", "__vsnprintf_chk"),
-)
-"""Functions of libc whose accesses count if there is code with -fsanitize=thread."""
 _STARTED, _ENDED, _TABLE, _STARTUP = "started", "ended", "tables", "startup"
 
 LETS_GO: dict[str, Key] = {
@@ -264,8 +255,8 @@ class CompiledRaceWatch:
                 declared.add(name, "p", self._order_atomics)
             else:
                 declared.add(name, "", self._kernel.point)
-        for name in _COPYING:
-            declared.add(name, "", self._kernel.point)
+        for name in [each for each, function in declared.functions.items() if function.function is None]:
+            declared.add(name, "", self._kernel.point)  # such as memcpy: the engine calls it only for an access
 
     def _order_atomics(self, address: int) -> None:
         self._kernel.point()

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, NoReturn
 from cfepy.app import Cfe
 from cfepy.extra.c.arena import PAGE, Arena
 from cfepy.extra.c.calls import CallTable, Declarations
-from cfepy.extra.c.crashes import CFault, explained
+from cfepy.extra.c.crashes import CFault, CJump, explained
 from cfepy.extra.c.elf import SharedObject
 from cfepy.extra.c.engine import engine
 from cfepy.extra.c.guard import POISON, Guard, GuardedTables
 from cfepy.extra.c.image import Image, LoadedModule
 from cfepy.extra.c.lifetimes import Ends, ThreadLocals
-from cfepy.extra.c.linking import LIBRARIES, Exports, LinkedWith, host_library, wanted_names
+from cfepy.extra.c.linking import LIBRARIES, Exports, LinkedWith, host_library, refused_names, wanted_names
 from cfepy.extra.c.memory import CMemory, Constants
 from cfepy.extra.c.packets import PacketImages
 from cfepy.extra.c.races import CompiledRaceWatch
@@ -34,6 +34,10 @@ HEAP = 1 << 30
 CALLBACK_STACK = 65536
 SLACK = 64
 """Bytes behind a message buffer that code may write by mistake, because NASA's pool has few block sizes."""
+_LIBC_STATE = 1024
+"""Offset of libc's state (`LibcState` of engine/natives.h) in the page of the first table of <ctype.h>."""
+_STRTOK = 0
+"""Offset of the place of strtok() in it."""
 
 
 class CRuntime:
@@ -85,7 +89,7 @@ class CRuntime:
         from cfepy.extra.c.api.streams import Streams
 
         made = engine()
-        made.begin(CfeError, CFault)
+        made.begin(CfeError, CFault, CJump)
         self.cfe = cfe
         self.handle = handle
         self.kernel = kernel
@@ -109,6 +113,9 @@ class CRuntime:
         self.guard = Guard(self.arena, self._heap, messages, self._name_of, on_overwrite) if guard else None
         self.tables = GuardedTables(self.guard) if self.guard is not None else None
         config = cfe.es.config
+        self.thread_locals = ThreadLocals(kernel, self._heap, self.run)
+        ctype = self._ctype_tables()
+        self._libc = ctype[0] + _LIBC_STATE
         self.table = made.Table(
             heap=self._heap,
             images=self.packets.images,
@@ -117,10 +124,11 @@ class CRuntime:
             preempted=PreemptedFrames(self._place, self._watch),
             highest_msg_id=config.sb_highest_valid_msg_id,
             largest_message=config.sb_max_msg_size,
-            ctype=self._ctype_tables(),
+            ctype=ctype,
+            state=self._libc,
+            errno_at=self.thread_locals.errno,
         )
-        self.declared = Declarations()
-        self.thread_locals = ThreadLocals(kernel, self._heap, self.run)
+        self.declared = Declarations(self._libc)
         self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
         self.ends = Ends(self.run, self.image_at)
         self.libraries: dict[str, Image] = {}
@@ -148,7 +156,10 @@ class CRuntime:
         self._exports = Exports(self.shared, self._calls, self.declared, self.arena.map)
 
     def _ctype_tables(self) -> tuple[int, ...]:
-        """Copy the tables of <ctype.h>. Returns cells that point to their element 0."""
+        """Copy the tables of <ctype.h>. Returns cells that point to their element 0.
+
+        Behind the first table is libc's own state.
+        """
         cells = []
         for raw, width in zip(engine().ctype(), (2, 4, 4), strict=True):
             at = self.arena.map(len(raw) + 8)
@@ -286,8 +297,13 @@ class CRuntime:
         Raises:
             ElfError: a library of the host does not exist.
         """
-        variables = {name for image in self.shared() for name in image.thread_locals}
-        return [name for name in wanted_names(source) if self._exports.symbol(name) is None and name not in variables]
+        libraries = {name for image in self.shared() for name in (*image.thread_locals, *image.symbols)}
+        refused = refused_names(source)
+        return [
+            name
+            for name in wanted_names(source)
+            if name not in libraries and (name in refused or self._exports.symbol(name) is None)
+        ]
 
     # -- running -----------------------------------------------------------------------------------------------------
 
@@ -316,11 +332,15 @@ class CRuntime:
         is_outermost = self.thread_locals.begin()
         number = self._races.begin(self.image_at(function)) if self._races is not None else 0
         try:
-            result = int(engine().run(self.table, function, args, given, room, owner, number))
+            result = int(
+                engine().run(self.table, function, args, given, room, owner, number, id(task), not is_outermost)
+            )
             if is_outermost:
                 self.thread_locals.finish()
             return result
         except CFault as fault:
+            if isinstance(fault, CJump) and not is_outermost:
+                raise
             calls = self._unwinder.calls(*fault.registers)
             made = explained(fault, self.place_of, self._about)
             if fault.is_anywhere:
@@ -387,6 +407,8 @@ class CRuntime:
 
     def _describe(self, address: int) -> str:
         """Return the name of a variable, or just the address."""
+        if address == self._libc + _STRTOK:
+            return "the place of strtok()"
         image = self.image_at(address)
         return (image.variable_at(address) if image is not None else "") or f"memory at 0x{address:x}"
 

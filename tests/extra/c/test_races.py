@@ -135,6 +135,9 @@ LIBC = {
     "strchr": ("name[2] = 'x';", "SAY(\"%d\", strchr(name, 'c') != NULL);"),
     "snprintf": ('snprintf(name, sizeof name, "%d", 12);', 'SAY("%c", name[2]);'),
     "strtol": ("digits[1] = '5';", 'SAY("%d", (int)strtol(digits, NULL, 10));'),
+    "strtok": ('strtok(name, "b");', 'strtok(digits, "2");'),
+    "asctime": ("extern char *asctime(void *); asctime(NULL);", "extern char *asctime(void *); asctime(NULL);"),
+    "stpcpy": ('stpcpy(name, "xy");', 'SAY("%c", name[1]);'),
 }
 APART = {
     "strcpy": ('strcpy(name, "xy");', 'SAY("%c", name[3]);'),
@@ -151,6 +154,12 @@ TEXTS = 'static char name[16] = "abc", digits[4] = "123"; if (who) {{ {} }} else
 def test_memory_accessed_by_libc_functions_counts(tmp_path: Path, name: str) -> None:
     found = explore(tmp_path, TEXTS.format(*LIBC[name]), "--seeds", "4")
     assert {each["kind"] for each in found} == {"data race"}
+
+
+@pytest.mark.slow
+def test_race_of_strtok_names_it(tmp_path: Path) -> None:
+    found = explore(tmp_path, TEXTS.format(*LIBC["strtok"]), "--seeds", "4")
+    assert any("the place of strtok(): write in" in each["text"] for each in found)
 
 
 @pytest.mark.slow

@@ -13,6 +13,7 @@ from cfepy.extra.c.api import (
     cds,
     config,
     cpp,
+    error_texts,
     es,
     evs,
     fs,
@@ -53,7 +54,7 @@ _OSAL = (
     *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
 )
 _PSP = (psp, psp_memory, psp_iodriver)
-_TOOLS = (streams, sorting, cpp, pthread, gcov, unsent)
+_TOOLS = (streams, error_texts, sorting, cpp, pthread, gcov, unsent)
 _CORE = (text, es, memory_pools, cds, evs, sb, tbl, time, fs, config, resource_ids)
 _MODULES = (*_CORE, *_TOOLS, *_OSAL, *_PSP)
 
@@ -85,4 +86,4 @@ def function_names() -> set[str]:
 
     api = Declarations()
     declare(api, cast("Any", _Anything()))
-    return {*api.functions, *api.data}
+    return {*api.functions, *api.data, *api.places}

@@ -80,6 +80,7 @@ def _declare_lives(api: Declarations, c: CRuntime) -> None:
     api.add("__errno_location", "", thread_locals.errno)
     api.add("__cxa_thread_atexit_impl", "pp-", thread_locals.at_end)
     api.add("__cxa_atexit", "ppp", c.ends.add)
+    api.add("atexit", "P", lambda function: c.ends.add(function, 0, function), -1)
     api.add("__cxa_finalize", "p", c.ends.finalize)
     api.data["__libc_single_threaded"] = b"\1"
     api.data["__stack_chk_guard"] = engine().STACK_GUARD.to_bytes(8, "little")

@@ -1,4 +1,4 @@
-"""qsort and bsearch of libc, with a comparison in C.
+"""qsort, qsort_r and bsearch of libc, with a comparison in C.
 
 Items do not move during the comparisons; they are put in order afterwards. Equal items keep their order, as with
 glibc's merge sort.
@@ -6,7 +6,7 @@ glibc's merge sort.
 
 from __future__ import annotations
 
-from functools import cmp_to_key, partial
+from functools import cmp_to_key
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -17,10 +17,14 @@ if TYPE_CHECKING:
 def declare(api: Declarations, c: CRuntime) -> None:
     memory = c.memory
 
-    def sort(base: int, count: int, size: int, compare: int) -> None:
-        if count < 2:
+    def sort(base: int, count: int, size: int, compare: int, *more: int) -> None:
+        if count < 2 or size == 0:
             return
-        order = sorted(range(base, base + count * size, size), key=cmp_to_key(partial(c.status, compare)))
+
+        def order_of(first: int, second: int) -> int:
+            return c.status(compare, first, second, *more)
+
+        order = sorted(range(base, base + count * size, size), key=cmp_to_key(order_of))
         items = memory.peek(base, count * size)
         memory.poke(base, b"".join(items[at - base : at - base + size] for at in order))
 
@@ -36,4 +40,5 @@ def declare(api: Declarations, c: CRuntime) -> None:
         return 0
 
     api.add("qsort", "pQQp", sort)
+    api.add("qsort_r", "pQQpp", sort)
     api.add("bsearch", "ppQQp", search)

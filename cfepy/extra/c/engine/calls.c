@@ -13,13 +13,13 @@
  *   @ it gives a packet of the pipe in parameter 1, or None; the output is where the packet's image is
  * Otherwise the outputs alone, one value or a tuple; None and True are the status 0 and 1.
  */
-#include "engine.h"
+#include "natives.h"
 
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
 
-HIDDEN PyObject *status_error, *fault_error;
+HIDDEN PyObject *status_error, *fault_error, *jump_error;
 
 #define CFE_SB_TIME_OUT 0xCA000001u
 #define CFE_SB_NO_MESSAGE 0xCA000002u
@@ -91,99 +91,179 @@ HIDDEN PyObject *message_at(uint64_t address, size_t largest)
 
 /* ---- formats ------------------------------------------------------------------------------------------------------ */
 
-/* A fault in here is the application's: a %s of a bad pointer, say. */
-static int format_guarded(Coroutine *coroutine, char *to, size_t room, const char *format, va_list list)
+/* A format that says %Ld or %qd, with %lld instead: glibc takes them for int once a library of the process, such as
+ * libquadmath below numpy, has brought conversions of its own. */
+static const char *with_plain_sizes(const char *format, char *room, size_t size)
 {
+    if (strpbrk(format, "Lq") == NULL || 2 * strlen(format) + 2 > size)
+        return format;
+    char *to = room;
+    for (const char *from = format; (*to++ = *from) != 0; from++) {
+        if (*from != '%')
+            continue;
+        for (size_t flags = strspn(from + 1, "0123456789$-+ #'*.I"); flags > 0; flags--)
+            *to++ = *++from;
+        if ((from[1] == 'L' || from[1] == 'q') && from[2] != 0 && strchr("diouxX", from[2]) != NULL) {
+            *to++ = 'l';
+            *to++ = 'l';
+            from++;
+        } else if (from[1] == '%')
+            *to++ = *++from;
+    }
+    return room;
+}
+
+/* A fault in here is the application's: a %s of a bad pointer, say. -1 with an exception then, and without one for what
+ * cannot be formatted, such as a wide character that the locale "C" does not have. */
+typedef struct {
+    void *to;
+    size_t room;
+    const void *format;
+    Arguments *arguments;
+    bool is_wide;
+    int *count;
+} Printing;
+
+static void print(Coroutine *coroutine, const void *what)
+{
+    const Printing *job = what;
+    char plain[1024];
+    libc_enter_to_print(coroutine);
+    *job->count = job->is_wide ? vswprintf(job->to, job->room, job->format, job->arguments->list)
+                               : vsnprintf(job->to, job->room, with_plain_sizes(job->format, plain, sizeof plain),
+                                           job->arguments->list);
+    libc_leave(coroutine);
+}
+
+static int format_guarded(Coroutine *coroutine, void *to, size_t room, const void *format, Arguments *arguments, bool is_wide)
+{
+    int count = -1;
+    const Printing job = {to, room, format, arguments, is_wide, &count};
     Coroutine *before = running;
+    bool was_native = coroutine->is_native;
     running = coroutine;
     coroutine->is_native = true;
-    if (sigsetjmp(coroutine->native_fault, 0)) {
-        coroutine->is_native = false;
-        running = NULL;
+    if (engine_try(coroutine, print, &job)) {
+        modes_abandon(coroutine);
         PyErr_Format(fault_error, "bad address %p in a format or its arguments", (void *)coroutine->fault_address);
-        return -1;
+        count = -1;
     }
-    errno = application_errno(coroutine); /* for %m */
-    int count = vsnprintf(to, room, format, list);
-    coroutine->is_native = false;
+    coroutine->is_native = was_native;
     running = before;
-    return count < 0 ? 0 : count;
+    return count;
 }
+
+/* The arguments of a call that are in registers, in memory as a va_list has them. */
+typedef struct {
+    uint64_t general[REGISTER_ARGUMENTS];
+    struct {
+        double low;
+        uint64_t high;
+    } floats[FLOAT_ARGUMENTS];
+} Saved;
 
 #if defined(__x86_64__)
 typedef struct {
     unsigned gp_offset, fp_offset;
-    void *overflow_arg_area, *reg_save_area;
+    const void *overflow_arg_area, *reg_save_area;
 } List;
 
-HIDDEN int format_text(Coroutine *coroutine, char *to, size_t room, const char *format, int fixed)
+static List behind(int in_registers, const uint64_t *on_stack, const Saved *saved)
 {
-    struct {
-        uint64_t general[6];
-        struct { double low; uint64_t high; } floats[FLOAT_ARGUMENTS];
-    } saved;
-    memcpy(saved.general, coroutine->arguments, sizeof saved.general);
-    for (int i = 0; i < FLOAT_ARGUMENTS; i++)
-        saved.floats[i].low = coroutine->floats[i];
-    int in_registers = fixed < REGISTER_ARGUMENTS ? fixed : REGISTER_ARGUMENTS;
-    List made = {8u * in_registers, 48, coroutine->stack_pointer + STACK_ARGUMENTS + fixed - in_registers, &saved};
-    va_list list;
-    memcpy(list, &made, sizeof made);
-    return format_guarded(coroutine, to, room, format, list);
+    return (List){8u * in_registers, sizeof saved->general, on_stack, saved};
 }
 
-HIDDEN int format_list(Coroutine *coroutine, char *to, size_t room, const char *format, uint64_t address)
-{
-    va_list list;
-    if (engine_copy(list, (void *)address, sizeof(List))) {
-        PyErr_Format(fault_error, "bad address %p of a va_list", (void *)address);
-        return -1;
-    }
-    return format_guarded(coroutine, to, room, format, list);
-}
+static List of_words(const uint64_t *words) { return (List){sizeof ((Saved *)0)->general, sizeof(Saved), words, NULL}; }
 #else
 typedef struct {
-    void *stack, *gr_top, *vr_top;
+    const void *stack, *gr_top, *vr_top;
     int gr_offs, vr_offs;
 } List;
 
-HIDDEN int format_text(Coroutine *coroutine, char *to, size_t room, const char *format, int fixed)
+static List behind(int in_registers, const uint64_t *on_stack, const Saved *saved)
 {
-    struct { double low; uint64_t high; } floats[FLOAT_ARGUMENTS];
-    uint64_t general[REGISTER_ARGUMENTS];
-    memcpy(general, coroutine->arguments, sizeof general);
-    for (int i = 0; i < FLOAT_ARGUMENTS; i++) {
-        floats[i].low = coroutine->floats[i];
-        floats[i].high = coroutine->float_highs[i];
-    }
-    int in_registers = fixed < REGISTER_ARGUMENTS ? fixed : REGISTER_ARGUMENTS;
-    List made = {coroutine->stack_pointer + STACK_ARGUMENTS + fixed - in_registers, general + REGISTER_ARGUMENTS,
-                 floats + FLOAT_ARGUMENTS, -8 * (REGISTER_ARGUMENTS - in_registers), -16 * FLOAT_ARGUMENTS};
-    va_list list;
-    memcpy(&list, &made, sizeof made);
-    return format_guarded(coroutine, to, room, format, list);
+    return (List){on_stack, saved->general + REGISTER_ARGUMENTS, saved->floats + FLOAT_ARGUMENTS,
+                  -8 * (REGISTER_ARGUMENTS - in_registers), -16 * FLOAT_ARGUMENTS};
 }
 
-HIDDEN int format_list(Coroutine *coroutine, char *to, size_t room, const char *format, uint64_t address)
-{
-    va_list list;
-    if (engine_copy(&list, (void *)address, sizeof(List))) {
-        PyErr_Format(fault_error, "bad address %p of a va_list", (void *)address);
-        return -1;
-    }
-    return format_guarded(coroutine, to, room, format, list);
-}
+static List of_words(const uint64_t *words) { return (List){words, NULL, NULL, 0, 0}; }
 #endif
+_Static_assert(sizeof(List) == sizeof(va_list), "a List is what a va_list is");
+
+HIDDEN void arguments_of_words(Arguments *to, const uint64_t *words)
+{
+    List made = of_words(words);
+    memcpy(&to->list, &made, sizeof made);
+}
+
+HIDDEN int arguments_at(Arguments *to, uint64_t list)
+{
+    if (engine_copy(&to->list, (void *)list, sizeof(List)) == 0)
+        return 0;
+    PyErr_Format(fault_error, "bad address %p of a va_list", (void *)list);
+    return -1;
+}
+
+/* Those of a call behind its fixed ones. */
+static void arguments_of_call(Arguments *to, const Coroutine *coroutine, int fixed, Saved *saved)
+{
+    memcpy(saved->general, coroutine->arguments, sizeof saved->general);
+    for (int i = 0; i < FLOAT_ARGUMENTS; i++) {
+        saved->floats[i].low = coroutine->floats[i];
+        saved->floats[i].high = coroutine->float_highs[i];
+    }
+    int in_registers = fixed < REGISTER_ARGUMENTS ? fixed : REGISTER_ARGUMENTS;
+    List made = behind(in_registers, coroutine->stack_pointer + STACK_ARGUMENTS + fixed - in_registers, saved);
+    memcpy(&to->list, &made, sizeof made);
+}
+
+HIDDEN int format_text(Coroutine *coroutine, char *to, size_t room, const char *format, int fixed)
+{
+    Arguments arguments;
+    Saved saved;
+    arguments_of_call(&arguments, coroutine, fixed, &saved);
+    return format_guarded(coroutine, to, room, format, &arguments, false);
+}
+
+HIDDEN int format_list(Coroutine *coroutine, char *to, size_t room, const char *format, uint64_t list)
+{
+    Arguments arguments;
+    return arguments_at(&arguments, list) < 0 ? -1 : format_guarded(coroutine, to, room, format, &arguments, false);
+}
+
+HIDDEN int format_wide(Coroutine *coroutine, wchar_t *to, size_t room, const wchar_t *format, int fixed)
+{
+    Arguments arguments;
+    Saved saved;
+    arguments_of_call(&arguments, coroutine, fixed, &saved);
+    return format_guarded(coroutine, to, room, format, &arguments, true);
+}
+
+HIDDEN int format_wide_list(Coroutine *coroutine, wchar_t *to, size_t room, const wchar_t *format, uint64_t list)
+{
+    Arguments arguments;
+    return arguments_at(&arguments, list) < 0 ? -1 : format_guarded(coroutine, to, room, format, &arguments, true);
+}
+
+static int format_argument(Coroutine *coroutine, char *to, size_t room, int fixed, bool has_list)
+{
+    const char *format = (const char *)argument(coroutine, fixed - 1);
+    return has_list ? format_list(coroutine, to, room, format, argument(coroutine, fixed))
+                    : format_text(coroutine, to, room, format, fixed);
+}
 
 static PyObject *formatted(Coroutine *coroutine, int fixed, bool has_list)
 {
-    char text[FORMATTED];
-    const char *format = (const char *)argument(coroutine, fixed - 1);
-    int count = has_list ? format_list(coroutine, text, sizeof text, format, argument(coroutine, fixed))
-                         : format_text(coroutine, text, sizeof text, format, fixed);
-    if (count < 0)
-        return NULL;
-    return PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "surrogateescape");
+    char small[FORMATTED] = "", *text = small;
+    int count = format_argument(coroutine, text, sizeof small, fixed, has_list);
+    if (count >= FORMATTED && (text = PyMem_Malloc((size_t)count + 1)) == NULL)
+        return PyErr_NoMemory();
+    if (text != small)
+        format_argument(coroutine, text, (size_t)count + 1, fixed, has_list);
+    PyObject *result = PyErr_Occurred() ? NULL : PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "surrogateescape");
+    if (text != small)
+        PyMem_Free(text);
+    return result;
 }
 
 /* ---- one call ----------------------------------------------------------------------------------------------------- */

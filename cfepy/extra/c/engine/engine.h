@@ -19,6 +19,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <wchar.h>
 
 #define HIDDEN __attribute__((visibility("hidden")))
 
@@ -48,16 +49,24 @@ typedef struct Coroutine {
     uint64_t result_high;                      /* 184: the second word of a result of two */
     uint64_t float_highs[FLOAT_ARGUMENTS];     /* 192: of `floats` as long double, where registers are that wide */
     uint64_t guard;                            /* 256: of stacks, x86-64: the other side's while one runs */
+    uint64_t gives_long;                       /* 264: whether the result is the long double that follows */
+    unsigned char long_result[16];             /* 272 */
+    uint64_t *tried_stack_pointer;             /* 288: of the host, in engine_try */
     /* not known to the assembly */
     char *stack;                               /* lowest byte */
     size_t size;
     int thread;
-    volatile bool is_native;                       /* a function of the engine runs on its behalf */
+    volatile bool is_native;                   /* a function of the engine runs on its behalf, in engine_try */
     bool wants_python;                         /* said by a native: the Python function has to answer after all */
     bool wants_again, is_again;                /* said by it too: it is called again after that; and that it is */
     uint32_t task;                             /* of `Races`; 0 for none */
     uint32_t owner;                            /* of what it allocates: an application */
-    sigjmp_buf native_fault;
+    bool has_modes;                            /* the host computes with its modes: see natives.h */
+    void *host_locale;                         /* what the host's was meanwhile; or NULL */
+    int errno_before;
+    bool has_note;                             /* of the thread, by natives_scanning.c */
+    uint64_t note[4];
+    uint16_t x87_flags;                        /* x86-64: those of long double */
     int signal;
     double computes_since, computed_s;         /* when it was last seen to compute without a call; for how long */
     uint64_t called_from;                      /* where its last call returns to */
@@ -67,8 +76,12 @@ typedef struct Coroutine {
     } thread_locals[KEPT_BLOCKS];              /* where blocks of thread-local variables are that it has asked for */
     uint64_t registers[REGISTERS];             /* where a signal stopped it: by DWARF's numbers, the program counter last */
     struct Table *table;
+    uint64_t key;                              /* the same for all code of a task */
+    struct Coroutine *outer, *next;            /* what called it through Python; of all */
 } Coroutine;
-_Static_assert(offsetof(Coroutine, guard) == 256, "the assembly has these offsets");
+_Static_assert(offsetof(Coroutine, guard) == 256 && offsetof(Coroutine, long_result) == 272 &&
+                   offsetof(Coroutine, tried_stack_pointer) == 288,
+               "the assembly has these offsets");
 
 struct Function;
 /* A call that is answered without Python; what it returns goes to the application. */
@@ -92,6 +105,7 @@ typedef struct Table {
     Function *functions;
     int count, room;
     PyObject *charge, *cost;                   /* called before each function that costs virtual time; or NULL */
+    PyObject *errno_at;                        /* called for where errno of the current task is */
     PyObject *frames;                          /* by address, what calls a function and is seen as C; or NULL */
     PyObject *preempted;                       /* by pc, what is called when code has computed for long */
     struct Heap *heap;                         /* malloc's */
@@ -100,6 +114,8 @@ typedef struct Table {
     uint32_t highest_msg_id, largest_message;
     unsigned long long end;                    /* where the functions return to that Python calls */
     uint64_t ctype[3];                         /* of __ctype_b_loc, __ctype_toupper_loc, __ctype_tolower_loc */
+    unsigned long long state;                  /* LibcState of natives.h, in the arena */
+    uint32_t random[31], random_at;            /* of rand(), for the whole processor */
 } Table;
 
 /* switch_*.S */
@@ -110,6 +126,8 @@ HIDDEN void engine_call(void);
 HIDDEN void engine_begin(void);
 HIDDEN void engine_land(void);
 HIDDEN void engine_thread_local(void);         /* aarch64: for descriptors of thread-local variables */
+HIDDEN int engine_try(Coroutine *, void (*function)(Coroutine *, const void *), const void *with); /* 1 after a fault */
+extern HIDDEN char engine_try_failed[];
 HIDDEN int engine_copy(void *to, const void *from, size_t size);
 extern HIDDEN char engine_copy_end[], engine_copy_failed[];
 
@@ -125,11 +143,18 @@ extern HIDDEN volatile uint64_t switches;
 extern HIDDEN volatile int running_thread;
 
 /* calls.c */
-extern HIDDEN PyObject *status_error, *fault_error;
+extern HIDDEN PyObject *status_error, *fault_error, *jump_error;
 HIDDEN int calls_serve(Coroutine *, const Function *);
 HIDDEN uint64_t argument(const Coroutine *, int number);
 HIDDEN int format_text(Coroutine *, char *to, size_t room, const char *format, int fixed);
 HIDDEN int format_list(Coroutine *, char *to, size_t room, const char *format, uint64_t list);
+HIDDEN int format_wide(Coroutine *, wchar_t *to, size_t room, const wchar_t *format, int fixed);
+HIDDEN int format_wide_list(Coroutine *, wchar_t *to, size_t room, const wchar_t *format, uint64_t list);
+typedef struct {
+    va_list list;
+} Arguments;
+HIDDEN void arguments_of_words(Arguments *, const uint64_t *words); /* as many as somebody takes out */
+HIDDEN int arguments_at(Arguments *, uint64_t list); /* 0, or -1 with an exception */
 HIDDEN PyObject *text_at(uint64_t address);
 HIDDEN PyObject *message_at(uint64_t address, size_t largest);
 extern HIDDEN PyTypeObject table_type;
@@ -163,6 +188,12 @@ HIDDEN uint32_t races_calls(const Coroutine *); /* the call that its task is in;
 HIDDEN void races_set_calls(const Coroutine *, uint32_t);
 HIDDEN void races_note(Coroutine *, uint64_t address, uint64_t size, bool is_write, bool is_atomic);
 
+/* natives_numbers.c */
+HIDDEN void random_begin(Table *, uint32_t seed);
+
+/* natives_jumps.c */
+HIDDEN bool jump_lands(Coroutine *); /* takes the exception of a longjmp() to a place on its stack, which goes on there */
+
 /* natives_threads.c */
 HIDDEN int application_errno(const Coroutine *);
 
@@ -172,7 +203,9 @@ typedef struct {
     Native native;
     void *target;
 } NativeRow;
-extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_math[], natives_of_cpp[], natives_of_locale[], natives_of_races[], natives_of_threads[];
+extern HIDDEN const NativeRow natives_of_msg[], natives_of_libc[], natives_of_numbers[], natives_of_formats[],
+    natives_of_scanning[], natives_of_time[], natives_of_jumps[], natives_of_modes[], natives_of_math[], natives_of_cpp[],
+    natives_of_locale[], natives_of_wide[], natives_of_races[], natives_of_threads[];
 #define NATIVE(function) static uint64_t function(Coroutine *call, const Function *self)
 #define POINTER(number) ((unsigned char *)call->arguments[number])
 #define WORD(number) (call->arguments[number])

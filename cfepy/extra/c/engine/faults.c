@@ -9,7 +9,7 @@
  * changes nothing in the simulation: nobody else runs, and the stack stays as it was.
  */
 #define _GNU_SOURCE
-#include "engine.h"
+#include "natives.h"
 
 #include <errno.h>
 #include <pthread.h>
@@ -170,9 +170,11 @@ static void on_signal(int signal, siginfo_t *info, void *interrupted)
         coroutine->fault_pc = pc;
         coroutine->fault_stack_pointer = STACK_POINTER(context);
         tell_registers(coroutine->registers, context);
-        if (coroutine->is_native)
-            siglongjmp(coroutine->native_fault, 1);
-        land(coroutine, context, FAULT);
+        if (coroutine->is_native) {
+            PROGRAM_COUNTER(context) = (uint64_t)engine_try_failed;
+            STACK_POINTER(context) = (uint64_t)coroutine->tried_stack_pointer;
+        } else
+            land(coroutine, context, FAULT);
     } else
         pass_on(signal);
     errno = error;
@@ -268,10 +270,12 @@ HIDDEN void faults_resume(Coroutine *coroutine)
     running = coroutine;
     running_thread = mine->id;
     switches++;
+    give_flags(coroutine);
     if (is_preempted)
         engine_reenter(coroutine);
     else
         engine_resume(coroutine);
+    keep_flags(coroutine);
     running_thread = 0;
 }
 

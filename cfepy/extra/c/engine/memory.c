@@ -1,6 +1,6 @@
 /* Memory at fixed addresses, and the stubs through which an application calls. */
 #define _GNU_SOURCE
-#include "engine.h"
+#include "natives.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -89,9 +89,12 @@ HIDDEN PyObject *memory_clear(PyObject *module, PyObject *arguments)
 
 HIDDEN PyObject *memory_ctype(PyObject *module, PyObject *unused)
 {
-    return Py_BuildValue("(y#y#y#)", (const char *)(*__ctype_b_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 2),
+    locale_t before = uselocale(only_locale());
+    PyObject *tables = Py_BuildValue("(y#y#y#)", (const char *)(*__ctype_b_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 2),
                          (const char *)(*__ctype_toupper_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 4),
                          (const char *)(*__ctype_tolower_loc() + LOWEST), (Py_ssize_t)(CHARACTERS * 4));
+    uselocale(before);
+    return tables;
 }
 
 /* The code of a stub: the number of its function, and a jump to engine_call; or, on aarch64, to engine_thread_local. */

@@ -1,8 +1,8 @@
-/* What stands for libc in an application: memory, texts, numbers. Nothing here knows the host's clock, files or random
+/* What stands for libc in an application: memory, texts and malloc. Nothing here knows the host's clock, files or random
  * numbers; what an application wants beyond this is told when it is loaded.
  */
 #define _GNU_SOURCE
-#include "engine.h"
+#include "natives.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -12,18 +12,10 @@
 #include <strings.h>
 #include <sys/types.h>
 
-#define TEXT(number) ((char *)call->arguments[number])
-
-/* ---- accesses, where somebody looks at them: see races.c ---------------------------------------------------------- */
-
-typedef struct {
-    const void *at;
-    size_t size;
-    bool is_write;
-} Range;
+/* ---- accesses ----------------------------------------------------------------------------------------------------- */
 
 /* Whether Python has to let others in before these accesses; they are noted otherwise. */
-static bool waits_for_others(Coroutine *call, const Range *ranges, int count)
+HIDDEN bool waits_for_others(Coroutine *call, const Range *ranges, int count)
 {
     for (int i = 0; i < count; i++)
         if (ranges[i].size > 0 && races_asks_first(call, (uint64_t)ranges[i].at, ranges[i].size))
@@ -33,18 +25,6 @@ static bool waits_for_others(Coroutine *call, const Range *ranges, int count)
             races_note(call, (uint64_t)ranges[i].at, ranges[i].size, ranges[i].is_write, false);
     return false;
 }
-
-#define READS(where, size) {where, size, false}
-#define WRITES(where, size) {where, size, true}
-#define WITH_ACCESSES(result, ...)                                                                             \
-    {                                                                                                          \
-        if (call->table->races != NULL) {                                                                      \
-            const Range ranges[] = {__VA_ARGS__};                                                              \
-            if (waits_for_others(call, ranges, (int)(sizeof ranges / sizeof *ranges)))                         \
-                return 0;                                                                                      \
-        }                                                                                                      \
-        return (uint64_t)(result);                                                                             \
-    }
 
 /* How far a function looks: to the end of a text, and where it may look at so many characters only. */
 static size_t whole(const char *text) { return strlen(text) + 1; }
@@ -61,16 +41,10 @@ static size_t compared(const char *one, const char *other, size_t most, bool any
     while (size < most) {
         unsigned char first = (unsigned char)one[size], second = (unsigned char)other[size];
         size++;
-        if (first == 0 || (any_case ? tolower(first) != tolower(second) : first != second))
+        if (first == 0 || (any_case ? tolower_l(first, only_locale()) != tolower_l(second, only_locale()) : first != second))
             break;
     }
     return size;
-}
-static size_t of_number(const char *text, int base)
-{
-    char *end;
-    strtol(text, &end, base);
-    return (size_t)(end - text) + 1;
 }
 
 /* ---- memory and texts --------------------------------------------------------------------------------------------- */
@@ -94,8 +68,8 @@ NATIVE(text_length_limited) WITH_ACCESSES(strnlen(TEXT(0), WORD(1)), READS(TEXT(
                   READS(TEXT(1), compared(TEXT(0), TEXT(1), most, any_case)))
 NATIVE(text_compare) COMPARES(strcmp(TEXT(0), TEXT(1)), SIZE_MAX, false)
 NATIVE(text_compare_limited) COMPARES(strncmp(TEXT(0), TEXT(1), WORD(2)), WORD(2), false)
-NATIVE(text_compare_any_case) COMPARES(strcasecmp(TEXT(0), TEXT(1)), SIZE_MAX, true)
-NATIVE(text_compare_any_case_limited) COMPARES(strncasecmp(TEXT(0), TEXT(1), WORD(2)), WORD(2), true)
+NATIVE(text_compare_any_case) COMPARES(strcasecmp_l(TEXT(0), TEXT(1), only_locale()), SIZE_MAX, true)
+NATIVE(text_compare_any_case_limited) COMPARES(strncasecmp_l(TEXT(0), TEXT(1), WORD(2), only_locale()), WORD(2), true)
 
 NATIVE(text_copy)
 WITH_ACCESSES(strcpy(TEXT(0), TEXT(1)), WRITES(TEXT(0), whole(TEXT(1))), READS(TEXT(1), whole(TEXT(1))))
@@ -130,49 +104,97 @@ NATIVE(text_span)
 WITH_ACCESSES(strspn(TEXT(0), TEXT(1)), READS(TEXT(0), strspn(TEXT(0), TEXT(1)) + 1), READS(TEXT(1), whole(TEXT(1))))
 NATIVE(text_span_without)
 WITH_ACCESSES(strcspn(TEXT(0), TEXT(1)), READS(TEXT(0), strcspn(TEXT(0), TEXT(1)) + 1), READS(TEXT(1), whole(TEXT(1))))
-NATIVE(text_split) { return (uint64_t)strtok_r(TEXT(0), TEXT(1), (char **)POINTER(2)); }
 
-NATIVE(number_of_text) WITH_ACCESSES((int64_t)atoi(TEXT(0)), READS(TEXT(0), of_number(TEXT(0), 10)))
-NATIVE(long_of_text)
-WITH_ACCESSES(strtol(TEXT(0), (char **)POINTER(1), (int)WORD(2)), READS(TEXT(0), of_number(TEXT(0), (int)WORD(2))),
-              WRITES(POINTER(1), POINTER(1) == NULL ? 0 : sizeof(char *)))
-NATIVE(unsigned_of_text)
-WITH_ACCESSES(strtoul(TEXT(0), (char **)POINTER(1), (int)WORD(2)), READS(TEXT(0), of_number(TEXT(0), (int)WORD(2))),
-              WRITES(POINTER(1), POINTER(1) == NULL ? 0 : sizeof(char *)))
-NATIVE(absolute) { return (uint64_t)(int64_t)abs((int)WORD(0)); }
-NATIVE(to_upper) { return (uint64_t)(int64_t)toupper((int)WORD(0)); }
-NATIVE(to_lower) { return (uint64_t)(int64_t)tolower((int)WORD(0)); }
+NATIVE(split_with_place) { return (uint64_t)strtok_r(TEXT(0), TEXT(1), (char **)POINTER(2)); }
+/* The rest is kept for the whole processor, as libc keeps it for a process: tasks that split at a time have a race. */
+NATIVE(split)
+WITH_ACCESSES(strtok_r(TEXT(0), TEXT(1), &STATE->rest_of_strtok), WRITES(&STATE->rest_of_strtok, sizeof(char *)))
+NATIVE(split_off) { return (uint64_t)strsep((char **)POINTER(0), TEXT(1)); }
 
-NATIVE(float_of_text)
+NATIVE(memory_copy_to_end)
+WITH_ACCESSES(mempcpy(POINTER(0), POINTER(1), WORD(2)), WRITES(POINTER(0), WORD(2)), READS(POINTER(1), WORD(2)))
+NATIVE(text_copy_to_end)
+WITH_ACCESSES(stpcpy(TEXT(0), TEXT(1)), WRITES(TEXT(0), whole(TEXT(1))), READS(TEXT(1), whole(TEXT(1))))
+NATIVE(text_copy_limited_to_end)
+WITH_ACCESSES(stpncpy(TEXT(0), TEXT(1), WORD(2)), WRITES(TEXT(0), WORD(2)), READS(TEXT(1), at_most(TEXT(1), WORD(2))))
+NATIVE(memory_copy_until) { return (uint64_t)memccpy(POINTER(0), POINTER(1), (int)WORD(2), WORD(3)); }
+NATIVE(memory_find_last) { return (uint64_t)memrchr(POINTER(0), (int)WORD(1), WORD(2)); }
+NATIVE(memory_find_raw) { return (uint64_t)rawmemchr(POINTER(0), (int)WORD(1)); }
+NATIVE(memory_find_memory) { return (uint64_t)memmem(POINTER(0), WORD(1), POINTER(2), WORD(3)); }
+NATIVE(text_find_or_end) { return (uint64_t)strchrnul(TEXT(0), (int)WORD(1)); }
+NATIVE(text_find_text_any_case) { return (uint64_t)strcasestr(TEXT(0), TEXT(1)); }
+NATIVE(memory_clear_all)
 {
-    call->float_result = strtod(TEXT(0), self->target != NULL ? (char **)POINTER(1) : NULL);
+    memset(POINTER(0), 0, WORD(1));
     return 0;
 }
-
-/* ---- printf ------------------------------------------------------------------------------------------------------- */
-
-/* Formats: what is written counts as an access, what a %s reads does not. */
-static bool waits_to_format(Coroutine *call, size_t room)
+NATIVE(memory_copy_back)
 {
-    return call->table->races != NULL && room > 0 && races_asks_first(call, WORD(0), 1);
+    memmove(POINTER(1), POINTER(0), WORD(2));
+    return 0;
 }
-static uint64_t formatted(Coroutine *call, int count, size_t room)
+NATIVE(first_bit) { return (uint64_t)__builtin_ffs((int)WORD(0)); }
+NATIVE(first_bit_long) { return (uint64_t)__builtin_ffsl((long)WORD(0)); }
+NATIVE(copy_and_tell_size)
 {
-    if (call->table->races != NULL && count >= 0 && room > 0)
-        races_note(call, WORD(0), (size_t)count < room ? (size_t)count + 1 : room, true, false);
-    return (uint64_t)(int64_t)count;
-}
-#define FORMATS(room, function, ...)                                                                 \
-    {                                                                                                \
-        size_t size = room;                                                                          \
-        return waits_to_format(call, size) ? 0 : formatted(call, function(call, TEXT(0), size, __VA_ARGS__), size); \
+    size_t size = strlen(TEXT(1)), kept = size < WORD(2) ? size : WORD(2) - 1;
+    if (WORD(2) > 0) {
+        memcpy(TEXT(0), TEXT(1), kept);
+        TEXT(0)[kept] = 0;
     }
+    return size;
+}
+NATIVE(append_and_tell_size)
+{
+    size_t had = strnlen(TEXT(0), WORD(2)), size = strlen(TEXT(1)), room = WORD(2) - had;
+    if (room > 0) {
+        size_t kept = size < room ? size : room - 1;
+        memcpy(TEXT(0) + had, TEXT(1), kept);
+        TEXT(0)[had + kept] = 0;
+    }
+    return had + size;
+}
 
-/* format_text answers -1 with an exception, which `run` sees after a native. */
-NATIVE(format_limited) FORMATS(WORD(1), format_text, TEXT(2), 3)
-NATIVE(format_unlimited) FORMATS(INT32_MAX, format_text, TEXT(1), 2)
-NATIVE(format_list_limited) FORMATS(WORD(1), format_list, TEXT(2), WORD(3))
-NATIVE(format_list_unlimited) FORMATS(INT32_MAX, format_list, TEXT(1), WORD(2))
+NATIVE(of_character)
+{
+    int character = (int)WORD(0);
+    return character < -128 || character > 255 ? 0 : (uint64_t)(int64_t)((int (*)(int, locale_t))self->target)(character, only_locale());
+}
+NATIVE(to_upper) { return (uint64_t)(int64_t)toupper_l((int)WORD(0), only_locale()); }
+NATIVE(to_lower) { return (uint64_t)(int64_t)tolower_l((int)WORD(0), only_locale()); }
+NATIVE(to_ascii) { return WORD(0) & 0x7F; }
+NATIVE(is_ascii) { return ((int)WORD(0) & ~0x7F) == 0; }
+
+/* ---- errors ------------------------------------------------------------------------------------------------------- */
+
+extern int __xpg_strerror_r(int, char *, size_t);
+
+/* Python has the texts that code may keep (api/text.py); these go into the caller's own array. */
+NATIVE(error_text_to)
+{
+    char text[64];
+    libc_enter(call);
+    int status = __xpg_strerror_r((int)WORD(0), text, sizeof text);
+    libc_leave(call);
+    size_t size = strlen(text), kept = size < WORD(2) ? size : WORD(2) - 1;
+    if (WORD(2) > 0) {
+        memcpy(TEXT(1), text, kept);
+        TEXT(1)[kept] = 0;
+    }
+    return (uint64_t)(status != 0 ? status : size < WORD(2) ? 0 : ERANGE);
+}
+
+HIDDEN PyObject *error_text(PyObject *module, PyObject *number)
+{
+    long value = PyLong_AsLong(number);
+    if (value == -1 && PyErr_Occurred())
+        return NULL;
+    char text[64];
+    locale_t before = uselocale(only_locale());
+    int status = __xpg_strerror_r((int)value, text, sizeof text);
+    uselocale(before);
+    return Py_BuildValue("(sO)", text, status == 0 ? Py_True : Py_False);
+}
 
 /* ---- malloc ------------------------------------------------------------------------------------------------------- */
 
@@ -181,7 +203,10 @@ static uint64_t take_aligned(Coroutine *call, uint64_t size, uint64_t alignment)
     if (call->table->heap == NULL)
         return 0;
     heap_own(call->table->heap, call->owner);
-    return heap_take_any(call->table->heap, size ? size : 1, alignment);
+    uint64_t made = heap_take_any(call->table->heap, size ? size : 1, alignment);
+    if (made == 0)
+        set_application_errno(call, ENOMEM);
+    return made;
 }
 
 static uint64_t take(Coroutine *call, uint64_t size) { return take_aligned(call, size, 1); }
@@ -204,14 +229,21 @@ NATIVE(allocate) { return take(call, WORD(0)); }
 NATIVE(allocate_many)
 {
     uint64_t size;
-    uint64_t made = __builtin_mul_overflow(WORD(0), WORD(1), &size) ? 0 : take(call, size);
+    bool is_too_large = __builtin_mul_overflow(WORD(0), WORD(1), &size);
+    uint64_t made = take(call, is_too_large ? UINT64_MAX : size);
     return made == 0 ? 0 : (uint64_t)memset((void *)made, 0, size);
 }
 
 static bool is_power_of_two(uint64_t number) { return number != 0 && (number & (number - 1)) == 0; }
 
 /* Also the operator new of libstdc++ for types that want more than 16 bytes calls it. */
-NATIVE(allocate_aligned) { return is_power_of_two(WORD(0)) ? take_aligned(call, WORD(1), WORD(0)) : 0; }
+NATIVE(allocate_aligned)
+{
+    if (is_power_of_two(WORD(0)))
+        return take_aligned(call, WORD(1), WORD(0));
+    set_application_errno(call, EINVAL);
+    return 0;
+}
 
 NATIVE(allocate_aligned_to)
 {
@@ -232,19 +264,34 @@ NATIVE(let_go)
     return 0;
 }
 
-NATIVE(allocate_again)
+static uint64_t take_again(Coroutine *call, uint64_t size)
 {
     size_t had = WORD(0) ? heap_size_of(call->table->heap, WORD(0)) : 0;
     if (WORD(0) != 0 && had == 0) {
         PyErr_Format(fault_error, "realloc() of %p, which malloc did not give, or which was freed", (void *)WORD(0));
         return 0;
     }
-    uint64_t made = take(call, WORD(1));
+    if (WORD(0) != 0 && size == 0) { /* as glibc, where it is free() then */
+        give(call, WORD(0), "realloc");
+        return 0;
+    }
+    uint64_t made = take(call, size);
     if (made != 0 && WORD(0) != 0) {
-        memcpy((void *)made, POINTER(0), had < WORD(1) ? had : WORD(1));
+        memcpy((void *)made, POINTER(0), had < size ? had : size);
         give(call, WORD(0), "realloc");
     }
     return made;
+}
+
+NATIVE(allocate_again) { return take_again(call, WORD(1)); }
+
+NATIVE(allocate_again_many)
+{
+    uint64_t size;
+    if (!__builtin_mul_overflow(WORD(1), WORD(2), &size))
+        return take_again(call, size);
+    set_application_errno(call, ENOMEM);
+    return 0;
 }
 
 static uint64_t copy_of(Coroutine *call, uint64_t most)
@@ -294,8 +341,14 @@ NATIVE(asserted)
 /* What -D_FORTIFY_SOURCE makes of these functions: the room that the compiler knows is held to. */
 NATIVE(copy_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : memory_copy(call, self); }
 NATIVE(move_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : memory_move(call, self); }
+NATIVE(copy_to_end_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : memory_copy_to_end(call, self); }
+NATIVE(clear_checked) { return WORD(1) > WORD(2) ? overflowed(call, self) : memory_clear_all(call, self); }
 NATIVE(set_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : memory_set(call, self); }
 NATIVE(text_copy_checked) { return strlen(TEXT(1)) >= WORD(2) ? overflowed(call, self) : text_copy(call, self); }
+NATIVE(text_copy_to_end_checked) { return strlen(TEXT(1)) >= WORD(2) ? overflowed(call, self) : text_copy_to_end(call, self); }
+NATIVE(text_limited_to_end_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : text_copy_limited_to_end(call, self); }
+NATIVE(copy_told_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : copy_and_tell_size(call, self); }
+NATIVE(append_told_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : append_and_tell_size(call, self); }
 NATIVE(text_limited_checked) { return WORD(2) > WORD(3) ? overflowed(call, self) : text_copy_limited(call, self); }
 NATIVE(text_append_checked)
 {
@@ -305,21 +358,6 @@ NATIVE(append_limited_checked)
 {
     return strlen(TEXT(0)) + strnlen(TEXT(1), WORD(2)) >= WORD(3) ? overflowed(call, self) : text_append_limited(call, self);
 }
-static uint64_t format_limited_known(Coroutine *call) FORMATS(WORD(1), format_text, TEXT(4), 5)
-static uint64_t format_list_known(Coroutine *call) FORMATS(WORD(1), format_list, TEXT(4), WORD(5))
-NATIVE(format_limited_checked) { return WORD(1) > WORD(3) ? overflowed(call, self) : format_limited_known(call); }
-NATIVE(format_list_checked) { return WORD(1) > WORD(3) ? overflowed(call, self) : format_list_known(call); }
-NATIVE(format_checked)
-{
-    size_t room = WORD(2) < INT32_MAX ? WORD(2) : INT32_MAX;
-    if (waits_to_format(call, room))
-        return 0;
-    int count = format_text(call, TEXT(0), room, TEXT(3), 4);
-    return count >= 0 && (size_t)count >= room ? overflowed(call, self) : formatted(call, count, room);
-}
-
-static const char has_end; /* marks strtod: it tells where the number ends */
-
 HIDDEN const NativeRow natives_of_libc[] = {
     {"memcpy", memory_copy},
     {"memmove", memory_move},
@@ -343,25 +381,55 @@ HIDDEN const NativeRow natives_of_libc[] = {
     {"strpbrk", text_find_any},
     {"strspn", text_span},
     {"strcspn", text_span_without},
-    {"strtok_r", text_split},
-    {"__strtok_r", text_split},
-    {"atoi", number_of_text},
-    {"strtol", long_of_text},
-    {"strtoll", long_of_text},
-    {"strtoul", unsigned_of_text},
-    {"strtoull", unsigned_of_text},
-    {"atof", float_of_text},
-    {"strtod", float_of_text, (void *)&has_end},
-    {"abs", absolute},
+    {"strtok", split},
+    {"strtok_r", split_with_place},
+    {"__strtok_r", split_with_place},
+    {"strsep", split_off},
+    {"__strsep", split_off},
+    {"mempcpy", memory_copy_to_end},
+    {"__mempcpy", memory_copy_to_end},
+    {"stpcpy", text_copy_to_end},
+    {"__stpcpy", text_copy_to_end},
+    {"stpncpy", text_copy_limited_to_end},
+    {"memccpy", memory_copy_until},
+    {"memrchr", memory_find_last},
+    {"rawmemchr", memory_find_raw},
+    {"__rawmemchr", memory_find_raw},
+    {"memmem", memory_find_memory},
+    {"strchrnul", text_find_or_end},
+    {"strcasestr", text_find_text_any_case},
+    {"strlcpy", copy_and_tell_size},
+    {"strlcat", append_and_tell_size},
+    {"index", text_find},
+    {"rindex", text_find_last},
+    {"bzero", memory_clear_all},
+    {"explicit_bzero", memory_clear_all},
+    {"bcopy", memory_copy_back},
+    {"bcmp", memory_compare},
+    {"ffs", first_bit},
+    {"ffsl", first_bit_long},
+    {"ffsll", first_bit_long},
+    {"__xpg_strerror_r", error_text_to},
+    {"isalnum", of_character, (void *)isalnum_l},
+    {"isalpha", of_character, (void *)isalpha_l},
+    {"isblank", of_character, (void *)isblank_l},
+    {"iscntrl", of_character, (void *)iscntrl_l},
+    {"isdigit", of_character, (void *)isdigit_l},
+    {"isgraph", of_character, (void *)isgraph_l},
+    {"islower", of_character, (void *)islower_l},
+    {"isprint", of_character, (void *)isprint_l},
+    {"ispunct", of_character, (void *)ispunct_l},
+    {"isspace", of_character, (void *)isspace_l},
+    {"isupper", of_character, (void *)isupper_l},
+    {"isxdigit", of_character, (void *)isxdigit_l},
+    {"isascii", is_ascii},
+    {"toascii", to_ascii},
     {"toupper", to_upper},
     {"tolower", to_lower},
-    {"snprintf", format_limited},
-    {"sprintf", format_unlimited},
-    {"vsnprintf", format_list_limited},
-    {"vsprintf", format_list_unlimited},
     {"malloc", allocate},
     {"calloc", allocate_many},
     {"realloc", allocate_again},
+    {"reallocarray", allocate_again_many},
     {"aligned_alloc", allocate_aligned},
     {"memalign", allocate_aligned},
     {"posix_memalign", allocate_aligned_to},
@@ -381,8 +449,11 @@ HIDDEN const NativeRow natives_of_libc[] = {
     {"__strncpy_chk", text_limited_checked},
     {"__strcat_chk", text_append_checked},
     {"__strncat_chk", append_limited_checked},
-    {"__snprintf_chk", format_limited_checked},
-    {"__sprintf_chk", format_checked},
-    {"__vsnprintf_chk", format_list_checked},
+    {"__strlcpy_chk", copy_told_checked},
+    {"__strlcat_chk", append_told_checked},
+    {"__mempcpy_chk", copy_to_end_checked},
+    {"__stpcpy_chk", text_copy_to_end_checked},
+    {"__stpncpy_chk", text_limited_to_end_checked},
+    {"__explicit_bzero_chk", clear_checked},
     {NULL},
 };

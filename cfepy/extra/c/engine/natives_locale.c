@@ -1,8 +1,9 @@
-/* The locale "C", which is the only one here, and wide characters in it: what the streams of C++ call. */
+/* The locale "C", which is the only one here; most of this is what the streams of C++ call. */
 #define _GNU_SOURCE
-#include "engine.h"
+#include "natives.h"
 
 #include <langinfo.h>
+#include <limits.h>
 #include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,10 +14,7 @@
 extern double __strtod_l(const char *, char **, locale_t);
 extern float __strtof_l(const char *, char **, locale_t);
 
-#define TEXT(number) ((char *)call->arguments[number])
-#define WIDE(number) ((wchar_t *)call->arguments[number])
-
-static locale_t only(void)
+HIDDEN locale_t only_locale(void)
 {
     static locale_t made;
     if (made == NULL)
@@ -24,31 +22,31 @@ static locale_t only(void)
     return made;
 }
 
-NATIVE(the_locale) { return (uint64_t)only(); }
+NATIVE(the_locale) { return (uint64_t)only_locale(); }
 NATIVE(nothing) { return 0; }
 NATIVE(one_byte) { return 1; }
 NATIVE(name_of_locale)
 {
     return TEXT(1) == NULL || strcmp(TEXT(1), "C") == 0 || strcmp(TEXT(1), "POSIX") == 0 || *TEXT(1) == 0
-               ? (uint64_t)nl_langinfo_l(_NL_LOCALE_NAME(LC_ALL), only())
+               ? (uint64_t)STATE->name_of_locale
                : 0;
 }
 
 NATIVE(new_locale)
 {
     const char *name = TEXT(1);
-    return name == NULL || strcmp(name, "C") == 0 || strcmp(name, "POSIX") == 0 || *name == 0 ? (uint64_t)only() : 0;
+    return name == NULL || strcmp(name, "C") == 0 || strcmp(name, "POSIX") == 0 || *name == 0 ? (uint64_t)only_locale() : 0;
 }
 
 NATIVE(double_of_text)
 {
-    call->float_result = __strtod_l(TEXT(0), (char **)POINTER(1), only());
+    call->float_result = __strtod_l(TEXT(0), (char **)POINTER(1), only_locale());
     return 0;
 }
 
 NATIVE(float_of_text)
 {
-    float value = __strtof_l(TEXT(0), (char **)POINTER(1), only());
+    float value = __strtof_l(TEXT(0), (char **)POINTER(1), only_locale());
     call->float_result = 0;
     memcpy(&call->float_result, &value, sizeof value);
     return 0;
@@ -58,26 +56,41 @@ NATIVE(collate) { return (uint64_t)(int64_t)strcmp(TEXT(0), TEXT(1)); }
 NATIVE(transform)
 {
     size_t size = strlen(TEXT(1));
-    if (WORD(2) > 0) {
-        strncpy(TEXT(0), TEXT(1), WORD(2) - 1);
-        TEXT(0)[WORD(2) - 1] = 0;
-    }
+    memcpy(TEXT(0), TEXT(1), size < WORD(2) ? size + 1 : WORD(2));
     return size;
 }
-NATIVE(fact) { return (uint64_t)nl_langinfo_l((nl_item)WORD(0), only()); }
-NATIVE(class_of_name) { return wctype_l(TEXT(0), only()); }
-NATIVE(is_of_class) { return (uint64_t)(int64_t)iswctype_l((wint_t)WORD(0), (wctype_t)WORD(1), only()); }
-NATIVE(wide_upper) { return towupper_l((wint_t)WORD(0), only()); }
-NATIVE(wide_lower) { return towlower_l((wint_t)WORD(0), only()); }
-NATIVE(wide_of_byte) { return (int)WORD(0) >= 0 && (int)WORD(0) < 128 ? WORD(0) : WEOF; }
-NATIVE(byte_of_wide) { return (int)WORD(0) >= 0 && (int)WORD(0) < 128 ? WORD(0) : (uint64_t)(int64_t)EOF; }
-NATIVE(wide_copy) { return (uint64_t)wmemcpy(WIDE(0), WIDE(1), WORD(2)); }
-NATIVE(wide_move) { return (uint64_t)wmemmove(WIDE(0), WIDE(1), WORD(2)); }
-NATIVE(wide_set) { return (uint64_t)wmemset(WIDE(0), (wchar_t)WORD(1), WORD(2)); }
-NATIVE(wide_compare) { return (uint64_t)(int64_t)wmemcmp(WIDE(0), WIDE(1), WORD(2)); }
-NATIVE(wide_find) { return (uint64_t)wmemchr(WIDE(0), (wchar_t)WORD(1), WORD(2)); }
-NATIVE(wide_length) { return wcslen(WIDE(0)); }
-NATIVE(wide_compare_texts) { return (uint64_t)(int64_t)wcscmp(WIDE(0), WIDE(1)); }
+NATIVE(fact) { return (uint64_t)nl_langinfo_l((nl_item)WORD(0), only_locale()); }
+NATIVE(class_of_name) { return wctype_l(TEXT(0), only_locale()); }
+NATIVE(is_of_class) { return (uint64_t)(int64_t)iswctype_l((wint_t)WORD(0), (wctype_t)WORD(1), only_locale()); }
+NATIVE(wide_upper) { return towupper_l((wint_t)WORD(0), only_locale()); }
+NATIVE(wide_lower) { return towlower_l((wint_t)WORD(0), only_locale()); }
+NATIVE(long_double_of_text)
+{
+    long double value = strtold_l(TEXT(0), (char **)POINTER(1), only_locale());
+    memcpy(call->long_result, &value, sizeof value);
+    call->gives_long = 1;
+    return 0;
+}
+
+NATIVE(conventions) { return (uint64_t)&STATE->conventions; }
+
+/* What libc has from its start on. Numbers that a locale does not say are CHAR_MAX, texts are empty. */
+HIDDEN void state_begin(LibcState *state)
+{
+    memcpy(state->gmt, "GMT", 4);
+    memcpy(state->utc, "UTC", 4);
+    memcpy(state->point, ".", 2);
+    memcpy(state->name_of_locale, "C", 2);
+    state->tzname[0] = state->tzname[1] = state->utc;
+    struct lconv *to = &state->conventions;
+    memset(to, CHAR_MAX, sizeof *to);
+    char **texts[] = {&to->thousands_sep,  &to->grouping,          &to->int_curr_symbol, &to->currency_symbol,
+                      &to->mon_decimal_point, &to->mon_thousands_sep, &to->mon_grouping, &to->positive_sign,
+                      &to->negative_sign};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        *texts[i] = state->empty;
+    to->decimal_point = state->point;
+}
 
 HIDDEN const NativeRow natives_of_locale[] = {
     {"newlocale", new_locale},
@@ -98,14 +111,12 @@ HIDDEN const NativeRow natives_of_locale[] = {
     {"__iswctype_l", is_of_class},
     {"__towupper_l", wide_upper},
     {"__towlower_l", wide_lower},
-    {"btowc", wide_of_byte},
-    {"wctob", byte_of_wide},
-    {"wmemcpy", wide_copy},
-    {"wmemmove", wide_move},
-    {"wmemset", wide_set},
-    {"wmemcmp", wide_compare},
-    {"wmemchr", wide_find},
-    {"wcslen", wide_length},
-    {"wcscmp", wide_compare_texts},
+    {"localeconv", conventions},
+    {"__strtold_l", long_double_of_text},
+    {"strtold_l", long_double_of_text},
+    {"strcoll", collate},
+    {"strcoll_l", collate},
+    {"strxfrm", transform},
+    {"strxfrm_l", transform},
     {NULL},
 };

@@ -3,7 +3,7 @@
  * Python makes the block of a task and an object. A coroutine keeps where the blocks are that it has asked for; it runs
  * in one task, and a block stays until the outermost coroutine of its task has ended.
  */
-#include "engine.h"
+#include "natives.h"
 
 enum { OF_ERRNO = 0 }; /* the module that stands for libc: see lives.py */
 
@@ -39,6 +39,33 @@ HIDDEN int application_errno(const Coroutine *call)
     if (block != 0)
         engine_copy(&value, (const void *)block, sizeof value);
     return value;
+}
+
+/* Where errno is, made if need be; NULL with an exception. */
+static void *errno_block(Coroutine *call)
+{
+    uint64_t *module = &call->thread_locals[OF_ERRNO].module, *block = module + 1;
+    if (*block == 0 || *module != OF_ERRNO) {
+        bool is_native = call->is_native; /* what fails in Python is none of the application's */
+        call->is_native = false;
+        running = NULL;
+        PyObject *at = PyObject_CallNoArgs(call->table->errno_at);
+        running = call;
+        call->is_native = is_native;
+        if (at == NULL)
+            return NULL;
+        *module = OF_ERRNO;
+        *block = PyLong_AsUnsignedLongLongMask(at);
+        Py_DECREF(at);
+    }
+    return (void *)*block;
+}
+
+HIDDEN void set_application_errno(Coroutine *call, int value)
+{
+    void *block = errno_block(call);
+    if (block != NULL)
+        engine_copy(block, &value, sizeof value);
 }
 
 HIDDEN const NativeRow natives_of_threads[] = {

@@ -1,5 +1,5 @@
 /* `Table` and `run`: the functions that an application may call, and its code on a stack of its own. */
-#include "engine.h"
+#include "natives.h"
 
 #include <string.h>
 #include <structmember.h>
@@ -7,9 +7,14 @@
 
 /* ---- Table -------------------------------------------------------------------------------------------------------- */
 
+static const NativeRow *const lists[] = {
+    natives_of_msg,   natives_of_libc,  natives_of_numbers, natives_of_formats, natives_of_scanning,
+    natives_of_time,  natives_of_jumps, natives_of_modes,   natives_of_math,    natives_of_cpp,
+    natives_of_locale, natives_of_wide, natives_of_races,   natives_of_threads,
+};
+
 static const NativeRow *find_native(const char *name)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races, natives_of_threads};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++)
             if (strcmp(row->name, name) == 0)
@@ -66,6 +71,7 @@ static int table_traverse(Table *table, visitproc visit, void *arg)
     Py_VISIT(table->charge);
     Py_VISIT(table->cost);
     Py_VISIT(table->preempted);
+    Py_VISIT(table->errno_at);
     Py_VISIT(table->frames);
     Py_VISIT((PyObject *)table->heap);
     Py_VISIT((PyObject *)table->images);
@@ -82,6 +88,7 @@ static int table_clear(Table *table)
     Py_CLEAR(table->charge);
     Py_CLEAR(table->cost);
     Py_CLEAR(table->preempted);
+    Py_CLEAR(table->errno_at);
     Py_CLEAR(table->frames);
     PyObject *heap = (PyObject *)table->heap;
     table->heap = NULL;
@@ -105,12 +112,13 @@ static void table_dealloc(Table *table)
 
 static PyObject *table_new(PyTypeObject *type, PyObject *arguments, PyObject *options)
 {
-    static char *names[] = {"heap", "images", "charge", "cost", "preempted", "highest_msg_id", "largest_message", "ctype", NULL};
-    PyObject *heap, *images, *charge, *cost, *preempted;
+    static char *names[] = {"heap", "images", "charge", "cost", "preempted", "highest_msg_id", "largest_message", "ctype",
+                            "state", "errno_at", NULL};
+    PyObject *heap, *images, *charge, *cost, *preempted, *errno_at;
     unsigned highest, largest;
-    unsigned long long ctype[3];
-    if (!PyArg_ParseTupleAndKeywords(arguments, options, "O!O!OOOII(KKK)", names, &heap_type, &heap, &images_type, &images, &charge, &cost, &preempted, &highest,
-                                     &largest, &ctype[0], &ctype[1], &ctype[2]))
+    unsigned long long ctype[3], state;
+    if (!PyArg_ParseTupleAndKeywords(arguments, options, "O!O!OOOII(KKK)KO", names, &heap_type, &heap, &images_type, &images, &charge, &cost, &preempted, &highest,
+                                     &largest, &ctype[0], &ctype[1], &ctype[2], &state, &errno_at))
         return NULL;
     Table *table = (Table *)type->tp_alloc(type, 0);
     if (table != NULL) {
@@ -119,6 +127,10 @@ static PyObject *table_new(PyTypeObject *type, PyObject *arguments, PyObject *op
         table->charge = charge == Py_None ? NULL : Py_NewRef(charge);
         table->cost = Py_NewRef(cost);
         table->preempted = Py_NewRef(preempted);
+        table->errno_at = Py_NewRef(errno_at);
+        table->state = state;
+        random_begin(table, 1);
+        state_begin((LibcState *)state);
         table->highest_msg_id = highest;
         table->largest_message = largest;
         for (int i = 0; i < 3; i++)
@@ -176,7 +188,7 @@ HIDDEN PyTypeObject table_type = {
     .tp_methods = table_methods,
     .tp_members = table_members,
     .tp_getset = table_attributes,
-    .tp_doc = "Table(heap, images, charge, cost, preempted, highest_msg_id, largest_message, ctype): the functions that C code can call",
+    .tp_doc = "Table(heap, images, charge, cost, preempted, highest_msg_id, largest_message, ctype, state, errno_at): the functions that C code can call",
 };
 
 /* ---- run ---------------------------------------------------------------------------------------------------------- */
@@ -223,13 +235,19 @@ static int fault_found(Coroutine *coroutine)
     return -1;
 }
 
-static __attribute__((noinline)) int serve_native(Coroutine *coroutine, const Function *function)
+static void call_native(Coroutine *coroutine, const void *function)
 {
-    if (sigsetjmp(coroutine->native_fault, 0))
-        return fault_found(coroutine);
+    coroutine->result = ((const Function *)function)->native(coroutine, function);
+}
+
+static int serve_native(Coroutine *coroutine, const Function *function)
+{
     coroutine->wants_python = coroutine->wants_again = false;
     coroutine->is_native = true;
-    coroutine->result = function->native(coroutine, function);
+    if (engine_try(coroutine, call_native, function)) {
+        modes_abandon(coroutine);
+        return fault_found(coroutine);
+    }
     coroutine->is_native = false;
     return PyErr_Occurred() ? -1 : 0;
 }
@@ -364,12 +382,44 @@ static void tell_caller(const Coroutine *coroutine)
     PyErr_Restore(type, error, trace);
 }
 
+static Coroutine *all; /* the latest first */
+
+/* Code that is called by code of its own task goes on with what belongs to a thread: the modes of floating point, and
+ * where its thread-local variables are. */
+static void inherit(Coroutine *to, const Coroutine *from)
+{
+    to->float_modes = from->float_modes;
+    to->x87_flags = from->x87_flags;
+    memcpy(to->thread_locals, from->thread_locals, sizeof to->thread_locals);
+}
+
+static void enter(Coroutine *coroutine, bool is_nested)
+{
+    for (Coroutine *each = all; is_nested && each != NULL && coroutine->outer == NULL; each = each->next)
+        if (each->key == coroutine->key)
+            coroutine->outer = each;
+    coroutine->next = all;
+    all = coroutine;
+    if (coroutine->outer != NULL)
+        inherit(coroutine, coroutine->outer);
+}
+
+static void leave(Coroutine *coroutine)
+{
+    Coroutine **place = &all;
+    while (*place != coroutine)
+        place = &(*place)->next;
+    *place = coroutine->next;
+    if (coroutine->outer != NULL)
+        inherit(coroutine->outer, coroutine);
+}
+
 static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t count)
 {
     uint64_t values[ENTRY_ARGUMENTS] = {0};
-    if (count != 7 || !Py_IS_TYPE(arguments[0], &table_type) || !PyTuple_Check(arguments[2]) ||
+    if (count != 9 || !Py_IS_TYPE(arguments[0], &table_type) || !PyTuple_Check(arguments[2]) ||
         PyTuple_GET_SIZE(arguments[2]) > ENTRY_ARGUMENTS) {
-        PyErr_SetString(PyExc_TypeError, "run(table, function, arguments, stack, size, owner, task)");
+        PyErr_SetString(PyExc_TypeError, "run(table, function, arguments, stack, size, owner, task, key, is_nested)");
         return NULL;
     }
     for (Py_ssize_t i = 0; i < PyTuple_GET_SIZE(arguments[2]); i++)
@@ -383,14 +433,17 @@ static PyObject *run(PyObject *module, PyObject *const *arguments, Py_ssize_t co
     coroutine->size = PyLong_AsSize_t(arguments[4]);
     coroutine->owner = (uint32_t)PyLong_AsUnsignedLongMask(arguments[5]);
     coroutine->task = (uint32_t)PyLong_AsUnsignedLongMask(arguments[6]);
+    coroutine->key = PyLong_AsUnsignedLongLongMask(arguments[7]);
     PyObject *result = NULL;
     if (!PyErr_Occurred() && faults_thread() == 0) {
         uint32_t calls = races_calls(coroutine); /* Python may have been called by code of this task, which goes on later */
         prepare(coroutine, function, values);
+        enter(coroutine, arguments[8] == Py_True);
         do
             faults_resume(coroutine);
-        while (coroutine->wanted != FINISHED && serve(coroutine) == 0);
+        while (coroutine->wanted != FINISHED && (serve(coroutine) == 0 || jump_lands(coroutine)));
         running = NULL;
+        leave(coroutine);
         races_set_calls(coroutine, calls);
         if (PyErr_Occurred() && PyErr_ExceptionMatches(fault_error))
             tell_caller(coroutine);
@@ -462,6 +515,9 @@ HIDDEN PyObject *memory_protect(PyObject *, PyObject *), *memory_clear(PyObject 
 HIDDEN PyObject *memory_ctype(PyObject *, PyObject *), *memory_make_stub(PyObject *, PyObject *);
 HIDDEN PyObject *memory_make_end(PyObject *, PyObject *), *memory_loaded(PyObject *, PyObject *);
 
+/* natives_libc.c */
+HIDDEN PyObject *error_text(PyObject *, PyObject *);
+
 static PyObject *has_native(PyObject *module, PyObject *name)
 {
     const char *text = PyUnicode_AsUTF8(name);
@@ -470,7 +526,6 @@ static PyObject *has_native(PyObject *module, PyObject *name)
 
 static PyObject *natives(PyObject *module, PyObject *unused)
 {
-    const NativeRow *lists[] = {natives_of_msg, natives_of_libc, natives_of_math, natives_of_cpp, natives_of_locale, natives_of_races, natives_of_threads};
     PyObject *names = PyList_New(0);
     for (size_t i = 0; names != NULL && i < sizeof lists / sizeof *lists; i++)
         for (const NativeRow *row = lists[i]; row->name != NULL; row++) {
@@ -484,19 +539,20 @@ static PyObject *natives(PyObject *module, PyObject *unused)
 
 static PyObject *begin(PyObject *module, PyObject *arguments)
 {
-    PyObject *status, *fault;
-    if (!PyArg_ParseTuple(arguments, "OO", &status, &fault))
+    PyObject *status, *fault, *jump;
+    if (!PyArg_ParseTuple(arguments, "OOO", &status, &fault, &jump))
         return NULL;
     Py_XSETREF(status_error, Py_NewRef(status));
     Py_XSETREF(fault_error, Py_NewRef(fault));
+    Py_XSETREF(jump_error, Py_NewRef(jump));
     if (faults_begin() < 0)
         return NULL;
     Py_RETURN_NONE;
 }
 
 static PyMethodDef methods[] = {
-    {"begin", begin, METH_VARARGS, "begin(status error, fault error)"},
-    {"run", (PyCFunction)(void *)run, METH_FASTCALL, "run(table, function, arguments, stack, size, owner, task) -> result"},
+    {"begin", begin, METH_VARARGS, "begin(status error, fault error, jump error)"},
+    {"run", (PyCFunction)(void *)run, METH_FASTCALL, "run(table, function, arguments, stack, size, owner, task, key, is_nested) -> result"},
     {"peek", (PyCFunction)(void *)peek, METH_FASTCALL, "peek(address, size) -> bytes"},
     {"poke", (PyCFunction)(void *)poke, METH_FASTCALL, "poke(address, bytes)"},
     {"text", text, METH_O, "text(address) -> str"},
@@ -510,6 +566,7 @@ static PyMethodDef methods[] = {
     {"ctype", memory_ctype, METH_NOARGS, "ctype() -> the tables of <ctype.h>, as bytes from index -128 on"},
     {"make_stub", memory_make_stub, METH_VARARGS, "make_stub(address, number, thread_local=False) -> size: code there that calls a function"},
     {"make_end", memory_make_end, METH_O, "make_end(address): code there that ends the function that returns to it"},
+    {"error_text", error_text, METH_O, "error_text(errno) -> (its text in the locale C, whether libc knows it)"},
     {"has_native", has_native, METH_O, "has_native(name) -> whether the engine has such a function"},
     {"natives", natives, METH_NOARGS, "natives() -> names of the functions that the engine answers"},
     {NULL, NULL, 0, NULL},

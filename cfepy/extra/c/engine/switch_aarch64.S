@@ -91,7 +91,11 @@ engine_resume:                                  /* x0: the coroutine */
     mov sp, x9
     RESTORE
     ldr d0, [x0, #160]
-    ldr x1, [x0, #184]
+    ldr x9, [x0, #264]
+    cbz x9, 1f
+    str xzr, [x0, #264]
+    ldr q0, [x0, #272]
+1:  ldr x1, [x0, #184]
     ldr x0, [x0, #80]
     .irp number, 2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18 /* nothing of the host's gets into an application */
     mov x\number, #0
@@ -176,6 +180,35 @@ engine_land:                                    /* a signal handler put the host
     RESTORE
     ret
     .size engine_land, . - engine_land
+
+    .globl engine_try
+    .hidden engine_try
+    .type engine_try, %function
+engine_try:                                     /* try(coroutine, function, with): calls function(coroutine, with); 0, or 1
+                                                   when a signal handler ended it, with the host's modes */
+    KEEP
+    ldr x9, [x0, #288]                          /* one may be tried in another */
+    stp x9, x0, [sp, #-16]!
+    mov x9, sp
+    str x9, [x0, #288]
+    mov x9, x1
+    mov x1, x2
+    blr x9
+    mov w2, #0
+1:  ldp x9, x1, [sp], #16
+    str x9, [x1, #288]
+    mov w0, w2
+    RESTORE
+    ret
+    .globl engine_try_failed
+    .hidden engine_try_failed
+engine_try_failed:                              /* the handler put what is in 288 into sp */
+    adrp x17, running
+    ldr x17, [x17, #:lo12:running]
+    TAKE_MODES x17, 168
+    mov w2, #1
+    b 1b
+    .size engine_try, . - engine_try
 
     .globl engine_begin
     .hidden engine_begin

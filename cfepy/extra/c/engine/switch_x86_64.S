@@ -27,7 +27,11 @@ engine_resume:                          /* rdi: the coroutine */
     mov 80(%rdi), %rax
     mov 184(%rdi), %rdx
     movsd 160(%rdi), %xmm0
-    xor %ecx, %ecx                      /* nothing of the host's gets into an application, not even by chance */
+    cmpq $0, 264(%rdi)
+    je 1f
+    movq $0, 264(%rdi)
+    fldt 272(%rdi)
+1:  xor %ecx, %ecx                      /* nothing of the host's gets into an application, not even by chance */
     xor %esi, %esi
     xor %edi, %edi
     xor %r8d, %r8d
@@ -100,6 +104,37 @@ engine_land:                            /* a signal handler put the host's stack
     RESTORE
     ret
     .size engine_land, . - engine_land
+
+    .globl engine_try
+    .hidden engine_try
+    .type engine_try, @function
+engine_try:                             /* try(coroutine, function, with): calls function(coroutine, with); 0, or 1 when a
+                                           signal handler ended it, with the host's modes */
+    KEEP
+    push 288(%rdi)                      /* one may be tried in another; and the stack is aligned with that */
+    mov %rsp, 288(%rdi)
+    push %rdi
+    push %rdi
+    mov %rsi, %rax
+    mov %rdx, %rsi
+    call *%rax
+    pop %rdi
+    pop %rdi
+    xor %eax, %eax
+1:  pop 288(%rdi)
+    RESTORE
+    ret
+    .globl engine_try_failed
+    .hidden engine_try_failed
+engine_try_failed:                      /* the handler put what is in 288 into rsp */
+    mov running(%rip), %rdi
+    cld
+    ldmxcsr 168(%rdi)
+    fninit
+    fldcw 172(%rdi)
+    mov $1, %eax
+    jmp 1b
+    .size engine_try, . - engine_try
 
     .globl engine_begin
     .hidden engine_begin
