@@ -11,7 +11,8 @@ from cfepy.extra.c.abi import AbiProfile, abi_profile
 from cfepy.extra.c.api import function_names
 from cfepy.extra.c.elf import ElfError, read_shared_object
 from cfepy.extra.c.ground_check import ground_differences
-from cfepy.extra.c.linking import wanted_names
+from cfepy.extra.c.linking import refused_names, wanted_names
+from cfepy.extra.c.refused import BY_REASON, REASONS
 from cfepy.mission import MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
 from cfepy.reading.input_files import read_limited
@@ -21,8 +22,6 @@ from cfepy.reading.suggestions import did_you_mean
 
 NO_SYMBOL = "NULL"
 PROFILE = "omit_deprecated"
-SHOWN = 8
-"""Names of missing functions that are listed."""
 
 
 def check_compiled(
@@ -38,7 +37,7 @@ def check_compiled(
     """
     try:
         source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
-        wanted = wanted_names(source)
+        wanted = set(wanted_names(source)) - function_names() | refused_names(source)
     except ElfError as error:
         yield MissionProblem(file, 0, str(error))
         return
@@ -46,14 +45,13 @@ def check_compiled(
     if entry.symbol not in ("", NO_SYMBOL, *functions):
         hint = did_you_mean(entry.symbol, functions, "correct the name, or export the function (it may be static)")
         yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
-    yield from _check_needs(script, entries, entry, set(wanted))
+    yield from _check_needs(script, entries, entry, wanted)
     yield from ground_differences(entry.path, script.parent)
 
 
 def _check_needs(
     script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, wanted: set[str]
 ) -> Iterator[MissionProblem]:
-    wanted -= function_names()
     before = True
     for each in entries:
         if each is entry:
@@ -65,10 +63,16 @@ def _check_needs(
                 f"{entry.name} needs {_listed(exported)} of the library {each.name}, which line {each.line} loads later"
             )
             yield MissionProblem(script, entry.line, text + "; move that line up", is_warning=True)
-        wanted -= exported
-    if wanted:
-        text = f"{entry.name} needs {_listed(wanted)}, but cfepy and the libraries of the mission do not define them"
+        wanted = wanted - exported
+    unknown = {name for name in wanted if name not in REASONS}
+    if unknown:
+        text = f"{entry.name} needs {_listed(unknown)}, but cfepy and the libraries of the mission do not define them"
         yield MissionProblem(script, entry.line, text + "; calling it is a fault", is_warning=True)
+    for reason, names in BY_REASON.items():
+        refused = wanted.intersection(names)
+        if refused:
+            text = f"{entry.name} needs {_listed(refused)}, but {reason}; calling it is a fault"
+            yield MissionProblem(script, entry.line, text, is_warning=True)
 
 
 def _exported(folder: Path, entry: StartupEntry) -> set[str]:
@@ -136,6 +140,4 @@ def _says_profile(said: MissionSections) -> bool:
 
 
 def _listed(names: set[str]) -> str:
-    ordered = sorted(names)
-    more = f" and {len(ordered) - SHOWN} more" if len(ordered) > SHOWN else ""
-    return ", ".join(ordered[:SHOWN]) + more
+    return ", ".join(sorted(names))

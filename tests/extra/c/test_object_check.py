@@ -31,9 +31,12 @@ def test_missing_entry_point_is_reported(tmp_path: Path) -> None:
 
 
 def test_undefined_functions_are_reported(tmp_path: Path) -> None:
-    compile_c(tmp_path, "TEST", "int NONE_One(void); int fork(void); void TEST_Main(void) { NONE_One(); fork(); }")
-    [text] = problems(write_mission(tmp_path, "TEST"))
-    assert "TEST needs NONE_One, fork, but cfepy and the libraries of the mission do not define them" in text
+    names = [f"NONE_{number}" for number in range(10, 30)]
+    calls = "".join(f"extern int {name}(void); {name}();" for name in (*names, "fork"))
+    compile_c(tmp_path, "TEST", f"void TEST_Main(void) {{ {calls} }}")
+    text, refused = problems(write_mission(tmp_path, "TEST"))
+    assert f"TEST needs {', '.join(names)}, but cfepy and the libraries of the mission do not define them" in text
+    assert "TEST needs fork, but a flight computer has no processes" in refused
 
 
 def test_library_loaded_too_late_is_reported(tmp_path: Path) -> None:
