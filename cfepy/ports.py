@@ -202,6 +202,9 @@ class Files(Protocol):
     def write_header(self, filedes: int, file_header: Any) -> int:
         """Write a cFE header, with ids and time filled in, at the start of an open file (CFE_FS_WriteHeader)."""
 
+    def write_whole_header(self, filedes: int, file_header: Any) -> None:
+        """Write a header like `write_header`; a short write is an error, with the number of bytes as its status."""
+
     def background_file_dump_request(self, meta: Any) -> None:
         """Request that the background task writes a file (CFE_FS_BackgroundFileDumpRequest)."""
 

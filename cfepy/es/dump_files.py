@@ -129,9 +129,9 @@ class _Dump:
 
     def _fill(self, filedes: int, records: Iterable[bytes]) -> None:
         self.trouble = self._kind.no_header
-        self._es.ports.fs.write_header(filedes, init_header(self._kind.description, self._kind.subtype))
+        self._es.ports.fs.write_whole_header(filedes, init_header(self._kind.description, self._kind.subtype))
         self.trouble = self._kind.no_record
         for record in records:
             self.block = len(record)
-            self.size += self._es.osal.write(filedes, record)
+            self.size += self._es.osal.write_whole(filedes, record)
             self.entries += 1

@@ -188,11 +188,11 @@ class PerfDump:
     def _write_records(self, filedes: int, path: str) -> Iterator[None]:
         count, block, written = self._log.data.count, HEADER_SIZE, HEADER_SIZE
         try:
-            self._ports.fs.write_header(filedes, init_header(DESCRIPTION, SUBTYPE_ES_PERFDATA))
+            self._ports.fs.write_whole_header(filedes, init_header(DESCRIPTION, SUBTYPE_ES_PERFDATA))
             yield
             for number, record in enumerate(self._records()):
                 block = len(record)
-                written += self._osal.write(filedes, record)
+                written += self._osal.write_whole(filedes, record)
                 self.remaining = count - number
                 yield
         except CfeError as error:

@@ -385,7 +385,7 @@ class EventFiles:
         entries = self._core.log.entries()
         for entry in entries:
             status = self._write(descriptor, entry)
-            if status < 0:
+            if status != len(entry):
                 text = f"Write Log File Command Error: OS_write = {status}, filename = {path}"
                 return self._replies.refuse(ev.ERR_WRLOGFILE_EID, text)
         text = f"Write Log File Command: {len(entries)} event log entries written to {path}"
@@ -402,8 +402,9 @@ class EventFiles:
             return False  # NASA's code sends no event here
         apps = apps_by_slot(self._core)
         for count, app in enumerate(apps):
-            status = self._write(descriptor, _app_record(app))
-            if status < 0:
+            record = _app_record(app)
+            status = self._write(descriptor, record)
+            if status != len(record):
                 where = f"At entry = {count}, OS_write = {status}, filename = {path}"
                 return self._replies.refuse(ev.ERR_WRDATFILE_EID, f"Write App Data Command Error: {where}")
         text = f"Write App Data Command: {len(apps)} application data entries written to {path}"

@@ -155,7 +155,7 @@ class BackgroundWriter:
         data, is_last = meta.get_data(self._record)
         try:
             if data:
-                self._osal.write(self._filedes, data)
+                self._osal.write_whole(self._filedes, data)
         except CfeError as error:
             self._close()
             meta.on_event(FileWriteEvent.RECORD_WRITE_ERROR, error.status, self._record, len(data), self._size)

@@ -76,7 +76,7 @@ class FileServices:
             file_header: provides description and subtype; from `init_header`.
 
         Returns:
-            The bytes written: 64.
+            The bytes written: 64, or fewer on a disk that is full after them.
 
         Raises:
             CfeError: CFE_STATUS_EXTERNAL_RESOURCE_FAIL (not open for writing, or the disk is full), CFE_FS_BAD_ARGUMENT
@@ -90,6 +90,12 @@ class FileServices:
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error
         except UsageError as error:
             raise CfeError(CFE_FS_BAD_ARGUMENT, error.text) from error
+
+    def write_whole_header(self, filedes: int, file_header: FileHeader) -> None:
+        """Write a header like `write_header`; a short write is an error, with the number of bytes as its status."""
+        count = self.write_header(filedes, file_header)
+        if count != HEADER_SIZE:
+            raise CfeError(count, f"only {count} bytes of the header were written")
 
     def set_timestamp(self, filedes: int, new_timestamp: tuple[int, int]) -> None:
         """Change the time in the header of an open file (CFE_FS_SetTimestamp).
@@ -109,7 +115,7 @@ class FileServices:
         try:
             self._osal.lseek(filedes, TIMESTAMP_OFFSET, OS_SEEK_SET)
             what = "write timestamp"
-            self._osal.write(filedes, data)
+            self._osal.write_whole(filedes, data)
         except OsalError as error:
             self._ports.syslog.write_to_sys_log(f"CFE_FS_SetTimestamp: Failed to {what} (Status={error.status})")
             raise CfeError(CFE_STATUS_EXTERNAL_RESOURCE_FAIL, str(error)) from error

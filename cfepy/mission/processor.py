@@ -381,7 +381,8 @@ class _TableFiles:
     def read_file(self, path: str) -> bytes:
         """Return the whole content of a file."""
         self._osal.close(self._osal.open_create(path, access_mode=OS_READ_ONLY))
-        return self._osal.files.read_file(path)
+        node = self._osal.files.find(path)
+        return bytes(node.data) if node is not None else b""  # a folder can be opened, but not read
 
     def leave_open(self, path: str) -> None:
         """Open a file and lose its descriptor."""

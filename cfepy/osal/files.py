@@ -6,7 +6,6 @@ cfepy.osal.streams adds sockets and the timed calls.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 from cfepy.ids import OS_DIR_BASE, OS_STREAM_BASE
@@ -25,7 +24,7 @@ from cfepy.osal.limits import (
     OS_SEEK_SET,
     OS_WRITE_ONLY,
 )
-from cfepy.osal.volumes import FileNode
+from cfepy.osal.volumes import FileNode, Folder, Volume
 from cfepy.status import (
     OS_ERR_NO_FREE_IDS,
     OS_ERR_OPERATION_NOT_SUPPORTED,
@@ -41,7 +40,10 @@ ACCESS_BITS = {
     OS_READ_WRITE: OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE,
 }
 """The mode bits that a file needs to be opened with an access mode; `chmod` sets the same bits."""
-
+READERS, WRITERS = (OS_READ_ONLY, OS_READ_WRITE), (OS_WRITE_ONLY, OS_READ_WRITE)
+NO_ACCESS = -1
+"""The access mode of a folder that is open as a file."""
+LAST_POSITION = (1 << 63) - 1
 
 _DOTS = (".", "..")
 
@@ -67,10 +69,11 @@ class OsStream(OsObject):
 class OsFile(OsStream):
     """The record of an open file."""
 
-    __slots__ = ("access", "node", "position")
+    __slots__ = ("access", "node", "position", "volume")
 
-    def __init__(self, name: str, path: str, node: FileNode, access: int) -> None:
+    def __init__(self, name: str, path: str, volume: Volume, node: FileNode, access: int) -> None:
         super().__init__(name, path)
+        self.volume = volume
         self.node = node
         self.access = access
         self.position = 0
@@ -93,7 +96,7 @@ class FileApi(Core):
         """Open a file (OS_OpenCreate).
 
         Args:
-            path: virtual path, e.g. "/ram/log.bin".
+            path: virtual path, e.g. "/ram/log.bin". A folder can be opened to be read, but every read fails.
             flags: OS_FILE_FLAG_CREATE and OS_FILE_FLAG_TRUNCATE.
             access_mode: OS_READ_ONLY, OS_WRITE_ONLY or OS_READ_WRITE.
 
@@ -106,22 +109,33 @@ class FileApi(Core):
         """
         if access_mode not in ACCESS_BITS:
             raise OsalError(OS_ERROR, f"invalid access mode {access_mode} for {path}")
-        self.files.translate(path)
+        place = self.files.translate(path)
         if len(self._streams) == self._streams.capacity:  # before the file is created or truncated
             raise OsalError(OS_ERR_NO_FREE_IDS, f"too many open files; cannot open {path}")
-        node = self.files.open_node(path) if flags & OS_FILE_FLAG_CREATE else self.files.find(path)
+        node = self.files.open_node(path) if flags & OS_FILE_FLAG_CREATE else place.node()
         if node is None:
+            if access_mode == OS_READ_ONLY and not flags & OS_FILE_FLAG_TRUNCATE and self.files.is_folder(path):
+                return self._opened_file(path, place.volume, FileNode(), NO_ACCESS)
             raise OsalError(OS_ERROR, f"file {path} does not exist")
         needed = ACCESS_BITS[access_mode] | (OS_FILESTAT_MODE_WRITE if flags & OS_FILE_FLAG_TRUNCATE else 0)
         if needed & ~node.mode:
             raise OsalError(OS_ERROR, f"the mode of {path} does not permit this access")
         if flags & OS_FILE_FLAG_TRUNCATE:
             node.data.clear()
-        return self._register(self._streams, OsFile(self._next_name(), path, node, access_mode), "file", 0)
+        return self._opened_file(path, place.volume, node, access_mode)
+
+    def _opened_file(self, path: str, volume: Volume, node: FileNode, access: int) -> int:
+        record = OsFile(self._next_name(), path, volume, node, access)
+        filedes = self._register(self._streams, record, "file", 0)
+        node.openings += 1
+        return filedes
 
     def close(self, filedes: int) -> None:
         """Close a descriptor (OS_close); raises OS_ERR_INVALID_ID."""
-        self._unregister(self._streams, self._stream(filedes))
+        stream = self._stream(filedes)
+        self._unregister(self._streams, stream)
+        if isinstance(stream, OsFile):
+            stream.node.openings -= 1
 
     def read(self, filedes: int, nbytes: int) -> bytes:
         """Read at most `nbytes` at the position of the descriptor (OS_read).
@@ -131,7 +145,7 @@ class FileApi(Core):
         """
         check_size(nbytes, "read")
         stream = self._file(filedes)
-        if stream.access == OS_WRITE_ONLY:
+        if stream.access not in READERS:
             raise OsalError(OS_ERROR, f"{stream.path} is not open for reading")
         data = bytes(stream.node.data[stream.position : stream.position + nbytes])
         stream.position += len(data)
@@ -139,33 +153,46 @@ class FileApi(Core):
         return data
 
     def write(self, filedes: int, data: bytes | bytearray | memoryview) -> int:
-        """Write at the position of the descriptor (OS_write); return the number of bytes.
+        """Write at the position of the descriptor (OS_write); return the number of bytes, fewer on a disk that is full
+        after them.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR if it is not open for writing or the disk is
-                full.
+            OsalError: OS_ERR_INVALID_ID, OS_ERR_INVALID_SIZE, OS_ERROR if it is not open for writing or the disk has
+                no room for a byte.
         """
         check_size(len(data), "write")
         stream = self._file(filedes)
-        if stream.access == OS_READ_ONLY:
+        if stream.access not in WRITERS:
             raise OsalError(OS_ERROR, f"{stream.path} is not open for writing")
-        end = stream.position + len(data)
-        self._grow(stream, end)
-        stream.node.data[stream.position : end] = data
+        position, count = stream.position, len(data)
+        if self._grow(stream, position + count) < position + count:
+            count = len(stream.node.data) - position
+            data = data[:count]
+            if count <= 0:
+                raise OsalError(OS_ERROR, f"the volume of {stream.path} has no room")
+        stream.node.data[position : position + count] = data
         stream.node.modified_ns = self.kernel.now
-        stream.position = end
-        self._charge_bytes(len(data))
-        return len(data)
+        stream.position = position + count
+        self._charge_bytes(count)
+        return count
+
+    def write_whole(self, filedes: int, data: bytes) -> int:
+        """Write like `write`; a short write is an error, with the number of bytes as its status, as in cFE's events."""
+        count = self.write(filedes, data)
+        if count != len(data):
+            raise OsalError(count, f"only {count} of {len(data)} bytes were written")
+        return count
 
     def lseek(self, filedes: int, offset: int, whence: int) -> int:
         """Move the position of a descriptor (OS_lseek); return the new position from the start.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERROR for an invalid `whence` or a position before the start.
+            OsalError: OS_ERR_INVALID_ID, OS_ERROR for an invalid `whence`, a position before the start, or one that
+                63 bits cannot hold.
         """
         stream = self._file(filedes)
         origins = {OS_SEEK_SET: 0, OS_SEEK_CUR: stream.position, OS_SEEK_END: len(stream.node.data)}
-        if whence not in origins or origins[whence] + offset < 0:
+        if whence not in origins or not 0 <= origins[whence] + offset <= LAST_POSITION:
             raise OsalError(OS_ERROR, f"invalid seek by {offset} from {whence} in {stream.path}")
         stream.position = origins[whence] + offset
         return stream.position
@@ -173,11 +200,19 @@ class FileApi(Core):
     def file_allocate(self, filedes: int, offset: int, length: int) -> None:
         """Make a file at least `offset + length` bytes long (OS_FileAllocate).
 
+        As on NASA's Linux, the call also succeeds when it has no effect: with a negative offset, a length below 1, a
+        descriptor that is not open for writing, a socket, or a full disk.
+
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE if there is no room, OS_ERROR for a negative offset, a
-                length below 1, or a descriptor that is not open for writing.
+            OsalError: OS_ERR_INVALID_ID.
         """
-        self._resize(filedes, lambda size: max(size, offset + length), offset >= 0 and length > 0)
+        stream = self._stream(filedes)
+        if not isinstance(stream, OsFile) or offset < 0 or length <= 0 or stream.access not in WRITERS:
+            return
+        size, wanted = len(stream.node.data), offset + length
+        if wanted > size and self.files.fitting(stream.volume, size, wanted) == wanted:
+            self._grow(stream, wanted)
+            stream.node.modified_ns = self.kernel.now
 
     def file_truncate(self, filedes: int, length: int) -> None:
         """Make a file `length` bytes long, shorter or longer (OS_FileTruncate).
@@ -186,7 +221,15 @@ class FileApi(Core):
             OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE if there is no room, OS_ERROR for a negative length or
                 a descriptor that is not open for writing.
         """
-        self._resize(filedes, lambda size: length, length >= 0)
+        stream = self._file(filedes)
+        if length < 0 or stream.access not in WRITERS:
+            raise OsalError(OS_ERROR, f"cannot set this size of {stream.path} through this descriptor")
+        data = stream.node.data
+        if self.files.fitting(stream.volume, len(data), length) < length:
+            raise OsalError(OS_ERR_OUTPUT_TOO_LARGE, f"the volume of {stream.path} has no room for {length} bytes")
+        self._grow(stream, length)
+        del data[length:]
+        stream.node.modified_ns = self.kernel.now
 
     def fd_get_info(self, filedes: int) -> FileInfo:
         """Return facts about a descriptor (OS_FDGetInfo); raises OS_ERR_INVALID_ID."""
@@ -238,34 +281,29 @@ class FileApi(Core):
         if self._costs.byte_ps:
             self.kernel.charge(self._costs.of_copying(count))
 
-    def _resize(self, filedes: int, new_size: Callable[[int], int], is_valid: bool) -> None:
-        stream = self._file(filedes)
-        if not is_valid or stream.access == OS_READ_ONLY:
-            raise OsalError(OS_ERROR, f"cannot set this size of {stream.path} through this descriptor")
-        data = stream.node.data
-        size = new_size(len(data))
-        try:
-            self._grow(stream, size)
-        except OsalError as error:
-            raise OsalError(OS_ERR_OUTPUT_TOO_LARGE, error.text) from error
-        del data[size:]
-        stream.node.modified_ns = self.kernel.now
+    def _grow(self, stream: OsFile, size: int) -> int:
+        """Fill a file with zeros until it has `size` bytes, or until its volume is full.
 
-    def _grow(self, stream: OsFile, size: int) -> None:
-        missing = size - len(stream.node.data)
-        if missing > 0:
-            self.files.check_room(stream.path, missing)
-            stream.node.data.extend(bytes(missing))
+        Returns:
+            The number of bytes up to which the descriptor can write: `size`, or fewer.
+        """
+        data = stream.node.data
+        if size > len(data):
+            size = self.files.fitting(stream.volume, len(data), size)
+            data.extend(bytes(size - len(data)))
+        return size
 
 
 class OsDirectory(OsObject):
     """The record of an open folder."""
 
-    __slots__ = ("entries", "path", "position", "with_dots")
+    __slots__ = ("entries", "folder", "path", "position", "volume", "with_dots")
 
-    def __init__(self, name: str, path: str, with_dots: bool) -> None:
+    def __init__(self, name: str, path: str, volume: Volume, folder: Folder, with_dots: bool) -> None:
         super().__init__(name)
         self.path = path
+        self.volume = volume
+        self.folder = folder
         self.with_dots = with_dots
         self.entries: list[str] | None = None
         self.position = 0
@@ -302,7 +340,8 @@ class DirectoryApi(Core):
         self.files.remove_folder(path)
 
     def directory_open(self, path: str, *, with_dots: bool = False) -> int:
-        """Open a folder to read its names in sorted order, as of the first read (OS_DirectoryOpen).
+        """Open a folder to read its names in sorted order, as of the first read (OS_DirectoryOpen); it stays open when
+        it is renamed, and has no more names after its removal.
 
         Args:
             path: virtual path.
@@ -312,8 +351,11 @@ class DirectoryApi(Core):
             OsalError: OS_ERROR if there is none; OS_FS_ERR_* for the path; OS_ERR_NO_FREE_IDS.
         """
         self._directories_opened += 1  # open folders have no names in OSAL, but records need one
-        self.files.list_dir(path)
-        record = OsDirectory(f"#{self._directories_opened}", path, with_dots)
+        volume, rest, _ = self.files.translate(path)
+        folder = volume.folder(rest)
+        if folder is None:
+            raise OsalError(OS_ERROR, f"folder {path} does not exist")
+        record = OsDirectory(f"#{self._directories_opened}", path, volume, folder, with_dots)
         return self._register(self._directories, record, "directory", 0)
 
     def directory_close(self, dir_id: int) -> None:
@@ -335,10 +377,10 @@ class DirectoryApi(Core):
         return directory.entries[directory.position - 1]
 
     def _names_in(self, directory: OsDirectory) -> list[str]:
-        try:
-            return [*(_DOTS if directory.with_dots else ()), *self.files.list_dir(directory.path)]
-        except OsalError:  # the folder was removed while it was open
+        path = directory.folder.path
+        if path is None:
             return []
+        return [*(_DOTS if directory.with_dots else ()), *directory.volume.names(path)]
 
     def directory_rewind(self, dir_id: int) -> None:
         """Start again with the first name (OS_DirectoryRewind); raises OS_ERR_INVALID_ID."""

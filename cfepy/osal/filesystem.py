@@ -25,11 +25,26 @@ RAM_BLOCK_BYTES = 512  # CFE_PLATFORM_ES_RAM_DISK_SECTOR_SIZE
 RAM_BLOCKS = 4096  # CFE_PLATFORM_ES_RAM_DISK_NUM_SECTORS
 
 
+LONGEST_FILE = 1 << 30
+"""Bytes of the longest file, because files are in the host's memory."""
+
+
 class FilePlace(NamedTuple):
-    """The place of a virtual path: a volume and a path in it."""
+    """The place of a virtual path: a volume and a path in it.
+
+    Attributes:
+        volume: the volume.
+        path: without empty parts and ".".
+        ending: "/" or "." if the virtual path ends so, which only a folder may; otherwise "".
+    """
 
     volume: Volume
     path: str
+    ending: str
+
+    def node(self) -> FileNode | None:
+        """Return the file there, or None if there is none."""
+        return None if self.ending else self.volume.node(self.path)
 
 
 class FileSystem:
@@ -64,6 +79,8 @@ class FileSystem:
     def forget_guests(self) -> None:
         """Restore the mounts for a processor reset: undo the mounts and unmounts of flight software."""
         self._mounts = dict(self._own)
+        for volume in self._mounts.values():
+            volume.make_folder("")
 
     def unmount(self, mount_point: str) -> Volume:
         """Unmount a volume, which keeps its files, and return it.
@@ -115,8 +132,10 @@ class FileSystem:
             raise OsalError(OS_FS_ERR_PATH_INVALID, f'{path!r} must begin with "/" and must not contain ".."')
         for mount_point, volume in self._mounts.items():
             if path == mount_point or path.startswith(mount_point + "/"):
-                rest = [part for part in path[len(mount_point) :].split("/") if part not in ("", ".")]
-                return FilePlace(volume, "/".join(rest))
+                rest = path[len(mount_point) :]
+                if rest.endswith("/") or "/." in rest or "//" in rest:
+                    return _plain_place(volume, rest)
+                return FilePlace(volume, rest[1:], "")
         raise OsalError(
             OS_FS_ERR_PATH_INVALID,
             f"{path!r} is not below a mount point; expected one of {', '.join(self.mount_points())}",
@@ -128,8 +147,7 @@ class FileSystem:
         Raises:
             OsalError: see `translate`.
         """
-        volume, rest = self.translate(path)
-        return volume.node(rest)
+        return self.translate(path).node()
 
     def read_file(self, path: str) -> bytes:
         """Return the whole content of a file.
@@ -154,7 +172,8 @@ class FileSystem:
             OsalError: OS_ERROR if there is no such folder or no room; see `translate`.
         """
         node = self.open_node(path)
-        self.check_room(path, len(data) - len(node.data))
+        if self.fitting(self.translate(path).volume, len(node.data), len(data)) < len(data):
+            raise OsalError(OS_ERROR, f"the volume of {path} has no room for {len(data)} bytes")
         node.data[:] = data
         node.modified_ns = now_ns
 
@@ -164,15 +183,15 @@ class FileSystem:
         Raises:
             OsalError: OS_ERROR if its folder does not exist or it is a folder; see `translate`.
         """
-        volume, rest = self.translate(path)
-        if volume.is_folder(rest) or not volume.is_folder(rest.rpartition("/")[0]):
+        volume, rest, ending = self.translate(path)
+        if ending or volume.is_folder(rest) or not volume.is_folder(rest.rpartition("/")[0]):
             raise OsalError(OS_ERROR, f"{path} is a folder, or its folder does not exist")
         return volume.node(rest) or volume.create(rest)
 
-    def check_room(self, path: str, size: int) -> None:
-        """Raise OS_ERROR if the volume of a path has no room for `size` more bytes."""
-        if not self.translate(path).volume.has_room(size):
-            raise OsalError(OS_ERROR, f"the volume of {path} has no room for {size} more bytes")
+    def fitting(self, volume: Volume, size: int, wanted: int) -> int:
+        """Return the bytes, at most `wanted`, to which a file of `size` bytes can grow in a volume."""
+        room = volume.room()
+        return min(wanted, LONGEST_FILE if room is None else min(size + room, LONGEST_FILE))
 
     def exists(self, path: str) -> bool:
         """Return whether a file or folder exists at a path; False for an invalid path.
@@ -180,10 +199,10 @@ class FileSystem:
         It never raises.
         """
         try:
-            volume, rest = self.translate(path)
+            place = self.translate(path)
         except OsalError:
             return False
-        return volume.node(rest) is not None or volume.is_folder(rest)
+        return place.node() is not None or place.volume.is_folder(place.path)
 
     def is_folder(self, path: str) -> bool:
         """Return whether there is a folder at a path.
@@ -191,7 +210,7 @@ class FileSystem:
         Raises:
             OsalError: see `translate`.
         """
-        volume, rest = self.translate(path)
+        volume, rest, _ = self.translate(path)
         return volume.is_folder(rest)
 
     def remove(self, path: str) -> None:
@@ -200,10 +219,10 @@ class FileSystem:
         Raises:
             OsalError: OS_ERROR if neither exists; see `translate`.
         """
-        volume, rest = self.translate(path)
-        if volume.node(rest) is not None:
-            volume.remove(rest)
-        elif volume.is_folder(rest):
+        place = self.translate(path)
+        if place.node() is not None:
+            place.volume.remove(place.path)
+        elif place.volume.is_folder(place.path):
             self.remove_folder(path)
         else:
             raise OsalError(OS_ERROR, f"file {path} does not exist")
@@ -215,11 +234,13 @@ class FileSystem:
             OsalError: OS_ERROR if neither exists, the volume is different, or another file or folder is in the way; see
                 `translate`.
         """
-        (source, source_path), (target, target_path) = self.translate(old), self.translate(new)
-        if source is target and source.node(source_path) is not None and _can_be_file(target, target_path):
-            source.rename(source_path, target_path)
-        elif source is target and _can_move_folder(source, source_path, target_path):
-            source.rename_folder(source_path, target_path)
+        source, target = self.translate(old), self.translate(new)
+        volume = source.volume
+        if volume is target.volume and source.node() is not None and _can_be_file(target):
+            volume.rename(source.path, target.path)
+        elif volume is target.volume and _can_move_folder(source, target):
+            if source.path != target.path:
+                volume.rename_folder(source.path, target.path)
         else:
             raise OsalError(OS_ERROR, f"cannot rename {old} to {new}")
 
@@ -229,19 +250,23 @@ class FileSystem:
         Raises:
             OsalError: OS_ERROR if a file is in the way or the parent folder does not exist; see `translate`.
         """
-        volume, rest = self.translate(path)
-        if volume.node(rest) is not None or not volume.is_folder(rest.rpartition("/")[0]):
+        volume, rest, ending = self.translate(path)
+        if volume.is_folder(rest):
+            return
+        has_parent = not rest or volume.is_folder(rest.rpartition("/")[0])
+        if ending == "." or volume.node(rest) is not None or not has_parent:
             raise OsalError(OS_ERROR, f"{path} is a file, or its folder does not exist")
         volume.make_folder(rest)
 
     def remove_folder(self, path: str) -> None:
-        """Remove an empty folder (OS_rmdir).
+        """Remove an empty folder (OS_rmdir), also the folder of a whole volume, which then takes no file until
+        `make_folder` or a reset.
 
         Raises:
-            OsalError: OS_ERROR if it does not exist, is not empty or is a mount point; see `translate`.
+            OsalError: OS_ERROR if it does not exist or is not empty, or if the path ends in "."; see `translate`.
         """
-        volume, rest = self.translate(path)
-        if not rest or not volume.is_folder(rest) or volume.names(rest):
+        volume, rest, ending = self.translate(path)
+        if ending == "." or not volume.is_folder(rest) or volume.names(rest):
             raise OsalError(OS_ERROR, f"{path} is not an empty folder")
         volume.remove_folder(rest)
 
@@ -251,22 +276,35 @@ class FileSystem:
         Raises:
             OsalError: OS_ERROR if the folder does not exist; see `translate`.
         """
-        volume, rest = self.translate(path)
+        volume, rest, _ = self.translate(path)
         if not volume.is_folder(rest):
             raise OsalError(OS_ERROR, f"folder {path} does not exist")
         return volume.names(rest)
 
 
-def _can_be_file(volume: Volume, path: str) -> bool:
-    """Return whether a file may have this path: it is inside a folder and not a folder itself."""
-    return not volume.is_folder(path) and volume.is_folder(path.rpartition("/")[0])
+def _plain_place(volume: Volume, rest: str) -> FilePlace:
+    """Return the place behind the rest of a path that may have empty parts and "."."""
+    named = [part for part in rest.split("/") if part]
+    ending = "." if named and named[-1] == "." else "/" if rest.endswith("/") else ""
+    return FilePlace(volume, "/".join(part for part in named if part != "."), ending)
 
 
-def _can_move_folder(volume: Volume, old: str, new: str) -> bool:
-    """Return whether the folder `old` can be renamed to `new`, a path in a folder with nothing or an empty folder
-    there.
+def _can_be_file(place: FilePlace) -> bool:
+    """Return whether a file may have this place: it is inside a folder and not a folder itself."""
+    volume, path, ending = place
+    return not ending and not volume.is_folder(path) and volume.is_folder(path.rpartition("/")[0])
+
+
+def _can_move_folder(source: FilePlace, target: FilePlace) -> bool:
+    """Return whether a folder can be renamed to a place in a folder, which is the same, or has nothing or an empty
+    folder.
     """
-    if not old or not volume.is_folder(old) or f"{new}/".startswith(f"{old}/"):
+    (volume, old, _), (_, new, _) = source, target
+    if not old or "." in (source.ending, target.ending) or not volume.is_folder(old):
+        return False
+    if new == old:
+        return True
+    if f"{new}/".startswith(f"{old}/"):
         return False
     is_free = not volume.names(new) if volume.is_folder(new) else volume.node(new) is None
     return is_free and bool(new) and volume.is_folder(new.rpartition("/")[0])

@@ -5,6 +5,8 @@ OS_FILESTAT_MODE and the other macros on the result of `stat` are functions here
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from typing import NamedTuple
 
 from cfepy.osal.clock import OS_TIME_TICK_RESOLUTION_NS, ClockApi, OsTime, time_get_total_seconds
@@ -20,6 +22,8 @@ from cfepy.osal.limits import (
 )
 from cfepy.status import OS_ERROR, OsalError
 
+COPY_BLOCK = 512
+"""Bytes that `cp` reads and writes at once (OS_CP_BLOCK_SIZE)."""
 _FOLDER_MODE = OS_FILESTAT_MODE_DIR | OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE | OS_FILESTAT_MODE_EXEC
 
 
@@ -122,16 +126,25 @@ class PathApi(ClockApi, FileApi):
                 stream.path = new_filename
 
     def cp(self, src: str, dest: str) -> None:
-        """Copy a file (OS_cp).
+        """Copy a file in blocks (OS_cp).
+
+        It empties the target first. So a file that is copied onto itself is empty afterwards, and an error leaves the
+        part that was copied.
 
         Raises:
             OsalError: OS_ERROR if the file does not exist or cannot be read, if the copy cannot be written, or if there
-                is no room; OS_FS_ERR_* for the paths; OS_ERR_NO_FREE_IDS.
+                is no room; OS_FS_ERR_* for the paths; OS_ERR_NO_FREE_IDS, for it takes two descriptors.
         """
-        self.close(self.open_create(src))  # copying needs no descriptor, but the right to open one
-        data = self.files.read_file(src)
-        self.close(self.open_create(dest, OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY))
-        self.files.write_file(dest, data, self.kernel.now)
+        opened = [self.open_create(src)]
+        try:
+            opened.append(self.open_create(dest, OS_FILE_FLAG_CREATE | OS_FILE_FLAG_TRUNCATE, OS_WRITE_ONLY))
+            while block := self.read(opened[0], COPY_BLOCK):
+                while block:
+                    block = block[self.write(opened[1], block) :]
+        except OsalError:
+            self._close_again(opened)
+            raise
+        self._close_again(opened)
 
     def mv(self, src: str, dest: str) -> None:
         """Move a file, also to another volume (OS_mv); see `cp` for the errors."""
@@ -139,7 +152,14 @@ class PathApi(ClockApi, FileApi):
             self.rename(src, dest)
         except OsalError:
             self.cp(src, dest)
-            self.remove(src)
+            with suppress(OsalError):
+                self.remove(src)
+
+    def _close_again(self, opened: Sequence[int]) -> None:
+        """Close descriptors; another task may have closed some."""
+        for filedes in opened:
+            with suppress(OsalError):
+                self.close(filedes)
 
     def _local_time_at(self, virtual_ns: int) -> OsTime:
         return OsTime(virtual_ns // OS_TIME_TICK_RESOLUTION_NS + self._local_offset)

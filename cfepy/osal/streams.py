@@ -108,10 +108,10 @@ class StreamApi(ClockApi, FileApi):
         Raises:
             OsalError: OS_ERR_INVALID_ID, OS_ERR_OBJECT_IN_USE.
         """
-        stream = self._stream(filedes)
+        stream = self._streams.lookup(filedes)
         if isinstance(stream, OsSocket) and stream.users_waiting and self._is_strict:
             self._await_release(stream)
-        self._unregister(self._streams, stream)
+        super().close(filedes)
         if isinstance(stream, OsSocket):
             self._unplug(stream)
 

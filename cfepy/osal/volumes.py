@@ -22,11 +22,24 @@ class FileNode:
         data: its content.
         modified_ns: virtual time of the last write in ns; 0 if the mission has not changed it.
         mode: the allowed access, OS_FILESTAT_MODE_READ and _WRITE.
+        openings: number of descriptors that it is open with; they keep it and its bytes when it is removed.
     """
 
     data: bytearray = field(default_factory=bytearray)
     modified_ns: int = 0
     mode: int = OS_FILESTAT_MODE_READ | OS_FILESTAT_MODE_WRITE
+    openings: int = 0
+
+
+@dataclass(slots=True, eq=False)
+class Folder:
+    """A folder, which stays the same when it is renamed.
+
+    Attributes:
+        path: its path in the volume; None after its removal.
+    """
+
+    path: str | None
 
 
 class Volume:
@@ -41,7 +54,8 @@ class Volume:
         self.host = host
         self.capacity = capacity
         self._nodes: dict[str, FileNode] = {}
-        self._folders: set[str] = {""}
+        self._removed: list[FileNode] = []  # files without a path that were open when they lost it
+        self._folders: dict[str, Folder] = {"": Folder("")}
         self._hidden: set[str] = set()  # removed or renamed files and folders of the host
 
     def node(self, path: str) -> FileNode | None:
@@ -57,40 +71,55 @@ class Volume:
         return node
 
     def remove(self, path: str) -> None:
-        """Remove a file."""
-        self._nodes.pop(path, None)
+        """Remove a file; an open one keeps its bytes."""
+        self._forget(path)
         self._hidden.add(path)
 
     def rename(self, old: str, new: str) -> None:
         """Move a file within this volume, replacing an existing file."""
         node = self.node(old)
-        if node is not None:
-            self.remove(old)
-            self._nodes[new] = node
+        if node is not None and new != old:
+            self._forget(new)
+            self._nodes[new] = self._nodes.pop(old)
+            self._hidden.add(old)
 
     def rename_folder(self, old: str, new: str) -> None:
         """Move a folder within this volume, with its content."""
-        self.make_folder(new)
-        for name in self.names(old):
+        names, moved = self.names(old), self.folder(old)
+        if moved is None:
+            return
+        if new in self._folders:
+            self.remove_folder(new)
+        for name in names:
             source, target = _join(old, name), _join(new, name)
             if self.is_folder(source):
                 self.rename_folder(source, target)
             else:
                 self.rename(source, target)
         self.remove_folder(old)
+        moved.path = new
+        self._folders[new] = moved
+
+    def folder(self, path: str) -> Folder | None:
+        """Return the folder at a path, or None if there is none."""
+        found = self._folders.get(path)
+        if found is None and (real := self._on_host(path)) is not None and real.is_dir():
+            found = self._folders[path] = Folder(path)
+        return found
 
     def is_folder(self, path: str) -> bool:
         """Return whether there is a folder at a path."""
-        real = self._on_host(path)
-        return path in self._folders or (real is not None and real.is_dir())
+        return self.folder(path) is not None
 
     def make_folder(self, path: str) -> None:
-        """Add a folder."""
-        self._folders.add(path)
+        """Add a folder; one that exists stays as it is."""
+        self._folders.setdefault(path, Folder(path))
 
     def remove_folder(self, path: str) -> None:
         """Remove an empty folder."""
-        self._folders.discard(path)
+        removed = self._folders.pop(path, None)
+        if removed is not None:
+            removed.path = None
         self._hidden.add(path)
 
     def names(self, path: str) -> list[str]:
@@ -102,12 +131,13 @@ class Volume:
         return sorted(found)
 
     def used(self) -> int:
-        """Return the total bytes of the files in memory."""
-        return sum(len(node.data) for node in self._nodes.values())
+        """Return the total bytes of the files in memory, with those that were removed while open."""
+        self._removed = [node for node in self._removed if node.openings]
+        return sum(len(node.data) for node in (*self._nodes.values(), *self._removed))
 
-    def has_room(self, size: int) -> bool:
-        """Return whether `size` more bytes fit."""
-        return self.capacity is None or self.used() + size <= self.capacity
+    def room(self) -> int | None:
+        """Return the number of bytes that fit in addition; None for no limit."""
+        return None if self.capacity is None else max(0, self.capacity - self.used())
 
     def written(self) -> list[str]:
         """Return the sorted paths of the files that the mission wrote, without its original files."""
@@ -116,7 +146,14 @@ class Volume:
     def clear(self) -> None:
         """Remove all files in memory (format)."""
         self._nodes.clear()
-        self._folders = {""}
+        for folder in self._folders.values():
+            folder.path = None
+        self._folders = {"": Folder("")}
+
+    def _forget(self, path: str) -> None:
+        node = self._nodes.pop(path, None)
+        if node is not None and node.openings:
+            self._removed.append(node)
 
     def _on_host(self, path: str) -> Path | None:
         if self.host is None:

@@ -306,11 +306,11 @@ def test_file_that_cannot_be_opened_causes_an_event(world: World) -> None:
 @pytest.mark.parametrize(
     ("room", "events"),
     [
-        (60, [(14, "Write File Header to Log File Error: WriteHdr RC: -939524091, Expected: 64, filename = /ram/x")]),
+        (60, [(14, "Write File Header to Log File Error: WriteHdr RC: 60, Expected: 64, filename = /ram/x")]),
         (
             64 + 2 * 172 - 1,
             [
-                (2, "Write Log File Command Error: OS_write = -1, filename = /ram/x"),
+                (2, "Write Log File Command Error: OS_write = 171, filename = /ram/x"),
                 (12, "Write App Data Command Error: At entry = 1, OS_write = -1, filename = /ram/x"),
             ],
         ),

@@ -101,7 +101,10 @@ def test_remove_deletes_an_empty_folder_like_c(bench: Bench) -> None:
     bench.os.remove("/cf/folder/a.txt")
     bench.os.remove("/cf/folder")
     assert status_of(bench.os.remove, "/cf/folder") == OS_ERROR
-    assert status_of(bench.os.remove, "/cf") == OS_ERROR
+    bench.os.remove("/cf")
+    assert status_of(bench.os.mkdir, "/cf/folder") == OS_ERROR
+    bench.os.mkdir("/cf")
+    bench.os.mkdir("/cf/folder")
 
 
 @pytest.mark.parametrize("new", ["/cf/nowhere/a.txt", "/cf/folder"])
@@ -135,11 +138,40 @@ def test_copy_and_move_between_volumes(bench: Bench) -> None:
     assert status_of(os.remove, "/ram/w") == OS_ERROR
 
 
-def test_copying_takes_a_descriptor(bench: Bench) -> None:
-    bench.os.files.write_file("/ram/x", b"")
-    for _ in range(bench.os.config.os_max_num_open_files):
-        bench.os.open_create("/ram/x")
-    assert status_of(bench.os.cp, "/ram/x", "/ram/y") == OS_ERR_NO_FREE_IDS
+@pytest.mark.parametrize("path", ["/ram/x", "/ram/./x", "/ram//x"])
+def test_copy_onto_itself_empties_the_file(bench: Bench, path: str) -> None:
+    bench.os.files.write_file("/ram/x", b"content")
+    bench.os.mv("/ram/x", path)
+    assert bench.os.files.read_file("/ram/x") == b"content"
+    bench.os.cp("/ram/x", path)
+    assert bench.os.files.read_file("/ram/x") == b""
+
+
+def test_copying_takes_two_descriptors(bench: Bench) -> None:
+    bench.os.files.write_file("/ram/x", b"content")
+    opened = [bench.os.open_create("/ram/x") for _ in range(bench.os.config.os_max_num_open_files)]
+    for _ in range(2):
+        assert status_of(bench.os.cp, "/ram/x", "/ram/y") == OS_ERR_NO_FREE_IDS
+        assert not bench.os.files.exists("/ram/y")
+        bench.os.close(opened.pop())
+    bench.os.cp("/ram/x", "/ram/y")
+
+
+@pytest.mark.parametrize("path", ["/ram/x/", "/ram/x/.", "/ram/x//"])
+def test_file_with_a_slash_behind_it_does_not_exist(bench: Bench, path: str) -> None:
+    os = bench.os
+    os.files.write_file("/ram/x", b"content")
+    for function in (os.stat, os.remove, os.open_create, os.chmod, os.directory_open, os.rmdir):
+        arguments = (path, 2) if function == os.chmod else (path,)
+        assert status_of(function, *arguments) == OS_ERROR
+    for pair in ((path, "/ram/y"), ("/ram/x", path), ("/ram/x", "/ram/y/")):
+        for function in (os.rename, os.cp, os.mv):
+            assert status_of(function, *pair) == OS_ERROR
+    assert status_of(os.open_create, "/ram/y/", OS_FILE_FLAG_CREATE, OS_WRITE_ONLY) == OS_ERROR
+    assert os.files.list_dir("/ram") == ["x"]
+    os.mkdir("/ram/d/")
+    os.rename("/ram/d/", "/ram/e/")
+    os.rmdir("/ram/e/")
 
 
 def test_directories(bench: Bench) -> None:
