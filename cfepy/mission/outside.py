@@ -169,7 +169,7 @@ class OutsideStream:
     @property
     def ended(self) -> bool:
         """Whether the mission will send no more."""
-        return self._stream.ended
+        return self._stream.ended or self._stream.dead
 
     @property
     def alone(self) -> bool:

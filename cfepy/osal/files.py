@@ -57,7 +57,7 @@ class FileInfo(NamedTuple):
 
 
 class OsStream(OsObject):
-    """The record behind a descriptor: an open file, or a socket, which has no path."""
+    """The record behind a descriptor: an open file, or a socket, whose path is its name once it has an address."""
 
     __slots__ = ("path",)
 
@@ -190,9 +190,12 @@ class FileApi(Core):
             OsalError: OS_ERR_INVALID_ID, OS_ERROR for an invalid `whence`, a position before the start, or one that
                 63 bits cannot hold.
         """
+        if whence not in (OS_SEEK_SET, OS_SEEK_CUR, OS_SEEK_END):
+            self._stream(filedes)
+            raise OsalError(OS_ERROR, f"unknown origin {whence} of a seek")
         stream = self._file(filedes)
         origins = {OS_SEEK_SET: 0, OS_SEEK_CUR: stream.position, OS_SEEK_END: len(stream.node.data)}
-        if whence not in origins or not 0 <= origins[whence] + offset <= LAST_POSITION:
+        if not 0 <= origins[whence] + offset <= LAST_POSITION:
             raise OsalError(OS_ERROR, f"invalid seek by {offset} from {whence} in {stream.path}")
         stream.position = origins[whence] + offset
         return stream.position
@@ -221,8 +224,8 @@ class FileApi(Core):
             OsalError: OS_ERR_INVALID_ID, OS_ERR_OUTPUT_TOO_LARGE if there is no room, OS_ERROR for a negative length or
                 a descriptor that is not open for writing.
         """
-        stream = self._file(filedes)
-        if length < 0 or stream.access not in WRITERS:
+        stream = self._stream(filedes)
+        if not isinstance(stream, OsFile) or length < 0 or stream.access not in WRITERS:
             raise OsalError(OS_ERROR, f"cannot set this size of {stream.path} through this descriptor")
         data = stream.node.data
         if self.files.fitting(stream.volume, len(data), length) < length:
@@ -238,7 +241,7 @@ class FileApi(Core):
 
     def file_open_check(self, path: str) -> bool:
         """Return whether a file is open (OS_FileOpenCheck)."""
-        return any(stream.path == path for stream in self._streams)
+        return any(isinstance(stream, OsFile) and stream.path == path for stream in self._streams)
 
     def close_file_by_name(self, path: str) -> None:
         """Close all descriptors of a file (OS_CloseFileByName).
@@ -246,7 +249,9 @@ class FileApi(Core):
         Raises:
             OsalError: OS_FS_ERR_PATH_INVALID if it is not open.
         """
-        open_ones = [filedes for filedes, stream in self._streams.items() if stream.path == path]
+        open_ones = [
+            filedes for filedes, stream in self._streams.items() if isinstance(stream, OsFile) and stream.path == path
+        ]
         if not open_ones:
             raise OsalError(OS_FS_ERR_PATH_INVALID, f"{path} is not open")
         for filedes in open_ones:

@@ -100,18 +100,31 @@ class Mailbox(Endpoint):
     Attributes:
         peer: the address it is connected to; only datagrams from there are accepted. None accepts all.
         lost: number of datagrams dropped because the buffer was full.
+        refused: whether a datagram to the peer found no socket, which the next call reports.
+        read_shut, write_shut: whether it was shut down for reading or writing.
     """
 
     def __init__(self) -> None:
         super().__init__()
         self.peer: Place | None = None
         self.lost = 0
+        self.refused = self.read_shut = self.write_shut = False
         self._inbox: deque[Datagram] = deque()
         self._used = 0
 
     @property
     def readable(self) -> bool:
-        return bool(self._inbox)
+        return bool(self._inbox) or self.refused or self.read_shut
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether no datagram waits."""
+        return not self._inbox
+
+    def take_refusal(self) -> bool:
+        """Return whether the peer refused a datagram, and forget it."""
+        refused, self.refused = self.refused, False
+        return refused
 
     def offer(self, datagram: Datagram) -> bool:
         """Accept a datagram; return False if there is no room or it is not from the peer."""
@@ -138,37 +151,52 @@ class Mailbox(Endpoint):
 
 
 class Stream(Endpoint):
-    """One end of a connection.
+    """One end of a connection, which ends as on Linux.
+
+    Args:
+        place: address of this end.
+        remote: address of the other end.
+        is_tcp: False for a pair in one computer, which reports the end of the other end at once.
 
     Attributes:
         other: the other end; None if it is closed.
         remote: address of the other end.
         ended: whether the other end will send no more.
+        dead: whether both ends are through, or one of them was reset.
         read_shut, write_shut: whether this end was shut down for reading or writing.
     """
 
-    def __init__(self, place: Place, remote: Place) -> None:
+    def __init__(self, place: Place, remote: Place, is_tcp: bool = True) -> None:
         super().__init__(place)
+        self._is_tcp = is_tcp
         self.remote = remote
         self.other: Stream | None = None
-        self.ended = self.read_shut = self.write_shut = False
+        self.ended = self.dead = self.read_shut = self.write_shut = False
+        self._was_reset = False  # not reported yet
         self._incoming = bytearray()
 
     @property
     def readable(self) -> bool:
-        return bool(self._incoming) or self.ended or self.read_shut
+        return bool(self._incoming) or self.ended or self.read_shut or self.dead
 
     @property
     def writable(self) -> bool:
-        return self.write_shut or self.other is None or self.room > 0
+        return self.write_shut or self.dead or self.other is None or self.room > 0
 
     @property
     def room(self) -> int:
         """Bytes that the other end can accept now."""
         return 0 if self.other is None else STREAM_BUFFER - len(self.other._incoming)
 
+    def take_reset(self) -> bool:
+        """Return whether the next read must report that the other end reset the connection, and forget it."""
+        if self._incoming or not self._was_reset:
+            return False
+        self._was_reset = False
+        return True
+
     def read(self, limit: int) -> bytes:
-        """Return at most `limit` received bytes, or b"" at the end of the stream."""
+        """Return at most `limit` received bytes, or b"" at the end of the stream; ask `take_reset` before."""
         data = bytes(self._incoming[:limit])
         del self._incoming[:limit]
         if data and self.other is not None:
@@ -180,32 +208,72 @@ class Stream(Endpoint):
         return bytes(self._incoming[:limit])
 
     def write(self, data: bytes) -> int | None:
-        """Send as many bytes as there is room for; return their number, or None if no reader is left."""
-        if self.write_shut or self.other is None:
+        """Send as many bytes as there is room for; return their number, or None if the connection is over.
+
+        The first bytes to an end that was closed are lost. They only cause the reset that ends this end.
+        """
+        if self.write_shut or self.dead:
+            self._was_reset = False
             return None
+        other = self.other
+        if other is None:
+            self.reset()
+            return len(data) if self._is_tcp else None
         count = min(len(data), self.room)
-        self.other._incoming += data[:count]
-        self.other.changed()
+        if other.read_shut and other.write_shut:  # it would never read them
+            other.reset()
+            self.reset()
+            return count
+        other._incoming += data[:count]
+        other.changed()
         return count
 
-    def shut(self, read: bool, write: bool) -> None:
-        """Shut this end down for reading or writing."""
+    def reset(self) -> None:
+        """End the connection as the other end's reset does; received bytes stay readable."""
+        self._was_reset = not self.ended and not self.dead
+        self.dead = True
+        self.changed()
+
+    def shut(self, read: bool, write: bool) -> bool:
+        """Shut this end down for reading or writing; return False if the connection is over."""
+        if self.dead:
+            return False
         self.read_shut |= read
         if write and not self.write_shut:
             self.write_shut = True
             if self.other is not None:
                 self.other.ended = True
+                self.other._end_if_both_did()
                 self.other.changed()
+            self._end_if_both_did()
         self.changed()
+        return True
 
     def close(self) -> None:
-        """Close this end; the other end can still read the bytes already sent."""
+        """Close this end. The other end can still read the bytes already sent, unless bytes are unread here: then it is
+        reset.
+        """
+        if self._incoming:
+            self.abort()
+            return
         other, self.other = self.other, None
         if other is not None:
             other.other = None
             other.ended = True
+            other._end_if_both_did()
             other.changed()
         self.changed()
+
+    def abort(self) -> None:
+        """Close this end, and reset the other."""
+        other, self.other = self.other, None
+        if other is not None:
+            other.other = None
+            other.reset()
+        self.changed()
+
+    def _end_if_both_did(self) -> None:
+        self.dead |= self.write_shut and self.ended
 
 
 class Listener(Endpoint):
@@ -245,10 +313,10 @@ class Listener(Endpoint):
         return stream
 
     def close(self) -> None:
-        """Stop listening, and close the waiting connections."""
+        """Stop listening, and reset the waiting connections."""
         self.listening = False
         while self.pending:
-            self.pending.popleft().close()
+            self.pending.popleft().abort()
         self.changed()
 
 
@@ -335,6 +403,10 @@ class Network:
         self.streams: BoundEndpoints[Listener] = BoundEndpoints(shares=False)
         self.outlets: list[Callable[[Datagram], object]] = []
         self.dial: Callable[[Place, Place], Stream | None] | None = None
+
+    def refuses(self, target: Place) -> bool:
+        """Return whether no socket takes datagrams for an address, and nothing outside can take them."""
+        return not self.outlets and self.datagrams.find(target.reached()) is None
 
     def send(self, datagram: Datagram) -> bool:
         """Deliver a datagram to the endpoint of its target, or otherwise to every outlet.

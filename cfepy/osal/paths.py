@@ -10,7 +10,7 @@ from contextlib import suppress
 from typing import NamedTuple
 
 from cfepy.osal.clock import OS_TIME_TICK_RESOLUTION_NS, ClockApi, OsTime, time_get_total_seconds
-from cfepy.osal.files import ACCESS_BITS, FileApi
+from cfepy.osal.files import ACCESS_BITS, FileApi, OsFile
 from cfepy.osal.limits import (
     OS_FILE_FLAG_CREATE,
     OS_FILE_FLAG_TRUNCATE,
@@ -122,7 +122,7 @@ class PathApi(ClockApi, FileApi):
         """
         self.files.rename(old_filename, new_filename)
         for stream in self._streams:
-            if stream.path == old_filename:
+            if isinstance(stream, OsFile) and stream.path == old_filename:
                 stream.path = new_filename
 
     def cp(self, src: str, dest: str) -> None:

@@ -97,7 +97,7 @@ class DatagramApi(StreamApi):
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is not bound")
         if not self._wait_readable(record, timeout_ns):
             return None
-        datagram = record.mailbox.take()
+        datagram = self._next_datagram(record)
         data = datagram.data[:buflen]
         self._charge_bytes(len(data))
         return data, from_place(datagram.source)
@@ -221,7 +221,11 @@ class SocketApi(DatagramApi):
 
     def _connect_stream(self, record: OsSocket, target: Place, timeout_ns: int) -> bool:
         server = self.network.streams.find(target)
+        if record.refused:
+            record.refused = False
+            raise record.error("cannot be connected at once after a refusal")
         if server is None or not server.listening or record.listener.listening:
+            record.refused = not record.listener.listening
             raise record.error(f"cannot be connected to {target.host}:{target.port}")
 
         def decided() -> bool:
@@ -231,6 +235,7 @@ class SocketApi(DatagramApi):
             return False
         self._check_alive(record)
         if not server.listening:
+            record.refused = True
             raise record.error(f"has lost its peer at {target.host}:{target.port}")
         source = record.listener.place or self._take_place(record, SockAddr(record.domain).place)
         record.endpoint = server.connect(source.reached(), target)
@@ -282,16 +287,24 @@ class SocketApi(DatagramApi):
 
         Raises:
             OsalError: OS_ERR_INVALID_ARGUMENT, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
-                OS_ERR_INCORRECT_OBJ_STATE for a stream socket and OS_ERROR for a datagram socket without connection.
+                OS_ERR_INCORRECT_OBJ_STATE for a stream socket without connection; OS_ERROR if the connection is over,
+                and for a datagram socket without peer, which is shut down nevertheless.
         """
         if mode not in (1, 2, 3):
             raise OsalError(OS_ERR_INVALID_ARGUMENT, f"unknown shutdown mode {mode}")
         record = self._socket(sock_id)
-        if not record.connected:
-            is_stream = record.kind == OS_SocketType_STREAM
-            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE if is_stream else OS_ERROR, f"{record.name} is not connected")
-        if isinstance(record.endpoint, Stream):
-            record.endpoint.shut(bool(mode & 1), bool(mode & 2))
+        endpoint, read, write = record.endpoint, bool(mode & 1), bool(mode & 2)
+        if isinstance(endpoint, Stream):
+            if not endpoint.shut(read, write):
+                raise record.error("has lost its connection")
+        elif record.kind == OS_SocketType_STREAM:
+            raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"{record.name} is not connected")
+        else:
+            record.mailbox.read_shut |= read
+            record.mailbox.write_shut |= write
+            record.mailbox.changed()
+            if not record.connected:
+                raise record.error("has no peer")
 
     # -- facts and options -------------------------------------------------------------------------------------------
 
@@ -358,7 +371,7 @@ class SocketApi(DatagramApi):
     def _entitle(self, record: OsSocket, place: Place, more: str = "") -> None:
         """Name a socket after its address, like OS_CreateSocketName."""
         self._streams.names.pop(record.name, None)
-        record.name = f"{place.host}:{place.port}{more}"
+        record.name = record.path = f"{place.host}:{place.port}{more}"
 
 
 class FdSet:

@@ -39,9 +39,13 @@ class OsSocket(OsStream):
         dscp: the option IP_DSCP.
         users_waiting: number of calls that wait at it. A task that is deleted in such a call counts forever, as the
             reference count of NASA's OSAL does.
+        refused: whether the last attempt to connect failed, so that the next one fails at once, as on Linux.
     """
 
-    __slots__ = ("bound", "connected", "domain", "dscp", "endpoint", "kind", "listener", "mailbox", "users_waiting")
+    __slots__ = (
+        *("bound", "connected", "domain", "dscp", "endpoint", "kind", "listener", "mailbox", "refused"),
+        "users_waiting",
+    )
 
     def __init__(self, name: str, domain: int, kind: int) -> None:
         super().__init__(name)
@@ -50,7 +54,7 @@ class OsSocket(OsStream):
         self.mailbox = Mailbox()
         self.listener = Listener()
         self.endpoint: Endpoint = self.mailbox if kind == OS_SocketType_DATAGRAM else Endpoint()
-        self.bound = self.connected = False
+        self.bound = self.connected = self.refused = False
         self.dscp = 0
         self.users_waiting = 0
 
@@ -121,14 +125,30 @@ class StreamApi(ClockApi, FileApi):
         if not isinstance(record, OsSocket):
             return super().read(filedes, nbytes)
         self._stream(filedes)  # the call costs as much as on a file
-        if record.kind == OS_SocketType_STREAM and not isinstance(record.endpoint, Stream):
-            raise record.error("is not connected")
-        if not self._wait_readable(record, timeout_ns):
+        if record.refused:
+            return b""
+        is_idle = record.kind == OS_SocketType_STREAM and not isinstance(record.endpoint, Stream)
+        if not (is_idle and not record.listener.listening) and not self._wait_readable(record, timeout_ns):
             return None
+        if is_idle:
+            raise record.error("is not connected")
         endpoint = record.endpoint
-        data = endpoint.read(nbytes) if isinstance(endpoint, Stream) else record.mailbox.take().data[:nbytes]
+        if isinstance(endpoint, Stream):
+            if endpoint.take_reset():
+                raise record.error("was reset by its peer")
+            data = endpoint.read(nbytes)
+        else:
+            data = self._next_datagram(record).data[:nbytes]
         self._charge_bytes(len(data))
         return data
+
+    def _next_datagram(self, record: OsSocket) -> Datagram:
+        mailbox = record.mailbox
+        if mailbox.take_refusal():
+            raise record.error("has no peer")
+        if mailbox.is_empty:
+            raise record.error("was shut down for reading")
+        return mailbox.take()
 
     def _timed_write(self, filedes: int, data: bytes | bytearray | memoryview, timeout_ns: int) -> int | None:
         check_size(len(data), "write")
@@ -141,6 +161,8 @@ class StreamApi(ClockApi, FileApi):
             return self._send(record, bytes(data), peer)
         stream = record.endpoint
         if not isinstance(stream, Stream):
+            if record.listener.listening and not self._await([record], [stream], lambda: record.deleted, timeout_ns):
+                return None
             raise record.error("is not connected")
         if not self._await([record], [stream], lambda: record.deleted or stream.writable, timeout_ns):
             return None
@@ -157,8 +179,16 @@ class StreamApi(ClockApi, FileApi):
             raise record.error(f"cannot send {len(data)} bytes at once")
         self._charge_bytes(len(data))
         self._check_alive(record)  # a more urgent task may have closed it, and a port taken now would never be released
-        source = record.mailbox.place or self._take_place(record, Place(ANY_HOST[record.domain], 0))
-        self.network.send(Datagram(source.reached(), target, data))
+        mailbox = record.mailbox
+        if mailbox.write_shut:
+            raise record.error("was shut down for writing")
+        if mailbox.take_refusal():
+            raise record.error("has no peer")
+        source = mailbox.place or self._take_place(record, Place(ANY_HOST[record.domain], 0))
+        if mailbox.peer is not None and self.network.refuses(target):
+            mailbox.refused = True
+        else:
+            self.network.send(Datagram(source.reached(), target, data))
         return len(data)
 
     # -- plugging in and out -----------------------------------------------------------------------------------------

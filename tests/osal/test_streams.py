@@ -20,7 +20,7 @@ from cfepy.status import (
     OS_INVALID_POINTER,
 )
 from tests.osal.helpers import MS, Bench
-from tests.osal.sockets import INET, INET6, NO_SOCKET, STREAM, a_file, address, bound, connection
+from tests.osal.sockets import DATAGRAM, INET, INET6, NO_SOCKET, STREAM, a_file, address, bound, connection
 from tests.osal.test_queues import status_of
 
 
@@ -82,7 +82,41 @@ def test_the_end_of_a_stream(bench: Bench) -> None:
     bench.os.write(served, b"last")
     bench.os.close(served)
     assert [bench.os.read(client, 9), bench.os.read(client, 9)] == [b"last", b""]
+    assert bench.os.write(client, b"lost") == 4  # and causes the reset
+    assert bench.os.read(client, 9) == b""
     assert status_of(bench.os.write, client, b"x") == OS_ERROR
+    assert status_of(bench.os.socket_shutdown, client, OS_SocketShutdownMode_SHUT_READ) == OS_ERROR
+
+
+def test_closing_with_unread_bytes_resets_the_peer(bench: Bench) -> None:
+    _, client, served = connection(bench)
+    bench.os.write(served, b"last")
+    bench.os.write(client, b"unread")
+    bench.os.close(served)
+    assert bench.os.read(client, 9) == b"last"
+    assert status_of(bench.os.read, client, 9) == OS_ERROR
+    assert bench.os.read(client, 9) == b""
+    assert status_of(bench.os.write, client, b"x") == OS_ERROR
+
+
+def test_refused_socket_reads_its_end_and_refuses_the_next_attempt(bench: Bench) -> None:
+    os, client = bench.os, bench.os.socket_open(INET, STREAM)
+    assert status_of(os.timed_read, client, 4, 10) == OS_ERROR
+    assert status_of(os.socket_connect, client, address(9997), 10) == OS_ERROR
+    assert os.timed_read(client, 4, 10) == b""
+    assert status_of(os.timed_write, client, b"x", 10) == OS_ERROR
+    bound(bench, 9997, STREAM)
+    assert status_of(os.socket_connect, client, address(9997), 10) == OS_ERROR
+    assert os.socket_connect(client, address(9997), 10)
+
+
+def test_connected_datagram_socket_reports_once_that_its_peer_is_missing(bench: Bench) -> None:
+    os, client = bench.os, bench.os.socket_open(INET, DATAGRAM)
+    os.socket_connect(client, address(9997), 10)
+    for call, arguments in ((os.timed_read, (client, 4, 0)), (os.timed_write, (client, b"x", 0))):
+        assert os.write(client, b"lost") == 4
+        assert status_of(call, *arguments) == OS_ERROR
+        assert os.timed_read(client, 4, 0) is None
 
 
 def test_shutdown(bench: Bench) -> None:
@@ -163,7 +197,7 @@ def test_wrong_states_of_streams(bench: Bench) -> None:
     assert status_of(os.socket_connect, loose, address(9997, "::1", INET6), 0) == OS_ERROR
     assert status_of(os.socket_connect, loose, address(1), 0) == OS_ERROR
     assert status_of(os.socket_connect, server, address(9997), 0) == OS_ERROR
-    assert status_of(os.read, server, 4) == OS_ERROR
+    assert os.timed_read(server, 4, OS_CHECK) is os.timed_write(server, b"x", OS_CHECK) is None
     assert status_of(os.write, loose, b"x") == OS_ERROR
     os.socket_bind_address(loose, address(4))
     assert status_of(os.socket_accept, loose, 0) == OS_ERROR
@@ -176,6 +210,7 @@ def test_closed_server_disconnects_waiting_clients(bench: Bench) -> None:
     server, client = bound(bench, 9997, STREAM), bench.os.socket_open(INET, STREAM)
     bench.os.socket_connect(client, address(9997))
     bench.os.close(server)
+    assert status_of(bench.os.read, client, 9) == OS_ERROR
     assert bench.os.read(client, 9) == b""
     assert status_of(bench.os.socket_connect, bench.os.socket_open(INET, STREAM), address(9997)) == OS_ERROR
     bound(bench, 9997, STREAM)

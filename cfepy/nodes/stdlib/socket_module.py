@@ -165,7 +165,8 @@ class NodeSocket:
         stream = self._stream()
         if how not in (socket.SHUT_RD, socket.SHUT_WR, socket.SHUT_RDWR):
             raise failure(errno.EINVAL)
-        stream.shut(how != socket.SHUT_WR, how != socket.SHUT_RD)
+        if not stream.shut(how != socket.SHUT_WR, how != socket.SHUT_RD):
+            raise failure(errno.ENOTCONN)
 
     # -- facts and settings ------------------------------------------------------------------------------------------
 
@@ -336,11 +337,15 @@ class NodeSocket:
             endpoint = self._stream()
         self._wait([endpoint], lambda: endpoint.readable, bool(flags & _DONT_WAIT))
         if isinstance(endpoint, Mailbox):
+            if endpoint.take_refusal():
+                raise failure(errno.ECONNREFUSED)
             datagram = endpoint.peek() if flags & socket.MSG_PEEK else endpoint.take()
             return datagram.data[:bufsize], address_of(datagram.source)
         return self._read(endpoint, bufsize, flags), None
 
     def _read(self, stream: Stream, bufsize: int, flags: int) -> bytes:
+        if stream.take_reset():
+            raise failure(errno.ECONNRESET)
         if flags & socket.MSG_PEEK:
             return stream.peek(bufsize)
         data = stream.read(bufsize)
@@ -398,7 +403,12 @@ class NodeSocket:
             raise failure(errno.EMSGSIZE)
         source = self._own_place(mailbox.place).reached()
         self.universe.charge()
-        self._network.send(Datagram(source, target.reached(), data))
+        if mailbox.take_refusal():
+            raise failure(errno.ECONNREFUSED)
+        if mailbox.peer is not None and self._network.refuses(target):
+            mailbox.refused = True
+        else:
+            self._network.send(Datagram(source, target.reached(), data))
         return len(data)
 
     def sendfile(self, file: Any, offset: int = 0, count: int | None = None) -> int:
@@ -459,6 +469,6 @@ def socket_module(universe: Universe) -> ModuleType:
 def _pair() -> tuple[Stream, Stream]:
     """Two streams that are connected with each other."""
     place = Place(LOCAL, 0)
-    near, far = Stream(place, place), Stream(place, place)
+    near, far = Stream(place, place, is_tcp=False), Stream(place, place, is_tcp=False)
     near.other, far.other = far, near
     return near, far
