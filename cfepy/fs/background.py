@@ -87,11 +87,13 @@ class BackgroundWriter:
 
     Args:
         osal: writes the files.
-        write_header: writes the header to a descriptor; CFE_FS_WriteHeader.
+        write_header: writes the whole header to a descriptor; CFE_FS_WriteHeader.
         wake: wakes the background task.
     """
 
-    def __init__(self, osal: Osal, write_header: Callable[[int, FileHeader], int], wake: Callable[[], object]) -> None:
+    def __init__(
+        self, osal: Osal, write_header: Callable[[int, FileHeader], object], wake: Callable[[], object]
+    ) -> None:
         self._osal = osal
         self._write_header = write_header
         self._wake = wake

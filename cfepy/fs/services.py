@@ -39,7 +39,7 @@ class FileServices:
         self._osal = osal
         self._ports = ports
         self._config = config
-        self._background = BackgroundWriter(osal, self.write_header, wake)
+        self._background = BackgroundWriter(osal, self.write_whole_header, wake)
         self.run_background_file_dump = self._background.run
 
     def read_header(self, filedes: int) -> FileHeader:

@@ -79,7 +79,7 @@ class BufferServices(BusCore):
             self.ports.syslog.write_to_sys_log(f"{getattr(owner, 'name', '')} CFE_SB_AllocateMessageBuffer: {text}")
             raise CfeError(CFE_SB_MSG_TOO_BIG, text)
         buffer = MessageBuffer(size)
-        buffer.allocated = size
+        buffer.allocated = buffer.reach = size
         buffer.app_id = getattr(owner, "app_id", 0)
         self._last_number = buffer.number = self._last_number + 1
         buffer.block = self.take_block(size + BUFFER_BYTES)
@@ -111,7 +111,7 @@ class BufferServices(BusCore):
         size = get_size(buffer) if len(buffer) > PRIMARY_HEADER_SIZE else 0
         self.check_header(buffer, size)
         self._check_buffer(buffer)
-        if size > min(len(buffer), buffer.allocated):
+        if size > min(len(buffer), buffer.reach):
             text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
             raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         self._forget_buffer(buffer)

@@ -283,8 +283,8 @@ def test_cEVS3018_housekeeping(flight: Flight) -> None:
         "OutputPort": 5,
         "LogFullFlag": 1,
         "LogMode": 0,
-        "MessageSendCounter": 25,  # 22, a NOOP, a refusal and the unregistered application
-        "LogOverflowCounter": 5,
+        "MessageSendCounter": 24,  # 22, a NOOP and a refusal
+        "LogOverflowCounter": 4,
         "LogEnabled": 1,
         "Spare1": 0,
         "Spare2": 0,

@@ -172,8 +172,8 @@ def test_cES1606_three_files_may_wait_and_errors_are_reported(ask: Callable[...,
     ask(question, 6)
     assert events == [
         (FileWriteEvent.CREATE_ERROR, -108, 0, 0, 0),
-        (FileWriteEvent.RECORD_WRITE_ERROR, -1, 0, 3_000_000, 64),
-        (FileWriteEvent.COMPLETE, 0, 1, 0, 74),
+        (FileWriteEvent.RECORD_WRITE_ERROR, 4096 * 512 - 64, 0, 3_000_000, 64),
+        (FileWriteEvent.HEADER_WRITE_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, 0, 64, 0),  # the disk is full now
     ]
 
 
@@ -187,4 +187,4 @@ def test_cES1606_a_disk_without_room_for_a_header_is_reported(ask: Callable[...,
         cfe.os.task_delay(2000)
 
     ask(question, 4)
-    assert events == [(FileWriteEvent.HEADER_WRITE_ERROR, CFE_STATUS_EXTERNAL_RESOURCE_FAIL, 0, 64, 0)]
+    assert events == [(FileWriteEvent.HEADER_WRITE_ERROR, 30, 0, 64, 0)]

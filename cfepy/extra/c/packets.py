@@ -14,6 +14,7 @@ from typing import Any
 from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.engine import engine
 from cfepy.extra.c.memory import CMemory
+from cfepy.msg import PRIMARY_HEADER_SIZE, get_size
 from cfepy.rtos import Task
 from cfepy.sb import MessageBuffer, SoftwareBus
 from cfepy.status import CFE_SB_BUFFER_INVALID, CfeError
@@ -71,9 +72,16 @@ class PacketImages:
         self._forget(address)
 
     def transmit(self, address: int, is_origination: bool) -> None:
-        """Send a buffer (CFE_SB_TransmitBuffer). It becomes the packet's image, or is freed without a subscriber."""
+        """Send a buffer (CFE_SB_TransmitBuffer). It becomes the packet's image, or is freed without a subscriber.
+
+        A header that claims more bytes than the buffer has sends the memory behind it, as in NASA's code.
+        """
         buffer = self._buffer(address)
         self._check(address, "CFE_SB_TransmitBuffer")
+        claimed = get_size(self._memory.peek(address, PRIMARY_HEADER_SIZE))
+        if len(buffer) < claimed <= self._core.config.sb_max_msg_size:
+            buffer.extend(bytes(claimed - len(buffer)))
+            buffer.reach = claimed
         buffer[:] = self._memory.peek(address, len(buffer))
         if not self._listens:
             self._listens = True

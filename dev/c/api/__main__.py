@@ -1,6 +1,6 @@
 """`python -m dev.c.api [NAME ...]`: flies the applications on NASA's cFE and records their output.
 
-CFEPY_REAL_CFE names the folder of NASA's core-cpu1, built from cFE 7.0.0 for Linux.
+CFEPY_REAL_CFE names the folder of NASA's core-cpu1, built for Linux from the release that `dev.c.api.flights` names.
 """
 
 from __future__ import annotations

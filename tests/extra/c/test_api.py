@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from cfepy.extra.c.api import function_names
 from dev.c.api.flights import MARK, NAMES, WITHOUT_DEPRECATED, expected, fly
 from tests.extra.c.building import needs_compiler
 
@@ -28,6 +29,11 @@ def test_handles_of_tables_are_ids_without_deprecated_elements(tmp_path: Path) -
 def test_application_prints_the_same_under_the_guard(tmp_path: Path, name: str) -> None:
     """The application about pools reads the bytes that a pool writes before its blocks, which are elsewhere then."""
     assert fly(name, tmp_path, more="compiled: {guard: true}\n") == expected(name)
+
+
+def test_functions_of_extended_headers_are_undefined_as_in_nasas_default_build() -> None:
+    names = ("EDSVersion", "Endian", "PlaybackFlag", "Subsystem", "System")
+    assert not function_names() & {f"CFE_MSG_{verb}{name}" for verb in ("Get", "Set") for name in names}
 
 
 def own(lines: list[str]) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import struct
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from cfepy.ports import CRITICAL, application_of
@@ -12,6 +13,8 @@ if TYPE_CHECKING:
     from cfepy.extra.c.calls import Declarations
     from cfepy.extra.c.runtime import CRuntime
 
+NO_SCHEME = -1
+"""No filter scheme: a registration with it fails, and clears an earlier one."""
 _FILTER = struct.Struct("<HH")
 
 
@@ -20,6 +23,8 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
     def register(filters: int, count: int, scheme: int) -> None:
         if count and not filters:
+            with suppress(CfeError):
+                evs.register(filter_scheme=NO_SCHEME)
             raise CfeError(CFE_ES_BAD_ARGUMENT, f"NULL pointer for {count} filters")
         raw = memory.peek(filters, _FILTER.size * count) if count else b""
         evs.register([(event_id, mask) for event_id, mask in _FILTER.iter_unpack(raw)], scheme)

@@ -8,7 +8,6 @@
 
 #define BAD_ARGUMENT 0xCA000003u               /* CFE_MSG_BAD_ARGUMENT, CFE_SB_BAD_ARGUMENT */
 #define WRONG_TYPE 0xCA00000Du                 /* CFE_MSG_WRONG_MSG_TYPE */
-#define NOT_IMPLEMENTED 0xCA00FFFFu            /* CFE_MSG_NOT_IMPLEMENTED */
 
 enum { PRIMARY = 6, COMMAND = 8, TELEMETRY = 16, LEAST = 7, MOST = 0xFFFF + 7 };
 enum { IS_COMMAND = 0x10, HAS_SECONDARY = 0x08, KIND = 0xF8, COMMAND_KIND = 0x18, TELEMETRY_KIND = 0x08 };
@@ -109,7 +108,6 @@ NATIVE(init)
     return 0;
 }
 
-NATIVE(not_in_header) { return WORD(0) == 0 || (self->target != NULL && WORD(1) == 0) ? BAD_ARGUMENT : NOT_IMPLEMENTED; }
 
 /* ---- secondary headers -------------------------------------------------------------------------------------------- */
 
@@ -258,7 +256,6 @@ NATIVE(string_set)
     return count;
 }
 
-static const char gets; /* marks getters: their second argument is a pointer as well */
 
 HIDDEN const NativeRow natives_of_msg[] = {
     {"CFE_MSG_Init", init},
@@ -286,16 +283,6 @@ HIDDEN const NativeRow natives_of_msg[] = {
     {"CFE_MSG_ValidateChecksum", validate_checksum},
     {"CFE_MSG_GetMsgTime", get_time},
     {"CFE_MSG_SetMsgTime", set_time},
-    {"CFE_MSG_GetEDSVersion", not_in_header, (void *)&gets},
-    {"CFE_MSG_SetEDSVersion", not_in_header},
-    {"CFE_MSG_GetEndian", not_in_header, (void *)&gets},
-    {"CFE_MSG_SetEndian", not_in_header},
-    {"CFE_MSG_GetPlaybackFlag", not_in_header, (void *)&gets},
-    {"CFE_MSG_SetPlaybackFlag", not_in_header},
-    {"CFE_MSG_GetSubsystem", not_in_header, (void *)&gets},
-    {"CFE_MSG_SetSubsystem", not_in_header},
-    {"CFE_MSG_GetSystem", not_in_header, (void *)&gets},
-    {"CFE_MSG_SetSystem", not_in_header},
     {"CFE_SB_GetUserData", user_data},
     {"CFE_SB_GetUserDataLength", user_data_length},
     {"CFE_SB_SetUserDataLength", set_user_data_length},
