@@ -259,9 +259,13 @@ class _Version(argparse.Action):
         super().__init__(option_strings, argparse.SUPPRESS, nargs=0, help=help)
 
     def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
         from cfepy.interpreter.compiled import state
 
         print(f"cfepy {__version__} ({state()})")
+        for name in sorted(RELEASES, key=lambda name: name != DEFAULT_RELEASE):
+            usual = ", the default" if name == DEFAULT_RELEASE else ""
+            print(f"cfe_version {name}: {RELEASES[name].bundle}{usual}")
         parser.exit()
 
 

@@ -95,20 +95,21 @@ class ConfigServices:
 def _build_info(config: PlatformConfig, mission: str) -> dict[str, Value]:
     """Return the keys of config_ids_base.cmake."""
     release = config.release
-    major, minor, revision, mission_revision = release.number
+    version = release.cfe_version
+    major, minor, revision, mission_revision = version.number
     return {
         "MISSION_NAME": mission,
-        "MISSION_SRCVER": f"git:{release.official}",
+        "MISSION_SRCVER": release.module("CORE_API"),
         "MISSION_EDS_DB": NO_OBJECT,
         "MISSION_SBINTF_DB": NO_OBJECT,
         "CORE_VERSION_MAJOR": major,
         "CORE_VERSION_MINOR": minor,
         "CORE_VERSION_REVISION": revision,
         "CORE_VERSION_MISSION_REV": mission_revision,
-        "CORE_VERSION_BUILDNUM": versions.BUILD_NUMBER,
-        "CORE_VERSION_BASELINE": release.official,
+        "CORE_VERSION_BUILDNUM": version.build_number,
+        "CORE_VERSION_BASELINE": version.official,
         "CORE_VERSION_DESCRIPTION": release.text("cFE"),
-        "CORE_BUILDINFO_DATE": f"cfepy {release.source}",
+        "CORE_BUILDINFO_DATE": f"cfepy {version.source}",
         "CORE_BUILDINFO_USER": "cfepy",
         "CORE_BUILDINFO_HOST": config.processor_name,
         **{f"MOD_SRCVER_{module}": release.module(module) for module in versions.MODULES},

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 
-from cfepy.config.versions import CFE_7_0_0, DEFAULT_RELEASE, RELEASES, Release
+from cfepy.config.versions import DEFAULT_RELEASE, RELEASES, Release
 
 ES_MEM_BLOCK_SIZES = (8, 16, 32, 48, 64, 96, 128, 160, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768, 80000)
 """Bytes of the blocks in memory pools and in the CDS (CFE_PLATFORM_ES_MEM_BLOCK_SIZE_01 and following)."""
@@ -191,13 +191,8 @@ class PlatformConfig:
 
     @property
     def release(self) -> Release:
-        """The release of cFE."""
+        """The release of cFE, with the facts that distinguish it from others."""
         return RELEASES[self.cfe_version]
-
-    @property
-    def is_cfe_7_0_0(self) -> bool:
-        """Whether the release is 7.0.0; docs/reference/differences.md lists the differences from 7.0.1."""
-        return self.cfe_version == CFE_7_0_0
 
     def with_limits(self, limits: Mapping[str, int | str | tuple[int, ...]]) -> PlatformConfig:
         """Return a copy with some values replaced.

@@ -40,6 +40,7 @@ from cfepy.ids import (
     name_size,
 )
 from cfepy.osal import OS_MAX_API_NAME
+from cfepy.ports import Cleanup
 from cfepy.psp import RST_TYPE_PROCESSOR
 from cfepy.status import (
     CFE_ES_APP_CLEANUP_ERR,
@@ -416,9 +417,10 @@ class AppEnd(AppServices):
         return not any(statuses)
 
     def _clean_up_services(self, app: AppRecord) -> None:
-        tbl, sb, time, evs = self.ports.tbl, self.ports.sb, self.ports.time, self.ports.evs
-        for service in (tbl, sb, time, evs) if self.config.is_cfe_7_0_0 else (evs, sb, tbl, time):
-            service.cleanup_app(app.app_id)
+        ports = self.ports
+        services: dict[str, Cleanup] = {"EVS": ports.evs, "SB": ports.sb, "TBL": ports.tbl, "TIME": ports.time}
+        for name in self.config.release.cleanup:
+            services[name].cleanup_app(app.app_id)
 
     def _end_other_tasks(self, app: AppRecord) -> None:
         """End the tasks that ES does not know: of OS_TaskCreate, and of ROS nodes."""

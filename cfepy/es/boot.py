@@ -70,7 +70,7 @@ class ObjectTable(NamedTuple):
 
     calls: Sequence[tuple[str, Callable[[], object]]]
     core_apps: Sequence[CoreApp]
-    failed: str = "Error returned when calling function: {}: EC = {}"
+    failed: str
 
 
 class Boot:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cfepy.config.versions import MODULES, OSAL_VERSION, PSP_VERSION
+from cfepy.config.versions import MODULES, Numbers
 from cfepy.core_app import Replies, serve
 from cfepy.es import events as ev
 from cfepy.es import packets as pk
@@ -34,7 +34,7 @@ def housekeeping(es: ExecutiveServices, replies: Replies, dump: PerfDump, checks
         "CommandCounter": replies.command_counter & 0xFF,
         "CommandErrorCounter": replies.error_counter & 0xFF,
         "CFECoreChecksum": checksum,
-        **_versions("CFE", es.config.release.number),
+        **_versions("CFE", es.config.release.cfe),
         **_versions("OSAL", es.osal.get_version_number()),
         **_versions("PSP", es.psp.get_version_number()),
         **_logs(es),
@@ -48,7 +48,7 @@ def housekeeping(es: ExecutiveServices, replies: Replies, dump: PerfDump, checks
     }
 
 
-def _versions(name: str, version: tuple[int, int, int, int]) -> dict[str, int]:
+def _versions(name: str, version: Numbers) -> dict[str, int]:
     return {f"{name}{part}": number for part, number in zip(_VERSION_PARTS, version, strict=True)}
 
 
@@ -119,7 +119,6 @@ class EsTask:
         self.mission_name = mission_name
         self.build = build
         self.checksum = checksum
-        self._versions = f"cfe {es.config.release.source}, osal {OSAL_VERSION}, psp {PSP_VERSION}"
         self.replies = Replies(es.ports)
         self.perf_dump = PerfDump(es.perf_log, es.osal, es.ports)
         self.background = BackgroundTask(es, self._jobs())
@@ -174,8 +173,8 @@ class EsTask:
         send = self.replies.send
         send(ev.INIT_INF_EID, f"cFE ES Initialized: {self.es.config.release.text('CFE_ES')}")
         release = self.es.config.release
-        send(ev.INITSTATS_INF_EID, f"cFS Versions: {self._versions}. cFE chksm {self.checksum}")
-        send(ev.VERSION_INF_EID, f"Version Info: Mission {self.mission_name}, version git:{release.official}")
+        send(ev.INITSTATS_INF_EID, f"cFS Versions: {release.bundle}. cFE chksm {self.checksum}")
+        send(ev.VERSION_INF_EID, f"Version Info: Mission {self.mission_name}, version {release.module('CORE_API')}")
         for module in MODULES:
             send(ev.VERSION_INF_EID, f"Version Info: Module {module}, version {release.module(module)}")
         send(ev.BUILD_INF_EID, self.build)
@@ -195,7 +194,7 @@ class EsTask:
 
     def _noop(self, packet: bytes) -> None:
         self.replies.send(ev.BUILD_INF_EID, self.build)
-        self.replies.accept(ev.NOOP_INF_EID, f"No-op command:\n cFS Versions: {self._versions}")
+        self.replies.accept(ev.NOOP_INF_EID, f"No-op command:\n cFS Versions: {self.es.config.release.bundle}")
 
     def _reset_counters(self, packet: bytes) -> None:
         self.replies.reset()

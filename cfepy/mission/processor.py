@@ -157,7 +157,7 @@ class Processor:
         self.cfe = self._make_services()
         self.handle = self._handle_for_apps()
         self.sb_task = SbTask(self.cfe.sb)
-        checksum = zlib.crc32(machine.config.release.source.encode()) & 0xFFFF
+        checksum = zlib.crc32(machine.config.release.cfe_version.source.encode()) & 0xFFFF
         self.es_task = EsTask(self.cfe.es, machine.spec.name, self._build_text(), checksum)
 
     def _finders(self) -> list[Finder]:
@@ -235,7 +235,7 @@ class Processor:
     def _build_text(self) -> str:
         machine = self.machine
         who = f"cfepy@{machine.config.processor_name}"
-        return f"Build cfepy {machine.config.release.source} by {who}, config {machine.board.name}"
+        return f"Build cfepy {machine.config.release.cfe_version.source} by {who}, config {machine.board.name}"
 
     def _boot(self) -> None:
         """Run the processor's main task: PSP first, then the executive."""
@@ -249,13 +249,13 @@ class Processor:
         """Return the calls and tasks that CFE_ES_Main starts before the startup script (CFE_ES_ObjectTable)."""
         cfe, kept = self.cfe, self.machine.retained.kept
         calls: dict[str, Callable[[], object]] = {
-            "Config_Init": _set_up_already,
-            "ES_CDSEarlyInit": cfe.es.cds_early_init,
-            "EVS_EarlyInit": lambda: cfe.evs.early_init(kept),
-            "SB_EarlyInit": cfe.sb.early_init,
-            "TIME_EarlyInit": lambda: cfe.time.early_init(kept),
-            "TBL_EarlyInit": cfe.tbl.early_init,
-            "FS_EarlyInit": _set_up_already,
+            "CONFIG": _set_up_already,
+            "ES": cfe.es.cds_early_init,
+            "EVS": lambda: cfe.evs.early_init(kept),
+            "SB": cfe.sb.early_init,
+            "TIME": lambda: cfe.time.early_init(kept),
+            "TBL": cfe.tbl.early_init,
+            "FS": _set_up_already,
         }
         apps = {
             "EVS": CoreApp("CFE_EVS", cfe.evs.task_main, EVS_PRIORITY),
@@ -264,17 +264,11 @@ class Processor:
             "TIME": CoreApp("CFE_TIME", cfe.time.task_main, TIME_PRIORITY),
             "TBL": CoreApp("CFE_TBL", cfe.tbl.task_main, TBL_PRIORITY),
         }
-        if self.machine.config.is_cfe_7_0_0:
-            return ObjectTable(
-                calls=tuple((f"CFE_{name}", call) for name, call in calls.items()), core_apps=tuple(apps.values())
-            )
-        by_module = {name.split("_")[0]: call for name, call in calls.items()}
-        order = [by_module.pop("Config"), *(by_module[name] for name in sorted(by_module))]
-        names = ["CONFIG", *sorted(by_module)]
+        release = self.machine.config.release
         return ObjectTable(
-            calls=tuple((f"EarlyInit for CFE_{name}", call) for name, call in zip(names, order, strict=True)),
-            core_apps=tuple(apps[name] for name in sorted(apps)),
-            failed="Error returned from {}: EC = {}",
+            calls=tuple((text, calls[_module_in(text)]) for text in release.early_inits),
+            core_apps=tuple(apps[name] for name in release.core_apps),
+            failed=release.early_init_failed,
         )
 
     def _operational(self) -> None:
@@ -363,6 +357,11 @@ def _set_up_already() -> None:
 def _ignore(event: int, object_id: int, data: object) -> int:
     """Ignore an OSAL event."""
     return 0
+
+
+def _module_in(text: str) -> str:
+    """Return the module in the name of a call, "EVS" in "CFE_EVS_EarlyInit"."""
+    return text.partition("CFE_")[2].split("_")[0].upper()
 
 
 class _TableFiles:

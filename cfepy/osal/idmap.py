@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from cfepy.config.versions import OSAL_VERSION, VersionFunctions
+from cfepy.config.versions import VersionFunctions
 from cfepy.ids import OS_CONSOLE_BASE, equal, from_integer, get_base, is_defined, to_integer
 from cfepy.osal.core import Core, OsObject, OsObjectTable, Setup
 from cfepy.osal.limits import (
@@ -26,10 +26,10 @@ class IdMapApi(VersionFunctions, Core):
     object_id_defined = staticmethod(is_defined)
     status_to_integer = staticmethod(to_signed)
     status_to_string = staticmethod(status_to_decimal)
-    _version = OSAL_VERSION
 
     def __init__(self, setup: Setup) -> None:
         super().__init__(setup)
+        self._version = setup.config.release.osal_version
         self._printf_enabled = True
         self._line = ""
         consoles: OsObjectTable[OsObject] = self._table("console", OS_CONSOLE_BASE, 1)

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from cfepy.config.platform import PlatformConfig
-from cfepy.config.versions import PSP_VERSION, VersionFunctions
+from cfepy.config.versions import VersionFunctions
 from cfepy.osal import Osal, OsTime, time_from_total_nanoseconds
 from cfepy.psp import addresses as endian
 from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM, EepromSpace, PortSpace
@@ -141,7 +141,6 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
     hto_le16 = le16_to_h = staticmethod(endian.keep_16)
     hto_le32 = le32_to_h = staticmethod(endian.keep_32)
     hto_le64 = le64_to_h = staticmethod(endian.keep_64)
-    _version = PSP_VERSION
     is_big_endian = staticmethod(endian.is_big_endian)
     is_little_endian = staticmethod(endian.is_little_endian)
 
@@ -160,6 +159,7 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         self.kernel = kernel
         self.profile = profile
         self.config = config
+        self._version = config.release.psp_version
         self.console = console
         self.osal = osal
         self.retained = (

@@ -90,7 +90,7 @@ class CriticalTables:
     def __init__(self, ports: Ports, config: PlatformConfig, registry: TableRegistry) -> None:
         self._ports = ports
         self._registry = registry
-        self._loads_stay = config.is_cfe_7_0_0
+        self._loads_stay = config.release.load_of_recovered_table_stays
         self._records = [CriticalRecord() for _ in range(config.tbl_max_critical_tables)]
         self._handle = 0
 

@@ -309,11 +309,11 @@ class TableRegistry:
         return self.loading(table) or self.locate(table, table.previous_id)
 
     def is_update_pending(self, table: TableRecord) -> bool:
-        """Return whether a loaded image waits for the owner's update; release 7.0.0 does not require an activation."""
+        """Return whether a loaded image waits for the owner's update; some releases require an activation."""
         buffer = self.locate(table, table.next_id)
         if buffer is None or buffer.load_id != table.next_id:
             return False
-        return buffer.is_valid and (self._config.is_cfe_7_0_0 or buffer.activate_requested)
+        return buffer.is_valid and (buffer.activate_requested or not self._config.release.update_needs_activation)
 
     def is_private(self, table: TableRecord, buffer: Buffer) -> bool:
         """Return whether a buffer belongs to the table itself (CFE_TBL_LoadBuffIsPrivate)."""

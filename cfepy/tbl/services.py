@@ -70,7 +70,9 @@ class TableServices(TableAccess):
         self._critical = CriticalTables(ports, config, registry)
         self._loads = Loads(registry, memory, ports, files, self._critical)
         self._dumps = Dumps(registry, memory, config, ports, files)
-        self._validations = Validations(config.tbl_max_num_validations, one_at_a_time=not config.is_cfe_7_0_0)
+        self._validations = Validations(
+            config.tbl_max_num_validations, one_at_a_time=config.release.one_validation_at_a_time
+        )
         self._reports = Reports(ports, config, registry)
         parts = Parts(registry, self._loads, self._dumps, memory, self._critical, self._validations, self._reports)
         self.task = TableTask(ports, config, files, parts)
@@ -242,12 +244,12 @@ class TableServices(TableAccess):
         return self._finish_load(table, handle, caller, status)
 
     def _load_denied(self, error: CfeError, handle: int, caller: str) -> None:
-        """Report a load through a handle without the right to it; release 7.0.0 does not report an invalid handle."""
+        """Report a load through a handle without the right to it, or, in some releases, through an invalid one."""
         access = self.registry.accesses.find(handle)
         if access is not None:
             refused = Refused(error.status, ev.HANDLE_ACCESS_ERR_EID, "No access to Tbl Handle")
             self._reports.load_refused(refused, caller, access.table)
-        elif not self._config.is_cfe_7_0_0:
+        elif self._config.release.reports_invalid_handle:
             refused = Refused(error.status, ev.NO_SUCH_TABLE_ERR_EID, "Unable to locate in Table Registry")
             self._reports.load_refused(refused, caller, None)
 
@@ -318,7 +320,7 @@ class TableServices(TableAccess):
         try:
             if buffer is not None:
                 result = table.judge(table.image(buffer))
-                if result == 0 or not self._config.is_cfe_7_0_0:  # 7.0.0 keeps an earlier valid mark
+                if result == 0 or self._config.release.failed_validation_unmarks:
                     buffer.is_valid = result == 0
         finally:  # the ground gets a result even if the validator raises
             request.result, request.performed = result, True
@@ -328,7 +330,7 @@ class TableServices(TableAccess):
             self._reports.send(ev.VALIDATION_INF_EID, ev.INFORMATION, text)
             return CFE_SUCCESS
         status = f"0x{result & 0xFFFFFFFF:08X}"
-        told = "0x00000000" if self._config.is_cfe_7_0_0 else status  # 7.0.0 reports the status of the call
+        told = status if self._config.release.failed_validation_has_status else "0x00000000"  # that of the call
         text = f"{caller} validation failed for {table.name} '{which}', Status={told}"
         self._reports.send(ev.VALIDATION_ERR_EID, ev.ERROR, text)
         if result > 0:

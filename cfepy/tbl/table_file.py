@@ -169,7 +169,7 @@ class LoadFile:
             text = "partial load for uninitialized table"
             raise Refused(CFE_TBL_ERR_PARTIAL_LOAD, ev.PARTIAL_LOAD_ERR_EID, text)
         end = offset + size
-        if (end & 0xFFFFFFFF if self._config.is_cfe_7_0_0 else end) > table.size:  # 7.0.0 adds in 32 bits
+        if (end & 0xFFFFFFFF if self._config.release.sizes_of_32_bits else end) > table.size:
             text = f"Cannot load {size} at off {offset}"
             raise Refused(CFE_TBL_ERR_FILE_TOO_LARGE, ev.LOAD_EXCEEDS_SIZE_ERR_EID, text)
 

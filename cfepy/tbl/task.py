@@ -229,7 +229,7 @@ class TableCommands:
             if table is None:
                 text = "Unable to locate in Table Registry"
                 raise Refused(CFE_TBL_ERR_INVALID_NAME, ev.NO_SUCH_TABLE_ERR_EID, text, names_file=False)
-            if not self._config.is_cfe_7_0_0:  # 7.0.0 forgets it, and so finds no buffer to load into
+            if self._config.release.load_reserves_buffer:  # otherwise no buffer is found to load into
                 self._loads.reserve(table, SRC_FILE)
             self._loads.fill_from_file(table, file)
         except Refused as refused:
@@ -279,8 +279,9 @@ class TableCommands:
         return True
 
     def _begin_validation(self, table: TableRecord, buffer: Buffer, of_active: bool) -> None:
-        is_7_0_0 = self._config.is_cfe_7_0_0
-        request = Validation(table.name, calculate_crc(buffer.view()) if is_7_0_0 else buffer.crc, of_active)
+        release = self._config.release
+        crc = buffer.crc if release.validation_has_crc_of_load else calculate_crc(buffer.view())
+        request = Validation(table.name, crc, of_active)
         if table.validator is not None:
             self._validations.ask(table, request)
             self._housekeeping.count_request()
@@ -288,11 +289,11 @@ class TableCommands:
                 text = f"Tbl Services issued validation request for '{table.name}'"
                 self._debug(ev.VAL_REQ_MADE_INF_EID, text)
             return
-        if is_7_0_0:  # 7.0.0 reports it in housekeeping, but does not mark the image as valid
+        if release.validation_without_function_marks:
+            buffer.is_valid = True
+        else:  # it is reported in housekeeping
             request.performed = True
             self._validations.add(request)
-        else:
-            buffer.is_valid = True
         self._reports.assumed_valid(table)
 
     def activate(self, packet: bytes) -> bool:
@@ -368,15 +369,14 @@ class TableCommands:
         return table
 
     def _notify(self, table: TableRecord) -> bool:
-        """Send the owner's notification; return whether it was sent. Release 7.0.0 also returns True without a
-        notification.
-        """
+        """Send the owner's notification; return whether it was sent, or counts as sent."""
+        release = self._config.release
         if table.notify is None:
-            return self._config.is_cfe_7_0_0
+            return release.notification_always_counts
         msg_id, fcn_code, parameter = table.notify
         try:
             packet = command(msg_id, fcn_code, pk.NOTIFY_COMMAND.pack(Parameter=parameter))
-            if self._config.is_cfe_7_0_0:  # 7.0.0 never sets the size of this message
+            if not release.notification_is_whole:  # the size of this message is never set
                 packet = packet[:_SIZE_NOT_SET]
                 set_size(packet, _SIZE_NOT_SET)
             self._ports.sb.transmit_msg(bytes(packet))

@@ -26,7 +26,10 @@ def test_help(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
 def test_version(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["--version"])
-    assert capsys.readouterr().out == f"cfepy {cfepy.__version__} ({compiled.state()})\n"
+    first, *releases = capsys.readouterr().out.splitlines()
+    assert first == f"cfepy {cfepy.__version__} ({compiled.state()})"
+    assert releases[0] == "cfe_version 7.0.1: cfe v7.0.1+dev0, osal v7.0.0+dev0, psp v7.0.0+dev0, the default"
+    assert [line.partition(":")[0] for line in releases] == ["cfe_version 7.0.1", "cfe_version 7.0.0"]
 
 
 @pytest.mark.parametrize("words", [[], ["fly"], ["run"], ["new", "app"], ["run", "x", "--tasks", "fibers"]])

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+import tomllib
 from pathlib import Path
 
 import pytest
 
+from cfepy.config import versions
 from cfepy.es import packets as es
 from cfepy.mission import Mission, PacketWatch, Seen, read_mission
 from cfepy.status import UsageError
@@ -55,9 +58,78 @@ def test_default_release_is_7_0_1(tmp_path: Path) -> None:
     assert read_mission(write_mission(tmp_path, "!")).cfe_version == "7.0.1"
 
 
+def test_third_release_is_only_another_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The made-up release 7.2.9 flies and reports its numbers without a change of code."""
+    text = (versions.FOLDER / "7.0.1.toml").read_text(encoding="utf-8")
+    for old, new in (
+        ("cfe = [7, 0, 1, 0]", "cfe = [7, 2, 9, 1]"),
+        ("osal = [7, 0, 0, 0]", "osal = [7, 1, 3, 0]"),
+        ("psp = [7, 0, 0, 0]", "psp = [7, 1, 4, 0]"),
+        ('"Draco"', '"Equuleus"'),
+        ("build_number = 0", "build_number = 17"),
+        ('core_apps = ["ES", "EVS", "SB", "TBL", "TIME"]', 'core_apps = ["EVS", "TIME", "TBL", "SB", "ES"]'),
+    ):
+        assert text.count(old) == 1
+        text = text.replace(old, new)
+    releases = tmp_path / "releases"
+    releases.mkdir()
+    (releases / "7.2.9.toml").write_text(text, encoding="utf-8")
+    monkeypatch.setattr(versions, "FOLDER", releases)
+    packets: list[Seen] = []
+    watch = PacketWatch(packets.append, lambda msg_id: msg_id == es.HK_TLM_MID)
+    folder = write_mission(tmp_path, "!", mission_yaml='cfe_version: "7.2.9"')
+    with Mission(folder, console=Console(quiet=True), attachments=[watch]) as mission:
+        mission.run_for(1)
+        log = "\n".join(mission.console.lines)
+        assert "cfe v7.2.9+dev17, osal v7.1.3+dev17, psp v7.1.4+dev17." in log
+        assert "CFE_ES v7.2.9+dev17 (Equuleus) v7.2.9 Official Release" in log
+        assert "Module OSAL, version git:v7.1.3" in log
+        assert [app.name for app in mission.cfe.es.apps] == ["CFE_EVS", "CFE_TIME", "CFE_TBL", "CFE_SB", "CFE_ES"]
+        assert mission.cfe.os.get_version_number() == (7, 1, 3, 0)
+        assert mission.cfe.psp.get_version_code_name() == "Equuleus"
+        mission.cfe.sb.transmit_msg(es.SEND_HK.packet())
+        mission.run_for(0.1)
+        values = es.HK_TLM.read(packets[0].packet)
+    assert [values[f"CFE{part}"] for part in ("MinorVersion", "Revision", "MissionRevision")] == [2, 9, 1]
+    assert [values["OSALRevision"], values["PSPRevision"]] == [3, 4]
+
+
+def test_files_of_releases_are_toml() -> None:
+    """They have no escapes and no nested tables, so cfepy's own reader gives what the library gives."""
+    for name, release in versions.RELEASES.items():
+        whole = tomllib.loads((versions.FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+        read = dataclasses.asdict(release)
+        assert {key: list(value) if isinstance(value, tuple) else value for key, value in read.items()} == whole
+
+
+@pytest.mark.parametrize(
+    ("line", "error"),
+    [
+        ("codename = Draco", "file.toml:1: codename: must be a text in quotation marks, not Draco"),
+        ("cfe = [7, 0]", "file.toml:1: cfe: must be a list of four numbers, not [7, 0]"),
+        ("sizes_of_32_bits = 1", "file.toml:1: sizes_of_32_bits: must be true or false, not 1"),
+        ("color = true", "file.toml:1: unknown value 'color' of a release"),
+    ],
+)
+def test_mistake_in_the_file_of_a_release_is_reported(tmp_path: Path, line: str, error: str) -> None:
+    file = tmp_path / "file.toml"
+    file.write_text(line, encoding="utf-8")
+    with pytest.raises(UsageError) as caught:
+        versions.read_release(file)
+    assert str(caught.value).endswith(error)
+
+
+def test_value_that_the_file_of_a_release_lacks_is_reported(tmp_path: Path) -> None:
+    file = tmp_path / "file.toml"
+    text = (versions.FOLDER / "7.0.1.toml").read_text(encoding="utf-8")
+    file.write_text(text.replace("longest_entry = 127", ""), encoding="utf-8")
+    with pytest.raises(UsageError, match="missing longest_entry; add it"):
+        versions.read_release(file)
+
+
 @pytest.mark.parametrize("said", ['"6.7.0"', "7.0", "[7]"])
 def test_another_release_is_refused(tmp_path: Path, said: str) -> None:
     folder = write_mission(tmp_path, "!", mission_yaml=f"name: m\ncfe_version: {said}")
-    with pytest.raises(UsageError, match="unknown release of cFE") as caught:
+    with pytest.raises(UsageError, match=r'unknown release of cFE .*; expected "7.0.0" or "7.0.1"') as caught:
         read_mission(folder)
     assert (caught.value.field, caught.value.line) == ("cfe_version", 2)
