@@ -300,11 +300,11 @@ def _can_move_folder(source: FilePlace, target: FilePlace) -> bool:
     folder.
     """
     (volume, old, _), (_, new, _) = source, target
-    if not old or "." in (source.ending, target.ending) or not volume.is_folder(old):
+    if "." in (source.ending, target.ending) or not volume.is_folder(old):
         return False
     if new == old:
         return True
-    if f"{new}/".startswith(f"{old}/"):
+    if not old or f"{new}/".startswith(f"{old}/"):
         return False
     is_free = not volume.names(new) if volume.is_folder(new) else volume.node(new) is None
     return is_free and bool(new) and volume.is_folder(new.rpartition("/")[0])

@@ -130,17 +130,17 @@ class OsTimeBase(OsObject):
             self.kernel.wake_first(self.waits)
 
     def expire(self, freerun: int) -> None:
-        """Run the callbacks that are due; an error in one belongs to its application and stops only that timer."""
+        """Run the callbacks that are due. An error in one belongs to its application, and stops only that timer."""
         task = self.kernel.current
         for timer in tuple(self.timers):
-            task.owner = timer.owner
             try:
                 timer.expire(freerun)
             except (Exception, SystemExit) as error:
                 timer.due = None
+                task.owner = timer.owner
                 if not self.kernel.on_task_error(task, error):
                     raise
-        task.owner = None
+                task.owner = NOBODY
 
     def run_by_clock(self) -> None:
         """Run the task of a time base that follows the kernel's clock."""
@@ -268,7 +268,7 @@ class TimeBaseApi(Core):
     def _serve(self, record: OsTimeBase) -> None:
         task = self.kernel.current
         record.task = task
-        task.owner = None
+        task.owner = NOBODY
         self._task_ids[task] = record.id  # to recognize a callback, as in NASA's OSAL
         try:
             if record.sync is not None:

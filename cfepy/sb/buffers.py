@@ -9,7 +9,7 @@ from __future__ import annotations
 from cfepy.config.platform import SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
 from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import PRIMARY_HEADER_SIZE, Packet, get_size, set_msg_time
-from cfepy.osal import ObjectSizes
+from cfepy.osal import NOBODY, ObjectSizes
 from cfepy.ports import Block, Ports
 from cfepy.rtos import CpuCosts, Kernel
 from cfepy.sb import events as ev
@@ -70,7 +70,8 @@ class BufferServices(BusCore):
             size: bytes, including the headers.
 
         Raises:
-            CfeError: CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR (the pool has no room); NASA's function returns NULL.
+            CfeError: CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR (the pool has no room, or the caller belongs to no
+                application); NASA's function returns NULL.
         """
         owner = self.kernel.current.owner
         limit = self.config.sb_max_msg_size
@@ -78,6 +79,8 @@ class BufferServices(BusCore):
             text = f"Failed, requested size {size} larger than allowed {limit}"
             self.ports.syslog.write_to_sys_log(f"{getattr(owner, 'name', '')} CFE_SB_AllocateMessageBuffer: {text}")
             raise CfeError(CFE_SB_MSG_TOO_BIG, text)
+        if owner is NOBODY:
+            raise CfeError(CFE_SB_BUF_ALOC_ERR, "a buffer belongs to an application, and the caller does not")
         buffer = MessageBuffer(size)
         buffer.allocated = buffer.reach = size
         buffer.app_id = getattr(owner, "app_id", 0)

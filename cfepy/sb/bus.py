@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 from cfepy.config.platform import PlatformConfig
 from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import CMD_HEADER_SIZE, compute_checksum
-from cfepy.osal import ObjectSizes
+from cfepy.osal import NOBODY, ObjectSizes
 from cfepy.ports import PEND_FOREVER, Ports
 from cfepy.rtos import FOREVER, TIMEOUT, CpuCosts, Kernel
 from cfepy.sb import events as ev
@@ -272,22 +272,27 @@ class SoftwareBus(SubscriptionServices):
                 sends the packet unchanged (from a ground link or another processor).
 
         Raises:
-            CfeError: CFE_SB_BAD_ARGUMENT (no packet, invalid MsgId or length), CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR.
-                A full pipe and a reached message limit are events, not errors; other pipes still get the message.
+            CfeError: CFE_SB_BAD_ARGUMENT (no packet, invalid MsgId or length), CFE_SB_MSG_TOO_BIG, CFE_SB_BUF_ALOC_ERR
+                (no room in the pool, or the caller belongs to no application, as the callback of an OSAL timer). A full
+                pipe and a reached message limit are events, not errors; other pipes still get the message.
         """
         size = len(packet)
         if not 6 < size <= self._max_size:
             if size > 6:
                 self.unsent(UNSENT_PACKET + packet)
             self.check_header(packet, size)
+        kernel = self.kernel
+        if kernel.current.owner is NOBODY:  # a buffer belongs to an application
+            raise self._no_buffer(packet)
         msg_id, bits = unpack_primary(packet)
         route = self.routes.get(msg_id)
         if route is None:
+            if not is_origination:
+                self.check_header(packet, _claimed_size(packet))
             self._no_route(packet)
             return
         if self._queued_bytes + size > self._known_bytes and self.pool_is_full(packet):
             raise self._no_buffer(packet)
-        kernel = self.kernel
         if not is_origination:
             packet = self._relayed(route, packet)
         else:
@@ -367,8 +372,10 @@ class SoftwareBus(SubscriptionServices):
 
     def _relayed(self, route: Route, packet: bytes | bytearray) -> bytes:
         """Return a packet from elsewhere unchanged."""
-        if (packet[4] << 8 | packet[5]) + 7 != len(packet):
+        claimed = _claimed_size(packet)
+        if claimed != len(packet):
             self.unsent(UNSENT_PACKET + packet)
+            self.check_header(packet, claimed)
             text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
             raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         route.relayed += 1
@@ -559,3 +566,8 @@ def _overflowed(failures: Failures | None, destination: Destination) -> Failures
 
 def _nothing() -> None:
     """Do nothing: the flush of a run without a trace."""
+
+
+def _claimed_size(packet: bytes | bytearray) -> int:
+    """Return the size of a packet according to its header."""
+    return (packet[4] << 8 | packet[5]) + 7

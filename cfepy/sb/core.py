@@ -112,9 +112,12 @@ class BusCore:
         self._sending: set[tuple[int, int]] = set()
 
     def caller_name(self) -> str:
-        """Return the name of the calling task as in SB's events: "APP", "APP.TASK" for a child task, or "Unknown"."""
+        """Return the name of the calling task as in SB's events: "APP", "APP.TASK" for a child task, or "Unknown". The
+        system log reports an unknown one (CFE_SB_GetAppTskName).
+        """
         task = self.kernel.current
         if task.owner is not None and application_of(task.owner) is None:
+            self.ports.syslog.write_to_sys_log("CFE_ES_GetTaskInfo: Task ID Not Active: 0")
             return "Unknown"
         app: str | None = getattr(task.owner, "name", None)
         if app is None or app == task.name:
@@ -153,15 +156,16 @@ class BusCore:
         Raises:
             CfeError: CFE_SB_BAD_ARGUMENT, CFE_SB_MSG_TOO_BIG.
         """
-        app, limit = self.caller_name(), self.config.sb_max_msg_size
+        limit = self.config.sb_max_msg_size
         if len(packet) < 7:
-            text = f"Send Err:Bad input argument,Arg 0x0,App {app}"
+            text = f"Send Err:Bad input argument,Arg 0x0,App {self.caller_name()}"
             raise self.send_error(ev.SEND_BAD_ARG_EID, CFE_SB_BAD_ARGUMENT, text)
         msg_id = packet[0] << 8 | packet[1]
         if not self.is_valid_msg_id(msg_id):
-            text = f"Send Err:Invalid MsgId(0x{msg_id:x})in msg,App {app}"
+            text = f"Send Err:Invalid MsgId(0x{msg_id:x})in msg,App {self.caller_name()}"
             raise self.send_error(ev.SEND_INV_MSGID_EID, CFE_SB_BAD_ARGUMENT, text)
         if size > limit:
+            app = self.caller_name()
             text = f"Send Err:Msg Too Big MsgId=0x{msg_id:x},app={app},size={size},MaxSz={limit}"
             raise self.send_error(ev.MSG_TOO_BIG_EID, CFE_SB_MSG_TOO_BIG, text)
 

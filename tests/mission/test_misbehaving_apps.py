@@ -152,6 +152,31 @@ def Main(cfe):
     assert mission.cfe.es.history["APP"].deaths == 1
 
 
+def test_callback_of_a_timer_cannot_send_because_it_belongs_to_no_application(tmp_path: Path) -> None:
+    """As on NASA's cFE: a message needs a buffer, and a buffer an application."""
+    source = f"""
+from cfepy.msg import command
+from cfepy.status import CFE_SB_BUF_ALOC_ERR, CfeError
+
+def Main(cfe):
+    def tick(timer_id):
+        try:
+            cfe.sb.transmit_msg(command(0x1890, 0))
+        except CfeError as error:
+            assert error.status == CFE_SB_BUF_ALOC_ERR
+            cfe.os.printf("refused\\n")
+{READY}
+    timer = cfe.os.timer_create("TICK", tick)
+    cfe.os.timer_set(timer, 1000, 0)
+    while cfe.es.run_loop():
+        cfe.os.task_delay(100)
+"""
+    mission = fly(tmp_path, source, seconds=2)
+    assert mission.cfe.es.history["APP"].deaths == 0
+    assert "refused" in text_of(mission)
+    assert "CFE_ES_GetTaskInfo: Task ID Not Active: 0" in text_of(mission)
+
+
 @pytest.mark.parametrize("in_timer", [False, True])
 def test_apps_that_die_at_the_same_time_are_all_restarted(tmp_path: Path, in_timer: bool) -> None:
     fail = "    1 / 0\n"

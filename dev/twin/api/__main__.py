@@ -8,8 +8,8 @@ from collections import Counter
 
 from dev.twin.api import real, twin
 from dev.twin.api.compare import counts, differences
-from dev.twin.api.recorded import write_record
-from dev.twin.api.script import write_script
+from dev.twin.api.recorded import Record, write_record
+from dev.twin.api.script import KINDS, write_script
 
 
 def main() -> int:
@@ -18,6 +18,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1, help="of the first script")
     parser.add_argument("--count", type=int, default=3500, help="calls of a script")
     parser.add_argument("--scripts", type=int, default=1, help="how many scripts, with seeds that count up")
+    parser.add_argument("--kind", choices=KINDS, default="usual", help="programs that are mostly right, or wrong ones")
     parser.add_argument("--record", action="store_true", help="keep the real one's answers for tests without it")
     options = parser.parse_args()
     built = real.installed()
@@ -29,10 +30,10 @@ def main() -> int:
     totals: Counter[str] = Counter()
     found = 0
     for seed in range(options.seed, options.seed + options.scripts):
-        script = write_script(seed, options.count)
+        script = write_script(seed, options.count, options.kind)
         answers = real.play(built, script)
         if options.record:
-            write_record((release, seed, options.count), answers)
+            write_record(Record(release, seed, options.count, options.kind), answers)
         unlike = differences(script, answers, twin.play(script, release))
         found += len(unlike)
         totals += counts(script)

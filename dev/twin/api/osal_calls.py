@@ -7,7 +7,8 @@ from typing import Any
 
 from cfepy import osal
 from cfepy.osal.clock import time_from_total_nanoseconds
-from cfepy.status import OS_ERROR_TIMEOUT, OS_QUEUE_EMPTY, OS_QUEUE_TIMEOUT, CfeError, OsalError
+from cfepy.status import OS_ERROR_TIMEOUT, OS_QUEUE_EMPTY, OS_QUEUE_TIMEOUT, CfeError, OsalError, to_signed
+from dev.twin.api.in_timer import in_timer
 from dev.twin.api.words import Answer, Id, Line
 
 KINDS = {
@@ -164,6 +165,16 @@ class OsalCalls:
         status_of(self.os.timer_set, w.num(1), 100000000, 0)
         return status, fired
 
+    def OS_InTimer(self, w: Line) -> Answer:
+        answers = [12345]
+        timer = self.os.timer_create(
+            "IN_TIMER", lambda timer: answers.append(in_timer(self.play.cfe, w.num(1), timer, w.num(2)))
+        )
+        self.os.timer_set(timer, 20000, 0)
+        self.os.task_delay(200)
+        status_of(self.os.timer_delete, timer)
+        return 0, answers[-1]
+
     def OS_TimeBaseCreate(self, w: Line) -> Answer:
         def sync(timebase: int) -> int:
             self.os.task_delay(10)
@@ -210,7 +221,7 @@ class OsalCalls:
         return (0,)
 
     def OS_lseek(self, w: Line) -> Answer:
-        return (self.os.lseek(w.num(1), w.num(2), w.num(3)),)
+        return (to_signed(self.os.lseek(w.num(1), w.num(2), w.num(3))),)  # C has 32 bits for it
 
     def OS_chmod(self, w: Line) -> Answer:
         self.os.chmod(w.text(1), w.num(2))

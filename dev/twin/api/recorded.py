@@ -1,15 +1,24 @@
-"""Recorded answers of a real cFE, for machines without one: tests/data/api_answers/<release>_<seed>_<count>.txt.xz."""
+"""Recorded answers of a real cFE, for machines without one: <release>_<kind>_<seed>_<count>.txt.xz in
+tests/data/api_answers. The usual kind of script is not named.
+"""
 
 from __future__ import annotations
 
 import lzma
 from pathlib import Path
+from typing import NamedTuple
 
+USUAL = "usual"
 FOLDER = Path(__file__).parents[3] / "tests/data/api_answers"
 
 
-Record = tuple[str, int, int]
-"""Release, seed, and number of calls."""
+class Record(NamedTuple):
+    """A script that was played: release, seed, number of calls, kind of script."""
+
+    release: str
+    seed: int
+    calls: int
+    kind: str = USUAL
 
 
 def write_record(record: Record, answers: list[str]) -> None:
@@ -22,8 +31,10 @@ def write_record(record: Record, answers: list[str]) -> None:
 def records() -> list[Record]:
     """Return each script that was recorded."""
     names = sorted(each.name.partition(".txt")[0] for each in FOLDER.glob("*_*_*.txt.xz"))
-    parts = (name.split("_") for name in names)
-    return [(release, int(seed), int(count)) for release, seed, count in parts]
+    found = []
+    for release, *kind, seed, count in (name.split("_") for name in names):
+        found.append(Record(release, int(seed), int(count), *kind))
+    return found
 
 
 def read_record(record: Record) -> list[str]:
@@ -32,5 +43,5 @@ def read_record(record: Record) -> list[str]:
 
 
 def _path(record: Record) -> Path:
-    release, seed, count = record
-    return FOLDER / f"{release}_{seed}_{count}.txt.xz"
+    kind = "" if record.kind == USUAL else f"{record.kind}_"
+    return FOLDER / f"{record.release}_{kind}{record.seed}_{record.calls}.txt.xz"

@@ -15,6 +15,7 @@ from typing import TypeVar
 from cfepy import msg
 from dev.twin.api.ground import buffer_calls, debug_calls, notification_calls
 from dev.twin.api.words import quote
+from dev.twin.api.wrong_calls import WRONG_GROUPS
 
 T = TypeVar("T")
 
@@ -491,9 +492,13 @@ GROUPS = (es_calls, es_calls, evs_calls, sb_calls, sb_calls, tbl_calls, time_cal
           osal_calls, psp_calls, debug_calls, buffer_calls, notification_calls)  # fmt: skip
 
 
-def write_script(seed: int, count: int) -> list[str]:
-    """Return a script of `count` calls."""
+KINDS = {"usual": GROUPS, "wrong": WRONG_GROUPS}
+"""The kinds of scripts: programs that are mostly right, and wrong ones."""
+
+
+def write_script(seed: int, count: int, kind: str = "usual") -> list[str]:
+    """Return a script of `count` calls of one of `KINDS`."""
     w = Writer(seed)
     while len(w.lines) < count:
-        w.one(GROUPS)(w)
+        w.one(KINDS[kind])(w)
     return w.lines[:count]

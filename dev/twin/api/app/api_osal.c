@@ -196,6 +196,82 @@ CALL(OS_TimeBaseGetFreeRun)
     Status(OS_TimeBaseGetFreeRun(OSID(1), &ticks));
 }
 
+/* One call of a timer's callback, by its number; what it answers. */
+static long InTimer(int which, osal_id_t timer, osal_id_t given)
+{
+    static CFE_MSG_CommandHeader_t packet;
+    osal_id_t       id;
+    uint32          accuracy;
+    OS_timer_prop_t info;
+    CFE_ES_AppId_t  app;
+    CFE_ES_TaskId_t task;
+    CFE_SB_PipeId_t pipe;
+    uint32          run = CFE_ES_RunStatus_APP_RUN;
+    int32           status;
+
+    switch (which)
+    {
+        case 0: return OS_TimerDelete(timer);
+        case 1: return OS_TimerSet(timer, 100000000, 0);
+        case 2: return OS_TimerCreate(&id, "IN_TIMER_2", &accuracy, Expire);
+        case 3: return OS_TimeBaseCreate(&id, "IN_TIMER_2", NULL);
+        case 4: return OS_TimerAdd(&id, "IN_TIMER_2", given, ExpireWith, NULL);
+        case 5: return OS_TimerGetInfo(timer, &info);
+        case 6: return OS_TaskDelay(1);
+        case 7: return OS_ObjectIdDefined(OS_TaskGetId());
+        case 8: return OS_BinSemGive(given);
+        case 9: return OS_BinSemTimedWait(given, 0);
+        case 10: return OS_CountSemGive(given);
+        case 11: return OS_QueuePut(given, "in", 1, 0);
+        case 12: return CFE_ES_GetAppID(&app);
+        case 13: return CFE_ES_GetTaskID(&task);
+        case 14: return CFE_EVS_SendEvent(1, CFE_EVS_EventType_ERROR, "in a timer");
+        case 15:
+            CFE_MSG_Init(CFE_MSG_PTR(packet), CFE_SB_ValueToMsgId(0x1890), sizeof(packet));
+            return CFE_SB_TransmitMsg(CFE_MSG_PTR(packet), true);
+        case 16: return CFE_SB_CreatePipe(&pipe, 2, "IN_TIMER");
+        case 17: return CFE_ES_WriteToSysLog("in a timer\n");
+        case 18:
+            status = OS_OpenCreate(&id, "/ram/in_timer", OS_FILE_FLAG_CREATE, OS_READ_WRITE);
+            return status == OS_SUCCESS ? OS_close(id) : status;
+        case 19: return OS_TaskSetPriority(OS_TaskGetId(), 50);
+        case 20: return CFE_ES_CreateChildTask(&task, "IN_TIMER", ChildMain, NULL, 4096, 50, 0);
+        case 21: return CFE_ES_RunLoop(&run);
+        case 22: return OS_BinSemDelete(given);
+        case 23: return OS_QueueDelete(given);
+        case 24: return OS_TimerDelete(given);
+        case 25: return OS_TimerSet(given, 100000000, 0);
+        case 26: return CFE_EVS_ResetAllFilters();
+        case 27: return OS_MutSemDelete(given);
+        default: return OS_CountSemTimedWait(given, 0);
+    }
+}
+static int       InsideCall;
+static long      InsideAnswer;
+static osal_id_t InsideId;
+static void ExpireInside(osal_id_t timer)
+{
+    InsideAnswer = InTimer(InsideCall, timer, InsideId);
+}
+CALL(OS_InTimer)
+{
+    osal_id_t timer;
+    uint32    accuracy;
+    int32     status = OS_TimerCreate(&timer, "IN_TIMER", &accuracy, ExpireInside);
+
+    InsideCall   = Num(1);
+    InsideId     = OSID(2);
+    InsideAnswer = 12345;
+    if (status == OS_SUCCESS)
+    {
+        OS_TimerSet(timer, 20000, 0);
+        OS_TaskDelay(200);
+        OS_TimerDelete(timer);
+    }
+    Status(status);
+    OutNum((int32)InsideAnswer);
+}
+
 CALL(OS_OpenCreate)
 {
     osal_id_t id;
@@ -424,7 +500,7 @@ const Call OsalCalls[] = {ROW(OS_TaskCreate), ROW(OS_TaskGetIdByName), ROW(OS_Ta
     ROW(OS_CondVarGetIdByName), ROW(OS_CondVarGetInfo), ROW(OS_CondVarTimedWait), ROW(OS_RwLockCreate),
     ROW(OS_RwLockDelete), ROW(OS_RwLockReadTake), ROW(OS_RwLockReadGive), ROW(OS_RwLockWriteTake),
     ROW(OS_RwLockWriteGive), ROW(OS_RwLockGetIdByName), ROW(OS_RwLockGetInfo), ROW(OS_TimerCreate), ROW(OS_TimerAdd),
-    ROW(OS_TimerSet), ROW(OS_TimerFires), ROW(OS_TimerDelete), ROW(OS_TimerGetIdByName), ROW(OS_TimerGetInfo),
+    ROW(OS_TimerSet), ROW(OS_TimerFires), ROW(OS_InTimer), ROW(OS_TimerDelete), ROW(OS_TimerGetIdByName), ROW(OS_TimerGetInfo),
     ROW(OS_TimeBaseCreate), ROW(OS_TimeBaseSet), ROW(OS_TimeBaseDelete), ROW(OS_TimeBaseGetIdByName),
     ROW(OS_TimeBaseGetInfo), ROW(OS_TimeBaseGetFreeRun), ROW(OS_OpenCreate), ROW(OS_close), ROW(OS_read),
     ROW(OS_TimedRead), ROW(OS_write), ROW(OS_TimedWrite), ROW(OS_FileAllocate), ROW(OS_FileTruncate), ROW(OS_lseek),
