@@ -399,7 +399,7 @@ class AppEnd(AppServices):
             Whether everything was released.
         """
         main, others = app.main_task_id, [each for each in app.tasks if each != app.main_task_id]
-        if self.config.safe or app.params.is_node:
+        if self.config.safe or app.is_node:
             for task_id in (*others, main):
                 self.end_task(app, task_id)
             self._end_other_tasks(app)

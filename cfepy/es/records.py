@@ -99,6 +99,11 @@ class AppRecord:
     error: BaseException | None = None
     tasks: dict[int, TaskRecord] = field(default_factory=dict)
 
+    @property
+    def is_node(self) -> bool:
+        """Whether it is a ROS node."""
+        return self.params.is_node
+
 
 @dataclass(slots=True)
 class AppHistory:

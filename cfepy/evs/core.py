@@ -118,19 +118,21 @@ class EventCore:
         self.send_own(ERR_UNREGISTERED_EVS_APP, ERROR, text)
         self.ports.syslog.write_to_sys_log(f"EVS_NotRegistered: {text}")
 
-    def _types_of_sender(self) -> int:
-        """Return the event types that are enabled for the application whose task sends an event
-        (CFE_EVS_GetTypeEnable).
+    def _types_for(self, app: AppEvents) -> int:
+        """Return the event types that are enabled for an event of an application (CFE_EVS_GetTypeEnable).
 
-        This may be another application than the event's, because SB sends events from the tasks of all applications. It
-        has none if it is not registered.
+        They are the types of the application whose task sends it. This may be another application, because SB sends
+        events from the tasks of all applications. It has none if it is not registered. A ROS node never is; the types
+        of the event's own application count in its task.
         """
         owner = application_of(self.kernel.current.owner)
         sender = self.apps.get(owner.app_id) if owner is not None else None
-        return 0 if sender is None else sender.types
+        if sender is None:
+            return app.types if getattr(owner, "is_node", False) else 0
+        return sender.types
 
     def _is_filtered(self, app: AppEvents, event_id: int, event_type: int) -> bool:
-        is_filtered, is_locked = app.judge(event_id, event_type, self._types_of_sender())
+        is_filtered, is_locked = app.judge(event_id, event_type, self._types_for(app))
         if is_locked:
             text = (
                 f"Max filter count reached, AppName = {app.name}, EventID = 0x{event_id:08x}: Filter locked until reset"

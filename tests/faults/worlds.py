@@ -28,6 +28,7 @@ SOURCE = """
     COMMANDS = [ORDER]
 
     def source_main(cfe):
+        cfe.evs.register()
         cfe.os.task_delay(1000)
         for number in range(1000):
             cfe.sb.transmit_msg(NUMBER.packet(Value=number))
