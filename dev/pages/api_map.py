@@ -49,14 +49,23 @@ The column C shows how a [compiled application](../../how_to/c_apps.md) gets the
 
 - `call`: a function;
 - `header`: a macro or an inline function, which the application contains;
-- `core`: a function that no header for applications declares; only NASA's core calls it.
+- `core`: a function that no header for applications declares; only NASA's core calls it;
+- `undefined`: a function that NASA's default build declares, but does not have.
 
 `python -m dev.pages.api_map` writes this page. A test fails if the page is out of date or if a name is missing.
 """
 
-CALL, HEADER, CORE, MISSING = "call", "header", "core", "missing"
+CALL, HEADER, CORE, UNLINKED, MISSING = "call", "header", "core", "undefined", "missing"
 OF_THE_CORE = ("CFE_ES_Main", "CFE_SBR_*")
 """Of core_private, or called once by the PSP: NASA's applications do not see them."""
+
+
+EXTENDED = tuple(
+    f"CFE_MSG_{verb}{name}"
+    for verb in ("Get", "Set")
+    for name in ("EDSVersion", "Endian", "PlaybackFlag", "Subsystem", "System")
+)
+"""Of extended headers: NASA's default build declares them, but has none of them."""
 
 
 class Difference(NamedTuple):
@@ -159,6 +168,8 @@ def _in_c(name: str, is_inside: bool, functions: set[str]) -> str:
         return CALL
     if is_inside:
         return HEADER
+    if name in EXTENDED:
+        return UNLINKED
     return CORE if any(fnmatchcase(name, pattern) for pattern in OF_THE_CORE) else MISSING
 
 

@@ -4,6 +4,7 @@ void BUG_Main(void)
     static uint8_t message[200];
     uint32_t run = RUN;
     uint16_t length = sizeof message - 7;
+    CFE_EVS_Register(NULL, 0, 0); /* otherwise its mistakes have no events */
     CFE_ES_RunLoop(&run);
     CFE_MSG_Init(message, 0x0899, sizeof message);
 #ifdef MENDED
