@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -72,7 +73,14 @@ def _declare_headers(api: Declarations, c: CRuntime) -> None:
             _put_header(memory, at, fs.init_header(description, subtype))
 
     def read_header(at: int, filedes: int) -> int:
-        _put_header(memory, at, fs.read_header(filedes))
+        try:
+            header = fs.read_header(filedes)
+        except CfeError:
+            with suppress(OsalError):  # what there is goes into the caller's structure, as in the file
+                os.lseek(filedes, 0, OS_SEEK_SET)
+                memory.poke(at, os.read(filedes, HEADER_SIZE))
+            raise
+        _put_header(memory, at, header)
         return HEADER_SIZE
 
     def write_header(filedes: int, at: int) -> int:

@@ -346,6 +346,25 @@ static void sizes(void)
     TELL(OS_remove("/ram/r"));
 }
 
+static void short_header(void)
+{
+    CFE_FS_Header_t header;
+    SAY("-- short header");
+    put("/ram/a", "too short");
+    memset(&header, '-', sizeof header);
+    TELL(OS_OpenCreate(&fd[0], "/ram/a", 0, OS_READ_ONLY));
+    TELL(OS_lseek(fd[0], 4, OS_SEEK_SET));
+    TELL(CFE_FS_ReadHeader(&header, fd[0]));
+    SAY("[%.12s]", (char *)&header);
+    TELL(OS_lseek(fd[0], 0, OS_SEEK_CUR));
+    TELL(OS_close(fd[0]));
+    TELL(OS_OpenCreate(&fd[0], "/ram/a", 0, OS_WRITE_ONLY));
+    TELL(CFE_FS_ReadHeader(&header, fd[0]));
+    SAY("[%.12s]", (char *)&header);
+    TELL(OS_close(fd[0]));
+    TELL(OS_remove("/ram/a"));
+}
+
 static void paths(void)
 {
     SAY("-- paths");
@@ -509,6 +528,7 @@ void APITEST_Main(void)
     other_kind();
     while_open();
     sizes();
+    short_header();
     paths();
     folders();
     descriptors();
