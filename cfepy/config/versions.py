@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import NamedTuple
 
@@ -52,9 +51,11 @@ class Version(NamedTuple):
         return f"{self.official}+dev{self.build_number}"
 
 
-@dataclass(frozen=True, slots=True)
 class Release:
     """A release of cFE, with the OSAL and the PSP of its bundle; docs/reference/differences.md has the facts in words.
+
+    Args:
+        values: the attributes by name; they never change.
 
     Attributes:
         codename: its code name.
@@ -125,6 +126,9 @@ class Release:
     activate_nothing: str
     activate_unvalidated: str
 
+    def __init__(self, values: Mapping[str, object]) -> None:
+        vars(self).update(values)
+
     @property
     def cfe_version(self) -> Version:
         """The version of cFE."""
@@ -190,7 +194,7 @@ def read_release(file: Path) -> Release:
     Raises:
         UsageError: a value is missing, unknown, or of another kind, with its line.
     """
-    kinds = {field.name: str(field.type) for field in fields(Release)}
+    kinds = Release.__annotations__
     values: dict[str, object] = {}
     for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
         name, is_value, text = (part.strip() for part in line.partition("="))
@@ -204,7 +208,7 @@ def read_release(file: Path) -> Release:
     missing = [name for name in kinds if name not in values]
     if missing:
         raise UsageError(f"missing {', '.join(missing)}; add {'them' if len(missing) > 1 else 'it'}", file=file)
-    return Release(**values)  # type: ignore[arg-type]  # their kinds were checked
+    return Release(values)
 
 
 def _value(text: str) -> object:

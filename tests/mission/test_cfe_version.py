@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import tomllib
 from pathlib import Path
 
@@ -98,7 +97,7 @@ def test_files_of_releases_are_toml() -> None:
     """They have no escapes and no nested tables, so cfepy's own reader gives what the library gives."""
     for name, release in versions.RELEASES.items():
         whole = tomllib.loads((versions.FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
-        read = dataclasses.asdict(release)
+        read = vars(release)
         assert {key: list(value) if isinstance(value, tuple) else value for key, value in read.items()} == whole
 
 
