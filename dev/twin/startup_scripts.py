@@ -64,6 +64,8 @@ def _line(random: Random) -> str:
             parts[1] = random.choice(FILES).format(file)
         else:
             parts[which] = random.choice((TYPES, (), ENTRIES, NAMES, NUMBERS, STACKS, NUMBERS, NUMBERS)[which])
+    if parts[0] in ("CFE_APP", "CFE_LIB") and parts[0] != kind:
+        parts[2] = ENTRIES[0]  # a main function is no library's, and returns nothing
     change = random.random()
     if change < 0.06:
         del parts[random.randrange(1, 8) :]
