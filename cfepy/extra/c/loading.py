@@ -18,6 +18,9 @@ NO_SYMBOL = "NULL"
 NODE_MARK = "roscfe_node"
 """The symbol that marks a ROS node; the convertor's wrapper defines it."""
 
+NASAS = ("CFE_", "OS_")
+"""Beginnings of names that only cFE, OSAL and the PSP define, so that NASA's loader finds none either."""
+
 
 class CompiledLoader:
     """Loads shared objects for one processor.
@@ -62,6 +65,8 @@ class CompiledLoader:
         source = self.read(file, data)
         try:
             missing = self.runtime.missing(source)
+            if any(name.startswith(NASAS) for name in missing):
+                raise ElfError(f"Error loading shared library: {file}: undefined symbol: {', '.join(missing)}")
             if missing:
                 self._console.write(f"OS_ModuleLoad: {file} has undefined symbols: {', '.join(missing)}")
             profile = abi_profile(source)

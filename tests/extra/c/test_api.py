@@ -8,7 +8,7 @@ import pytest
 
 from cfepy.extra.c.api import function_names
 from dev.c.api.flights import MARK, NAMES, WITHOUT_DEPRECATED, expected, fly
-from tests.extra.c.building import needs_compiler
+from tests.extra.c.building import fly_c, needs_compiler
 
 pytestmark = needs_compiler
 
@@ -34,6 +34,14 @@ def test_application_prints_the_same_under_the_guard(tmp_path: Path, name: str) 
 def test_functions_of_extended_headers_are_undefined_as_in_nasas_default_build() -> None:
     names = ("EDSVersion", "Endian", "PlaybackFlag", "Subsystem", "System")
     assert not function_names() & {f"CFE_MSG_{verb}{name}" for verb in ("Get", "Set") for name in names}
+
+
+def test_application_with_an_undefined_function_of_cfe_is_not_loaded(tmp_path: Path) -> None:
+    console = fly_c(
+        tmp_path, "int CFE_MSG_GetSystem(void *, void *);\nvoid TEST_Main(void) { CFE_MSG_GetSystem(0, 0); }"
+    )
+    assert "Error loading shared library: /cf/TEST.so: undefined symbol: CFE_MSG_GetSystem" in console
+    assert "CFE_ES_LoadModule: Could not load file:/cf/TEST.so. EC = -1" in console
 
 
 def own(lines: list[str]) -> list[str]:
