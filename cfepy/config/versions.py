@@ -17,6 +17,7 @@ from cfepy.status import UsageError
 FOLDER = Path(__file__).parent / "releases"
 """The files of the releases."""
 SUFFIX = ".toml"
+LIMIT = "limits."
 DEFAULT_RELEASE = "7.0.1"
 """The release of a mission that names none; not 7.0.0, which refuses every table that the ground loads."""
 MODULES = ("CORE_API", "ES", "EVS", "FS", "SB", "TBL", "TIME", "OSAL", "PSP", "MSG", "SBR", "RESOURCEID", "CONFIG")
@@ -86,6 +87,8 @@ class Release:
         names_file_without_table: the event of a file for no table names the file.
         loaded, file_for_no_table, dump, no_buffer, too_many_validations, assumed_valid: texts of events.
         activate_dump_only, activate_nothing, activate_unvalidated: texts of events.
+        limits: the limits that differ from those in `cfepy.config.platform`, from lines such as
+            `limits.sb_max_pipes = 64`.
     """
 
     codename: str
@@ -125,6 +128,7 @@ class Release:
     activate_dump_only: str
     activate_nothing: str
     activate_unvalidated: str
+    limits: Mapping[str, int]
 
     def __init__(self, values: Mapping[str, object]) -> None:
         vars(self).update(values)
@@ -195,10 +199,14 @@ def read_release(file: Path) -> Release:
         UsageError: a value is missing, unknown, or of another kind, with its line.
     """
     kinds = Release.__annotations__
-    values: dict[str, object] = {}
+    limits: dict[str, object] = {}
+    values: dict[str, object] = {"limits": limits}
     for number, line in enumerate(file.read_text(encoding="utf-8").splitlines(), 1):
         name, is_value, text = (part.strip() for part in line.partition("="))
         if not name or name.startswith("#"):
+            continue
+        if name.startswith(LIMIT) and text.isdecimal():
+            limits[name.removeprefix(LIMIT)] = int(text)
             continue
         if name not in kinds or not is_value:
             raise UsageError(f"unknown value {name!r} of a release", file=file, line=number)

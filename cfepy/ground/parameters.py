@@ -119,7 +119,7 @@ def table_files(source: Path, mission: str | None) -> dict[str, bytes]:
     tree = read_tree(load(source, handed=True))
     spec = None if mission is None else read_mission(mission)
     board = load_profile("linux" if spec is None else spec.board)
-    config = spec.limits.config(board, True) if spec is not None else board.config()
+    config = spec.limits.config(board, True, spec.cfe_version) if spec is not None else board.config()
     _, rows = extent(config)
     return {f"{name.lower()}{TABLE_SUFFIX}": data for name, data in files.make(tree, rows).items()}
 

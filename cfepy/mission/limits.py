@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from cfepy.config.platform import IDENTITIES, PlatformConfig
+from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.ids import SERIAL_MAX
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.psp import LIMIT_NAMES, BoardProfile, Limit, read_limit
@@ -74,17 +75,22 @@ class MissionLimits:
     yields: bool = False
     places: Mapping[str, Marked] = field(default_factory=dict)
 
-    def config(self, board: BoardProfile, has_nodes: bool) -> PlatformConfig:
+    def config(self, board: BoardProfile, has_nodes: bool, release: str = DEFAULT_RELEASE) -> PlatformConfig:
         """Return the platform configuration of a mission.
 
         Args:
             board: the board of the mission.
             has_nodes: whether it has ROS nodes.
+            release: name of the release of cFE, whose limits are the defaults.
 
         Raises:
             UsageError: if the mission needs more than the board has.
         """
-        base = PlatformConfig().with_limits(ROS_ROOM if has_nodes and not board.sram_size else {})
+        try:
+            base = PlatformConfig().with_limits(RELEASES[release].limits)
+        except KeyError as error:
+            raise UsageError(f"unknown limit {error} in the file of the release {release}") from None
+        base = base.with_limits(ROS_ROOM if has_nodes and not board.sram_size else {})
         room = {name: max(value, getattr(base, name)) for name, value in limits_for(self.nodes).items()}
         if self.yields:
             more = {} if board.sram_size else _WORKSTATION

@@ -148,7 +148,7 @@ class MissionSpec:
             UsageError: if the mission needs more than the board has.
         """
         limits = replace(
-            self.limits.config(board, self.has_nodes),
+            self.limits.config(board, self.has_nodes, self.cfe_version),
             cfe_version=self.cfe_version,
             safe=self.safe,
             scheduling=self.scheduling,

@@ -70,6 +70,7 @@ def test_third_release_is_only_another_file(tmp_path: Path, monkeypatch: pytest.
     ):
         assert text.count(old) == 1
         text = text.replace(old, new)
+    text += "limits.evs_log_max = 7\n"
     releases = tmp_path / "releases"
     releases.mkdir()
     (releases / "7.2.9.toml").write_text(text, encoding="utf-8")
@@ -85,6 +86,8 @@ def test_third_release_is_only_another_file(tmp_path: Path, monkeypatch: pytest.
         assert "Module OSAL, version git:v7.1.3" in log
         assert [app.name for app in mission.cfe.es.apps] == ["CFE_EVS", "CFE_TIME", "CFE_TBL", "CFE_SB", "CFE_ES"]
         assert mission.cfe.os.get_version_number() == (7, 1, 3, 0)
+        config = mission.cfe.config
+        assert config.get_value(config.get_id_by_name("PLATFORM_EVS_LOG_MAX")) == 7
         assert mission.cfe.psp.get_version_code_name() == "Equuleus"
         mission.cfe.sb.transmit_msg(es.SEND_HK.packet())
         mission.run_for(0.1)
@@ -98,6 +101,7 @@ def test_files_of_releases_are_toml() -> None:
     for name, release in versions.RELEASES.items():
         whole = tomllib.loads((versions.FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
         read = vars(release)
+        whole.setdefault("limits", {})
         assert {key: list(value) if isinstance(value, tuple) else value for key, value in read.items()} == whole
 
 

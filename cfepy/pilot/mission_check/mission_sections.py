@@ -139,7 +139,8 @@ def check_board(
             yield from problems_of(error, script)
         return
     try:
-        config = said.limits.config(profile, any(entry.symbol == NODE_SYMBOL for entry in entries))
+        has_nodes = any(entry.symbol == NODE_SYMBOL for entry in entries)
+        config = said.limits.config(profile, has_nodes, said.cfe_version)
     except UsageError as error:
         yield from problems_of(error, script)
         return
