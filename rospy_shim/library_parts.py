@@ -35,6 +35,26 @@ def library_names() -> frozenset[str]:
     return frozenset(path.parent.name for path in FOLDER.glob("*/__init__.py"))
 
 
+def shown_names(module: str) -> Mapping[str, str] | None:
+    """Return the public names of a module in ROS's library of that name; None if it is not one of them.
+
+    Returns:
+        For each name the module that ROS's module has it from, or "module:name"; "" for its own names.
+    """
+    return _table().get(module)
+
+
+@cache
+def _table() -> dict[str, dict[str, str]]:
+    lines = (FOLDER / "names.txt").read_text(encoding="utf-8").splitlines()[1:]
+    rows = (line.partition(": ") for line in lines)
+    return {module: {name: home for name, _, home in map(_parts, names.split())} for module, _, names in rows}
+
+
+def _parts(name: str) -> tuple[str, str, str]:
+    return name.partition("=")
+
+
 def library_parts(node: Node) -> dict[str, Factory]:
     """Return the factories of such modules, by full name.
 
@@ -132,7 +152,7 @@ def _own_generator(universe: Universe, name: str, part: str) -> ModuleType:
 
 
 def _config(universe: Universe, name: str, file: Path) -> ModuleType:
-    script = universe.importer.load(f"{_LIBRARY}.cfg_script")
+    script = universe.importer.load(f"{_LIBRARY}._cfg_script")
     module = ModuleType(name)
     module.__file__ = str(file)
     vars(module).update(script.contents_of(str(file), file.stem))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.es import StartParams
 from cfepy.interpreter.cached import CachedProperty
-from cfepy.nodes import NodeConfig, ProcessNumbers, RosConfig, Universe
+from cfepy.nodes import NodeConfig, ProcessNumbers, RosConfig, Universe, show_only
 from cfepy.rtos import InjectedCrash
 from cfepy.units import NS_PER_S
 from rospy_shim.client.modules import RosModules
@@ -23,7 +23,7 @@ from rospy_shim.client.node import Node
 from rospy_shim.client.tasks import NodeTasks
 from rospy_shim.graph.compiled import CompiledNodes
 from rospy_shim.graph.graph import Graph, TopicEntry, TopicRow
-from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts
+from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts, shown_names
 from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
 from rospy_shim.parameters.app import ParameterApp
 from rospy_shim.types.msgs import make_module
@@ -274,6 +274,7 @@ class RosRuntime:
             call_cost_ns=self._call_ns,
             stdout=self._console.write,
             find_module=lambda name: find(name),
+            shown_names=shown_names,
             priority=tasks.priority,
             ordered_sets=self._config.ordered_sets if config.ordered_sets is None else config.ordered_sets,
             keys=config.keys,
@@ -415,6 +416,8 @@ def _finder(node: Node, made: dict[str, Factory]) -> Callable[[str], Factory | N
             return None
         if isinstance(module, MessageModule):
             module.hand_on(node.universe.importer.load)
+        elif (shown := shown_names(name)) is not None:
+            show_only(module, shown, node.universe.importer.load)
         return lambda universe: module
 
     return find

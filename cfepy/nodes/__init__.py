@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.app_modules import AppModules, make_app_universe
     from cfepy.nodes.busy_waits import turn_hook
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
+    from cfepy.nodes.importer import imported, show_only
     from cfepy.nodes.reachable_objects import held_by, is_private, reaches
     from cfepy.nodes.refused_modules import RefusedError
     from cfepy.nodes.universe import Factory, ProcessNumbers, StartThread, Universe, process_number
@@ -61,10 +62,12 @@ __all__ = [
     "Universe",
     "below_root",
     "held_by",
+    "imported",
     "is_private",
     "make_app_universe",
     "process_number",
     "reaches",
+    "show_only",
     "turn_hook",
 ]
 
@@ -76,6 +79,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".app_modules": ("AppModules", "make_app_universe"),
             ".busy_waits": ("turn_hook",),
             ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
+            ".importer": ("imported", "show_only"),
             ".reachable_objects": ("held_by", "is_private", "reaches"),
             ".refused_modules": ("RefusedError",),
             ".universe": (

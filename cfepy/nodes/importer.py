@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 _RUN = "__run__"
 Factory = Callable[["Universe"], ModuleType]
+ShownNames = Callable[[str], Mapping[str, str] | None]
 _WHERE = "(put its source near the node or on ROS_PACKAGE_PATH, or install it into the Python that cfepy runs in)"
 
 
@@ -68,6 +69,68 @@ def postpone(module: ModuleType, run: Callable[[], object]) -> ModuleType:
     vars(module)[_RUN] = run
     module.__class__ = LateModule
     return module
+
+
+def show_only(module: ModuleType, shown: Mapping[str, str], load: Callable[[str], ModuleType]) -> None:
+    """Let a module show some names only. Its own code finds the others among its builtins.
+
+    Args:
+        module: the module.
+        shown: the names, and where those are from that the module does not define.
+        load: imports a module.
+    """
+    names = vars(module)
+    for name in [name for name in names if not (name.startswith("_") or name in shown or _is_part(module, name))]:
+        names.setdefault("__builtins__", {})[name] = names.pop(name)
+    private = f"{module.__name__.partition('.')[0]}._"
+    for name, home in shown.items():
+        if not home and str(getattr(names.get(name), "__module__", "")).startswith(private):
+            names[name].__module__ = module.__name__  # a class or function of a private module
+    late = {name: home for name, home in shown.items() if home and name not in names}
+    if late:
+        _add_late_names(module, late, load)
+
+
+def _is_part(module: ModuleType, name: str) -> bool:
+    """Return whether a name of a module is its submodule; a package shows it as soon as any program imports it."""
+    part = vars(module)[name]
+    return isinstance(part, ModuleType) and part.__name__ == f"{module.__name__}.{name}"
+
+
+def _add_late_names(module: ModuleType, late: Mapping[str, str], load: Callable[[str], ModuleType]) -> None:
+    """Give a module names from other modules, which are imported when the name is first needed."""
+    names = vars(module)
+    own = names.get("__getattr__")
+
+    def find(name: str) -> Any:
+        if name not in late:
+            if own is not None:
+                return own(name)
+            raise AttributeError(f"module {module.__name__!r} has no attribute {name!r}")
+        names[name] = value = imported(late[name], load, module.__name__)
+        return value
+
+    names["__getattr__"] = find
+    names["__dir__"] = lambda: sorted({*names, *late})
+
+
+def imported(home: str, load: Callable[[str], ModuleType], user: str) -> Any:
+    """Return a module, or a name of a module.
+
+    Args:
+        home: "module" or "module:name".
+        load: imports a module.
+        user: the module that shows it.
+
+    Raises:
+        AttributeError: it is not available.
+    """
+    owner, _, name = home.partition(":")
+    try:
+        module = load(owner)
+        return getattr(module, name) if name else module
+    except (ImportError, AttributeError) as error:
+        raise AttributeError(f"module {user!r} has no attribute {name or owner!r}") from error
 
 
 def _wake(module: ModuleType) -> None:
@@ -143,6 +206,8 @@ class Importer:
         ordered: whether set displays in the node's code make ordered sets.
         provision: replacements for the host's modules.
         find_factory: looks up names for which the provision has no factory; None if it does not know the name.
+        shown_names: returns the public names that a module of a library shows, each with the module that it is from,
+            or "module:name", or "" if it is the module's own; None if a module shows all that it has.
         accesses: where the accesses of the node's own code are reported; None for no reports.
     """
 
@@ -156,6 +221,7 @@ class Importer:
         ordered: bool,
         provision: sharing.Provision,
         find_factory: Callable[[str], Factory | None],
+        shown_names: ShownNames,
         accesses: Accesses | None = None,
     ) -> None:
         self.modules: dict[str, ModuleType] = {}
@@ -168,6 +234,7 @@ class Importer:
         self._hosts = frozenset((*libraries, *sys.path))
         self._provision = provision
         self._find_factory = find_factory
+        self._shown_names = shown_names
         self._accesses = accesses if accesses is not None and accesses.is_on else None
         self._shared: set[str] = set()
         self._locks = ImportLocks(universe.kernel)
@@ -359,7 +426,9 @@ class Importer:
             code = self.own_code(spec.origin, self._universe.shown(spec.origin))
         else:
             code = code_of_library(spec)
-        vars(module)["__builtins__"] = vars(self._universe.builtins)
+        shown = None if own else self._shown_names(spec.name)
+        known = vars(self._universe.builtins)
+        vars(module)["__builtins__"] = known if shown is None else self._universe.builtins.copy_for_library()
         with self._locks.loading(spec.name):
             if own and self._accesses is not None:
                 self._accesses.adopt(vars(module))
@@ -367,6 +436,8 @@ class Importer:
                     exec(code, vars(module))
             else:
                 exec(code, vars(module))
+        if shown is not None:
+            show_only(module, shown, self.load)
 
     def own_code(self, file: str, name: str, is_main: bool = False) -> CodeType:
         """Return the code of a source file of the node; see `code_of_file` for the errors.

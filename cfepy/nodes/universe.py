@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from cfepy.interpreter.host_system import check_own_builtins
 from cfepy.nodes.busy_waits import HOOK, turn_hook
 from cfepy.nodes.files import OpenFiles
-from cfepy.nodes.importer import Factory, Importer
+from cfepy.nodes.importer import Factory, Importer, ShownNames
 from cfepy.nodes.module_origins import Provision
 from cfepy.nodes.node_sources import doubts_of
 from cfepy.nodes.node_tracebacks import traceback_text
@@ -75,6 +75,7 @@ class Universe:
         provision: replacements for the host's modules; None for those of a node.
         modules: factories of further modules by name, such as rospy. A dotted name requires that its package exists.
         find_module: returns a factory for a name that `modules` does not contain, or None if it does not know the name.
+        shown_names: returns the public names that a module of a library shows (`Importer`), or None if it shows all.
         priority: priority of its tasks, 0 to 255.
         ordered_sets: whether sets in the node's code iterate in insertion order.
         keys: keys typed at its terminal (`cfepy.nodes.stdlib.terminal`). With None it has no terminal, and its input is
@@ -109,6 +110,7 @@ class Universe:
         provision: Provision | None = None,
         modules: Mapping[str, Factory] | None = None,
         find_module: Callable[[str], Factory | None] = lambda name: None,
+        shown_names: ShownNames = lambda name: None,
         priority: int = 100,
         ordered_sets: bool = False,
         keys: Sequence[Key] | None = None,
@@ -170,6 +172,7 @@ class Universe:
             ordered=ordered_sets,
             provision=replace(provided, factories={**provided.factories, **(modules or {})}),
             find_factory=find_module,
+            shown_names=shown_names,
             accesses=accesses,
         )
         self.builtins = sys_module.builtins_module(self, ordered_sets)

@@ -14,7 +14,7 @@ from cfepy.mission import Mission
 from cfepy.reading.suggestions import listed
 from cfepy.units import NS_PER_MS, NS_PER_S
 
-MATCHES = "message_filters.match_record"
+MATCHES = "message_filters._match_record"
 """The module that records synchronizers; an original message_filters beside the node has none."""
 
 

@@ -6,13 +6,13 @@ chains and trees are included with the common solvers; dynamics are not.
 
 from __future__ import annotations
 
-from .chain import Chain, Joint, Segment
-from .frame import Frame
-from .functions import Add, Divide, Equal, Multiply, MultiplyJacobian, SetToZero, Subtract, addDelta, diff, dot
-from .inertia import RigidBodyInertia, RotationalInertia
-from .joint_arrays import Jacobian, JntArray
-from .rotation import Rotation
-from .solvers import (
+from ._chain import Chain, Joint, Segment
+from ._frame import Frame
+from ._functions import Add, Divide, Equal, Multiply, MultiplyJacobian, SetToZero, Subtract, addDelta, diff, dot
+from ._inertia import RigidBodyInertia, RotationalInertia
+from ._joint_arrays import Jacobian, JntArray
+from ._rotation import Rotation
+from ._solvers import (
     ChainFkSolverPos_recursive,
     ChainIkSolverPos_NR,
     ChainIkSolverPos_NR_JL,
@@ -20,9 +20,9 @@ from .solvers import (
     ChainJntToJacSolver,
     SolverI,
 )
-from .tree import Tree
-from .twist import Twist, Wrench
-from .vector import Vector
+from ._tree import Tree
+from ._twist import Twist, Wrench
+from ._vector import Vector
 
 __all__ = [
     "Add",

@@ -16,19 +16,21 @@ import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 from std_msgs.msg import Header
 
-from .action_client import ActionClient, GoalManager
+from ._client_goal_handle import ClientGoalHandle, CommStateMachine
+from ._states import CommState, TerminalState, get_name_of_constant
+from .action_client import INVALID_TRANSITION, NO_TRANSITION, ActionClient, GoalManager, g_goal_id
 from .action_server import ActionServer, nop_cb
-from .client_goal_handle import ClientGoalHandle, CommStateMachine
 from .exceptions import ActionException
 from .goal_id_generator import GoalIDGenerator
 from .handle_tracker_deleter import HandleTrackerDeleter
 from .server_goal_handle import ServerGoalHandle
 from .simple_action_client import SimpleActionClient, SimpleGoalState
 from .simple_action_server import SimpleActionServer
-from .states import CommState, TerminalState, get_name_of_constant
 from .status_tracker import StatusTracker
 
 __all__ = [
+    "INVALID_TRANSITION",
+    "NO_TRANSITION",
     "ActionClient",
     "ActionException",
     "ActionServer",
@@ -48,6 +50,7 @@ __all__ = [
     "SimpleGoalState",
     "StatusTracker",
     "TerminalState",
+    "g_goal_id",
     "get_name_of_constant",
     "nop_cb",
     "rospy",

@@ -12,10 +12,10 @@ from typing import Any
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatusArray
 
-from .action_spec import ActionTypes
-from .client_goal_handle import ClientGoalHandle, CommStateMachine
+from ._action_spec import ActionTypes
+from ._client_goal_handle import ClientGoalHandle, CommStateMachine
+from ._states import CommState, TerminalState, get_name_of_constant
 from .exceptions import ActionException
-from .states import CommState, TerminalState, get_name_of_constant
 
 __all__ = [
     "ActionClient",
@@ -27,6 +27,9 @@ __all__ = [
     "TerminalState",
     "get_name_of_constant",
 ]
+
+NO_TRANSITION, INVALID_TRANSITION = -1, -2
+g_goal_id = 1
 
 _goal_numbers = count(1)
 

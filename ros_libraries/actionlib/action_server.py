@@ -9,7 +9,7 @@ from typing import Any
 import rospy
 from actionlib_msgs.msg import GoalID, GoalStatus, GoalStatusArray
 
-from .action_spec import ActionTypes
+from ._action_spec import ActionTypes
 from .exceptions import ActionException
 from .goal_id_generator import GoalIDGenerator
 from .handle_tracker_deleter import HandleTrackerDeleter

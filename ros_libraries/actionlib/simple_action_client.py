@@ -9,9 +9,9 @@ from typing import Any
 import rospy
 from actionlib_msgs.msg import GoalStatus
 
+from ._client_goal_handle import ClientGoalHandle
+from ._states import CommState, get_name_of_constant
 from .action_client import ActionClient
-from .client_goal_handle import ClientGoalHandle
-from .states import CommState, get_name_of_constant
 
 _POLL = rospy.Duration(0.1)  # how long a wait takes to notice that the node shuts down
 
@@ -44,9 +44,6 @@ class SimpleActionClient:
         self.simple_state = SimpleGoalState.DONE
         self.gh: ClientGoalHandle | None = None
         self.done_condition = threading.Condition()
-        self.done_cb: Callable[[int, Any], object] | None = None
-        self.active_cb: Callable[[], object] | None = None
-        self.feedback_cb: Callable[[Any], object] | None = None
 
     def wait_for_server(self, timeout: Any = rospy.Duration()) -> bool:  # noqa: B008
         """Wait as `ActionClient.wait_for_server` does."""

@@ -15,8 +15,8 @@ from typing import Any
 import rospy
 from bond.msg import Constants, Status
 
-from .states import ALIVE, DEAD, DYING, TRANSITIONS, WAITING
-from .timeout import Timeout
+from ._states import ALIVE, DEAD, DYING, TRANSITIONS, WAITING
+from ._timeout import Timeout
 
 Callback = Callable[[], object] | None
 
@@ -71,7 +71,7 @@ class Bond:
         self.sister_instance_id: str | None = None
         self.is_shutdown = self.sister_died_first = False
         self.pending_callbacks: list[Callable[[], object]] = []
-        self.state = WAITING
+        self._state = WAITING
         self.lock = threading.RLock()
         self.condition = threading.Condition(self.lock)
         self.connect_timeout = Constants.DEFAULT_CONNECT_TIMEOUT
@@ -147,14 +147,14 @@ class Bond:
     def wait_until_formed(self, timeout: Any = None) -> bool:
         """Wait for the other end, for a rospy.Duration or forever. Returns whether the bond was formed."""
         with self.lock:
-            self._wait_while(lambda: self.state == WAITING, timeout)
-            return self.state != WAITING
+            self._wait_while(lambda: self._state == WAITING, timeout)
+            return self._state != WAITING
 
     def wait_until_broken(self, timeout: Any = None) -> bool:
         """Wait for the end of the bond, for a rospy.Duration or forever. Returns whether it is broken."""
         with self.lock:
-            self._wait_while(lambda: self.state != DEAD, timeout)
-            return self.state == DEAD
+            self._wait_while(lambda: self._state != DEAD, timeout)
+            return self._state == DEAD
 
     def _wait_while(self, unchanged: Callable[[], bool], timeout: Any) -> None:
         end = time.time() + as_float_duration(timeout) if timeout else None
@@ -167,7 +167,7 @@ class Bond:
     def is_broken(self) -> bool:
         """Return whether the bond is broken."""
         with self.lock:
-            return self.state == DEAD
+            return self._state == DEAD
 
     def break_bond(self) -> None:
         """Break the bond and notify the other end."""
@@ -184,7 +184,7 @@ class Bond:
             self.sub.unregister()
         with self.lock:
             self.is_shutdown = True
-            if self.state != DEAD:
+            if self._state != DEAD:
                 self.break_bond()
             self.pub.unregister()
             self.condition.notify_all()
@@ -195,15 +195,15 @@ class Bond:
             self.shutdown()
 
     def __repr__(self) -> str:
-        return f"[Bond {self.id}, Instance {self.instance_id} ({self.state})]"
+        return f"[Bond {self.id}, Instance {self.instance_id} ({self._state})]"
 
     # -- events --------------------------------------------------------------------------------------------------------
 
     def _handle(self, event: str) -> None:
-        actions, following = TRANSITIONS.get((self.state, event), ((), self.state))
+        actions, following = TRANSITIONS.get((self._state, event), ((), self._state))
         for action in actions:
             getattr(self, action)()
-        self.state = following
+        self._state = following
 
     def _timed_out(self, event: str) -> None:
         if event == "HeartbeatTimeout" and rospy.get_param(Constants.DISABLE_HEARTBEAT_TIMEOUT_PARAM, False):
@@ -239,10 +239,10 @@ class Bond:
 
     def _publishing_thread(self) -> None:
         with self.lock:
-            while not self.is_shutdown and self.state in (WAITING, ALIVE):
+            while not self.is_shutdown and self._state in (WAITING, ALIVE):
                 self._publish(True)
                 self.condition.wait(self.heartbeat_period)
-            while not self.is_shutdown and self.state == DYING:
+            while not self.is_shutdown and self._state == DYING:
                 self._publish(False)
                 self.condition.wait(Constants.DEAD_PUBLISH_PERIOD)
 

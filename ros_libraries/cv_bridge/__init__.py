@@ -7,8 +7,7 @@ encoding, or change between the common ones, with NumPy alone. Other conversions
 
 from __future__ import annotations
 
-from .color import cvtColor2, cvtColorForDisplay
+from .boost.cv_bridge_boost import cvtColorForDisplay, getCvType
 from .core import CvBridge, CvBridgeError
-from .encodings import getCvType
 
-__all__ = ["CvBridge", "CvBridgeError", "cvtColor2", "cvtColorForDisplay", "getCvType"]
+__all__ = ["CvBridge", "CvBridgeError", "cvtColorForDisplay", "getCvType"]

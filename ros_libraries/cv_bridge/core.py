@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from sensor_msgs.msg import CompressedImage, Image
 
-from .color import cvtColor2, opencv
-from .encodings import getCvType, name_of, name_of_number, parse
+from ._color import cvtColor2, opencv
+from ._encodings import getCvType, name_of, name_of_number, parse
 
 _NEEDED = "compressed images need OpenCV: pip install opencv-python"
 

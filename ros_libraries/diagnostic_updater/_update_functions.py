@@ -105,12 +105,15 @@ class TimeStampStatusParam:
         self.min_acceptable, self.max_acceptable = min_acceptable, max_acceptable
 
 
+_ALWAYS = TimeStampStatusParam()
+
+
 class TimeStampStatus(DiagnosticTask):
     """Whether the stamps of messages are near the present."""
 
-    def __init__(self, params: TimeStampStatusParam | None = None, name: str = "Timestamp Status") -> None:
+    def __init__(self, params: TimeStampStatusParam = _ALWAYS, name: str = "Timestamp Status") -> None:
         super().__init__(name)
-        self.params = params if params is not None else TimeStampStatusParam()
+        self.params = params
         self.lock = threading.Lock()
         self.early_count = self.late_count = self.zero_count = 0
         self._forget()

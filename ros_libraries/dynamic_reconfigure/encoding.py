@@ -21,7 +21,7 @@ from dynamic_reconfigure.msg import (
 )
 from dynamic_reconfigure.msg import Config as ConfigMsg
 
-from .config_dict import Config
+from ._config_dict import Config
 
 _LISTS = {int: ("ints", IntParameter), bool: ("bools", BoolParameter), str: ("strs", StrParameter)}
 _LISTS[float] = ("doubles", DoubleParameter)

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from .parameter_groups import Group, check_name, source_of
+from ._parameter_groups import Group, check_name, source_of
 
 # Scripts begin with a star import, and end with sys.exit without an import of their own.
 __all__ = [

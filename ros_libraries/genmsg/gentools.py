@@ -5,8 +5,8 @@ from __future__ import annotations
 import hashlib
 from typing import Any
 
+from ._msg_context import MsgContext
 from .base import EXT_MSG, EXT_SRV, MsgGenerationException
-from .msg_context import MsgContext
 from .msgs import MsgSpec, bare_msg_type, is_builtin
 from .srvs import SrvSpec
 

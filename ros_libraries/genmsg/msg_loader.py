@@ -9,8 +9,8 @@ import ast
 import os
 from typing import Any
 
+from ._msg_context import MsgContext
 from .base import COMMENTCHAR, CONSTCHAR, EXT_MSG, EXT_SRV, IODELIM, SEP, InvalidMsgSpec, log
-from .msg_context import MsgContext
 from .msgs import (
     HEADER,
     HEADER_FULL_NAME,
@@ -46,7 +46,10 @@ __all__ = [
     "load_srv_from_string",
 ]
 
-SearchPath = dict[str, list[str]]
+TIME, DURATION = "time", "duration"
+TIME_MSG, DURATION_MSG = "uint32 secs\nuint32 nsecs", "int32 secs\nint32 nsecs"
+
+_SearchPath = dict[str, list[str]]
 
 _BITS = {"char": 8, "byte": 8} | {f"{sign}int{bits}": bits for sign in ("", "u") for bits in (8, 16, 32, 64)}
 
@@ -65,7 +68,7 @@ class MsgNotFound(Exception):  # ROS's name
         self.base_type, self.package, self.search_path = base_type, package, search_path
 
 
-def get_msg_file(package: str, base_type: str, search_path: SearchPath, ext: str = EXT_MSG) -> str:
+def get_msg_file(package: str, base_type: str, search_path: _SearchPath, ext: str = EXT_MSG) -> str:
     """Return the path of a definition.
 
     Raises:
@@ -84,12 +87,12 @@ def get_msg_file(package: str, base_type: str, search_path: SearchPath, ext: str
     raise MsgNotFound(problem, base_type, package, search_path)
 
 
-def get_srv_file(package: str, base_type: str, search_path: SearchPath) -> str:
+def get_srv_file(package: str, base_type: str, search_path: _SearchPath) -> str:
     """Return the path of a service's definition; see `get_msg_file`."""
     return get_msg_file(package, base_type, search_path, EXT_SRV)
 
 
-def load_msg_by_type(msg_context: MsgContext, msg_type: str, search_path: SearchPath) -> MsgSpec:
+def load_msg_by_type(msg_context: MsgContext, msg_type: str, search_path: _SearchPath) -> MsgSpec:
     """Read the definition of a type from the search path, and make it known.
 
     Raises:
@@ -104,7 +107,7 @@ def load_msg_by_type(msg_context: MsgContext, msg_type: str, search_path: Search
     return spec
 
 
-def load_srv_by_type(msg_context: MsgContext, srv_type: str, search_path: SearchPath) -> SrvSpec:
+def load_srv_by_type(msg_context: MsgContext, srv_type: str, search_path: _SearchPath) -> SrvSpec:
     """Read the definition of a service from the search path; see `load_msg_by_type`."""
     _check_path(search_path)
     return load_srv_from_file(msg_context, get_srv_file(*package_resource_name(srv_type), search_path), srv_type)
@@ -194,7 +197,7 @@ def load_srv_from_file(msg_context: MsgContext, file_path: str, full_name: str) 
     return spec
 
 
-def load_msg_depends(msg_context: MsgContext, spec: MsgSpec, search_path: SearchPath) -> list[str]:
+def load_msg_depends(msg_context: MsgContext, spec: MsgSpec, search_path: _SearchPath) -> list[str]:
     """Make the types known that a definition needs.
 
     Returns:
@@ -220,7 +223,7 @@ def load_msg_depends(msg_context: MsgContext, spec: MsgSpec, search_path: Search
     return needed
 
 
-def load_depends(msg_context: MsgContext, spec: Any, msg_search_path: SearchPath) -> list[str]:
+def load_depends(msg_context: MsgContext, spec: Any, msg_search_path: _SearchPath) -> list[str]:
     """Load dependencies as `load_msg_depends` does, also for a service.
 
     Raises:

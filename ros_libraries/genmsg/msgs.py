@@ -23,6 +23,8 @@ BUILTIN_TYPES = [*PRIMITIVE_TYPES, TIME, DURATION]
 
 _BRACKETS = re.compile(r"(\[\d*\])*")
 
+EXT_MSG, MSG_DIR = ".msg", "msg"
+
 
 def bare_msg_type(msg_type: Any) -> Any:
     """Return a type without its brackets."""

@@ -14,8 +14,7 @@ from genmsg.base import log
 from genmsg.gentools import compute_full_type_name
 from genmsg.msg_loader import load_depends, load_msg_from_file, load_srv_from_file
 
-from .base import SIMPLE_TYPES, is_simple
-from .expressions import (
+from ._expressions import (
     Special,
     compute_constructor,
     compute_full_text_escaped,
@@ -29,8 +28,7 @@ from .expressions import (
     is_special,
     make_python_safe,
 )
-from .generate_struct import clear_patterns, get_patterns
-from .serializers import (
+from ._serializers import (
     INDENT,
     array_serializer_generator,
     complex_serializer_generator,
@@ -45,6 +43,8 @@ from .serializers import (
     simple_serializer_generator,
     string_serializer_generator,
 )
+from .base import SIMPLE_TYPES, is_simple
+from .generate_struct import clear_patterns, get_patterns
 
 __all__ = [
     "INDENT",

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from rosbag import play
+from rosbag import _play
 
-play.main()
+_play.main()

@@ -10,9 +10,9 @@ import threading
 
 import rospy
 
-from .cache import Cache
-from .filters import SimpleFilter, Subscriber
-from .synchronizers import ApproximateTimeSynchronizer, TimeSynchronizer
+from ._cache import Cache
+from ._filters import SimpleFilter, Subscriber
+from ._synchronizers import ApproximateTimeSynchronizer, TimeSynchronizer
 
 # As in ROS, a star import includes rospy and threading.
 __all__ = [

@@ -17,7 +17,7 @@ def command_of(tool: str, name: str) -> Any:
     Raises:
         AttributeError: the tool has no such command.
     """
-    module = importlib.import_module(f"{tool}.command")
+    module = importlib.import_module(f"{tool}._command")
     prefix = f"_{tool}_cmd_"
     command = module.COMMANDS.get(name.removeprefix(prefix)) if name.startswith(prefix) else None
     if command is not None:

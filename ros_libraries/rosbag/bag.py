@@ -25,12 +25,12 @@ from rosbag_storage import (
     records,
 )
 
-from . import info, search, views
-from .indexed import Indexed
-from .info import Compression
-from .search import Filter
-from .types import message_type
-from .views import BagMessage, BagMessageWithConnectionHeader
+from . import _info, _search, _views
+from ._indexed import Indexed
+from ._info import Compression
+from ._search import Filter
+from ._types import message_type
+from ._views import BagMessage, BagMessageWithConnectionHeader
 
 __all__ = [
     "Bag",
@@ -88,7 +88,7 @@ class Bag(Indexed):
                 raise ValueError("options must be of type dict")
             compression = options.get("compression", compression)
             chunk_threshold = options.get("chunk_threshold", chunk_threshold)
-        info.check_options(compression, chunk_threshold)
+        _info.check_options(compression, chunk_threshold)
         if not f:
             raise ValueError("filename (or stream) is invalid")
         if mode not in ("r", "w", "a"):
@@ -171,7 +171,7 @@ class Bag(Indexed):
 
     @compression.setter
     def compression(self, compression: str) -> None:
-        info.check_options(compression, self._chunk_threshold)
+        _info.check_options(compression, self._chunk_threshold)
         self.flush()
         self._compression = compression
 
@@ -182,7 +182,7 @@ class Bag(Indexed):
 
     @chunk_threshold.setter
     def chunk_threshold(self, chunk_threshold: int) -> None:
-        info.check_options(self._compression, chunk_threshold)
+        _info.check_options(self._compression, chunk_threshold)
         self.flush()
         self._chunk_threshold = chunk_threshold
 
@@ -197,30 +197,30 @@ class Bag(Indexed):
 
     def __str__(self) -> str:
         """Return the output of `rosbag info`."""
-        return info.text_of(self)
+        return _info.text_of(self)
 
     def get_message_count(self, topic_filters: str | list[str] | None = None) -> int:
         """Return how many messages there are, on some topics or on all."""
         if topic_filters is not None:
             topics = self.get_type_and_topic_info(topic_filters).topics
             return sum(topic.message_count for topic in topics.values())
-        return info.count(self.__all_chunks__(), self._connections.values())
+        return _info.count(self.__all_chunks__(), self._connections.values())
 
     def get_start_time(self) -> float:
         """Return the time of the first message in s. Raises ROSBagException if there is none."""
-        return info.times_of(self.__all_chunks__())[0]
+        return _info.times_of(self.__all_chunks__())[0]
 
     def get_end_time(self) -> float:
         """Return the time of the last message in s. Raises ROSBagException if there is none."""
-        return info.times_of(self.__all_chunks__())[1]
+        return _info.times_of(self.__all_chunks__())[1]
 
-    def get_type_and_topic_info(self, topic_filters: str | list[str] | None = None) -> views.TypesAndTopicsTuple:
+    def get_type_and_topic_info(self, topic_filters: str | list[str] | None = None) -> _views.TypesAndTopicsTuple:
         """Return the types of messages, and the data of each topic (or of some topics)."""
-        return info.types_and_topics(self, topic_filters)
+        return _info.types_and_topics(self, topic_filters)
 
-    def get_compression_info(self) -> views.CompressionTuple:
+    def get_compression_info(self) -> _views.CompressionTuple:
         """How most chunks are compressed, and the bytes of all without and with compression."""
-        return info.compression_of(self.__storage__.contents.chunks, self._compression)
+        return _info.compression_of(self.__storage__.contents.chunks, self._compression)
 
     # -- reading -----------------------------------------------------------------------------------------------------
 
@@ -248,7 +248,7 @@ class Bag(Indexed):
             An iterator of `BagMessage`, or of `BagMessageWithConnectionHeader`.
         """
         self.flush()
-        entries = search.entries(self, self._get_connections(topics, connection_filter), start_time, end_time)
+        entries = _search.entries(self, self._get_connections(topics, connection_filter), start_time, end_time)
         return (self.__message_at(entry, raw, return_connection_header) for entry in entries)
 
     def __message_at(self, entry: Entry | tuple[int, int], raw: bool, with_header: bool) -> Any:
@@ -258,7 +258,7 @@ class Bag(Indexed):
         if not raw:
             message = kind()
             message.deserialize(data)
-        stamp = views.ros_time(ns)
+        stamp = _views.ros_time(ns)
         if with_header:
             return BagMessageWithConnectionHeader(connection.topic, message, stamp, connection.header)
         return BagMessage(connection.topic, message, stamp)
@@ -272,7 +272,7 @@ class Bag(Indexed):
 
     def _get_yaml_info(self, key: str | None = None) -> Any:
         """Return the output of `rosbag info --yaml`, or one value of it."""
-        return info.yaml_of(self, key)
+        return _info.yaml_of(self, key)
 
     # -- writing -----------------------------------------------------------------------------------------------------
 
@@ -299,7 +299,7 @@ class Bag(Indexed):
             raise ValueError("msg is invalid")
         if t is None:
             t = genpy.Time.from_sec(time.time())
-        data, header = search.raw_parts(topic, msg) if raw else search.message_parts(topic, msg)
+        data, header = _search.raw_parts(topic, msg) if raw else _search.message_parts(topic, msg)
         connection = self._topic_connections.get(topic)
         if connection is None:
             made = connection_header if connection_header is not None else header()

@@ -1,6 +1,6 @@
 """The subcommands of `rosbag` that work on files, for nodes and tools that call `rosbagmain`.
 
-`record` and `play` are nodes: `rosbag.record` and `rosbag.play`. Imports the modules beside it.
+`record` and `play` are nodes: `rosbag._record` and `rosbag._play`. Imports the modules beside it.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ def rosbagmain(argv: Sequence[str] | None = None) -> None:
 
 
 def _start_node(name: str, words: list[str]) -> None:
-    from . import play, record
+    from . import _play, _record
 
-    (record if name == "record" else play).main([f"rosbag {name}", *words])
+    (_record if name == "record" else _play).main([f"rosbag {name}", *words])
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -106,7 +106,7 @@ def _check(chosen: Any) -> None:
     """Check the message types. Without migration rules, a message type with another md5sum cannot be used."""
     with _opened(chosen.bag) as bag:
         kinds = dict.fromkeys((each.datatype, each.md5sum) for each in bag._connections.values())
-    migrations = [(*kind, _md5sum(kind[0])) for kind in kinds if kind[1] != _md5sum(kind[0])]
+    migrations = [(*kind, _sum_of(kind[0])) for kind in kinds if kind[1] != _sum_of(kind[0])]
     if not migrations:
         print("Bag file does not need any migrations.")
         return
@@ -116,7 +116,7 @@ def _check(chosen: Any) -> None:
     sys.exit(1)
 
 
-def _md5sum(name: str) -> str | None:
+def _sum_of(name: str) -> str | None:
     """Return the md5sum of a message type on this computer, or None if there is no such type."""
     kind = genpy.message.get_message_class(name)
     return None if kind is None else str(kind._md5sum)

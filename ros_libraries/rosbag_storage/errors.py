@@ -23,6 +23,9 @@ class ROSBagFormatException(ROSBagException):
 
     __module__ = "rosbag.bag"
 
+    def __init__(self, value: Any) -> None:
+        super().__init__(value)
+
 
 class ROSBagUnindexedException(ROSBagException):
     """The bag was not closed, so its index is missing: `reindex` makes one."""
@@ -38,8 +41,14 @@ class ROSBagEncryptNotSupportedException(ROSBagException):
 
     __module__ = "rosbag.bag"
 
+    def __init__(self, value: Any) -> None:
+        super().__init__(value)
+
 
 class ROSBagEncryptException(ROSBagException):
     """A bag could not be encrypted or decrypted."""
 
     __module__ = "rosbag.bag"
+
+    def __init__(self, value: Any) -> None:
+        super().__init__(value)

@@ -7,10 +7,10 @@ import platform
 import socket
 import struct
 import sys
+import urllib.parse as urlparse
 from collections.abc import Mapping
 from io import BytesIO
 from typing import Any
-from urllib.parse import urlparse
 
 from rosgraph.rosenv import ROS_HOSTNAME, ROS_IP, ROS_IPV6
 
@@ -23,7 +23,7 @@ def parse_http_host_and_port(url: str) -> tuple[str, int]:
     Raises:
         ValueError: not a URL with a scheme and a host.
     """
-    parts = urlparse(url) if url else None
+    parts = urlparse.urlparse(url) if url else None
     if parts is None or not parts.scheme or not parts.hostname:
         raise ValueError("not a valid URL")
     return parts.hostname, parts.port or 80

@@ -37,7 +37,7 @@ class ThreadingXMLRPCServer(socketserver.ThreadingMixIn, SimpleXMLRPCServer):
     daemon_threads = True
     allow_reuse_address = True
 
-    def __init__(self, addr: tuple[str, int], log_requests: bool = True) -> None:
+    def __init__(self, addr: tuple[str, int], log_requests: int = 1) -> None:
         super().__init__(addr, SilenceableXMLRPCRequestHandler, bool(log_requests))
 
     def handle_error(self, request: Any, client_address: Any) -> None:

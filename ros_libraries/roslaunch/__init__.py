@@ -7,13 +7,11 @@ is `cfepy launch`. Remote machines, servers and process monitors are not support
 from __future__ import annotations
 
 from roslaunch import core, parent, rlutil, scriptapi, substitution_args
-from roslaunch.core import Node, Param, RLException
-from roslaunch.rlutil import configure_logging
+from roslaunch.core import Node, RLException
 from roslaunch.scriptapi import ROSLaunch
 
 __all__ = [
     "Node",
-    "Param",
     "RLException",
     "ROSLaunch",
     "configure_logging",
@@ -23,3 +21,7 @@ __all__ = [
     "scriptapi",
     "substitution_args",
 ]
+
+
+def configure_logging(uuid: str) -> None:
+    """Do nothing: logging goes to the mission's console, so there is no file to open."""

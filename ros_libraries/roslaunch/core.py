@@ -110,7 +110,7 @@ class Node:
         self.required = required
         self.filename = filename
 
-    def fields(self) -> dict[str, Any]:
+    def _fields(self) -> dict[str, Any]:
         """Return its description for the mission."""
         return {
             "package": self.package,

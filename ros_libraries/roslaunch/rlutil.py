@@ -15,10 +15,6 @@ def get_or_generate_uuid(options_runid: str | None, options_wait_for_master: boo
     return options_runid or str(rospy.get_param("/run_id", None) or generate_run_id())
 
 
-def configure_logging(uuid: str) -> None:
-    """Do nothing: logging goes to the mission's console, so there is no file to open."""
-
-
 def resolve_launch_arguments(args: Sequence[str]) -> list[str]:
     """Return paths of launch files from arguments: a path, or a package and the name of a file in it.
 

@@ -39,7 +39,7 @@ class ROSLaunch:
         if not isinstance(node, Node):
             raise ValueError("arg must be of type Node")
         try:
-            app = _processes.start_node(node.fields())
+            app = _processes.start_node(node._fields())
         except ValueError as error:
             raise RLException(str(error)) from error
         process = Process(node.name or node.type, app)

@@ -17,8 +17,11 @@ from rosgraph.network import (
     read_ros_handshake_header,
     write_ros_handshake_header,
 )
+from rosgraph.rosenv import ROS_HOSTNAME, ROS_IP
 
 __all__ = [
+    "ROS_HOSTNAME",
+    "ROS_IP",
     "ROSHandshakeException",
     "create_local_xmlrpc_uri",
     "decode_ros_handshake_header",

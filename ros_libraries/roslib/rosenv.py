@@ -21,6 +21,8 @@ from rospkg.environment import (
 )
 
 __all__ = [
+    "ROS_BINDEPS_PATH",
+    "ROS_BOOST_ROOT",
     "ROS_HOME",
     "ROS_HOSTNAME",
     "ROS_IP",
@@ -38,6 +40,8 @@ __all__ = [
     "get_test_results_dir",
     "makedirs_with_parent_perms",
 ]
+
+ROS_BINDEPS_PATH, ROS_BOOST_ROOT = "ROS_BINDEPS_PATH", "ROS_BOOST_ROOT"
 
 
 class ROSEnvException(Exception):

@@ -7,8 +7,11 @@ from collections.abc import Mapping, Sequence
 import rospkg
 from rospkg import STACK_FILE
 from rospkg.common import ROS_STACK
+from rospkg.environment import ROS_PACKAGE_PATH, ROS_ROOT
 
 __all__ = [
+    "ROS_PACKAGE_PATH",
+    "ROS_ROOT",
     "ROS_STACK",
     "STACK_FILE",
     "InvalidROSStackException",

@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
-from rosbag_storage.lz4_frames import compress, decompress
+from rosbag_storage import lz4_frames as _lz4_frames
+from rosbag_storage.lz4_frames import compress
 
 from roslz4._roslz4 import LZ4Compressor, LZ4Decompressor
 
 __all__ = ["LZ4Compressor", "LZ4Decompressor", "compress", "decompress"]
+
+
+def decompress(data: bytes) -> bytes:
+    """Return the data of a frame."""
+    return _lz4_frames.decompress(data)

@@ -15,8 +15,8 @@ import roslib.message
 import rospkg
 
 from rosmsg import _definitions  # type: ignore[attr-defined]  # made for the node, which knows its message types
-from rosmsg.texts import expanded
-from rosmsg.yaml_text import create_names_filter, get_array_type_instance, get_yaml_for_msg
+from rosmsg._texts import expanded
+from rosmsg._yaml_text import create_names_filter, get_array_type_instance, get_yaml_for_msg
 
 __all__ = [
     "MODE_MSG",
@@ -179,14 +179,14 @@ def rosmsg_debug(rospack: Any, mode: str, type_: str, raw: bool = False) -> None
 
 def rosmsgmain(mode: str = MODE_MSG) -> None:
     """Run the command `rosmsg`, or `rossrv` with MODE_SRV, on sys.argv."""
-    from rosmsg.command import run
+    from rosmsg._command import run
 
     run(mode)
 
 
 def __getattr__(name: str) -> Any:
     """Return a command by the name that tests and tools use: `rosmsg_cmd_list(mode, full, argv)`."""
-    from rosmsg.command import COMMANDS, usage
+    from rosmsg._command import COMMANDS, usage
 
     if name == "fullusage":
         return usage

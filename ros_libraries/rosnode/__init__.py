@@ -8,9 +8,9 @@ from __future__ import annotations
 import socket
 import sys
 import time
+import urllib.parse as urlparse
 from collections.abc import Iterable, Sequence
 from typing import Any
-from urllib.parse import urlparse
 from xmlrpc.client import ServerProxy
 
 import rosgraph
@@ -129,7 +129,7 @@ def _machines() -> Iterable[tuple[str, str]]:
     for name in get_node_names():
         uri = get_api_uri(master, name, skip_cache=True)
         if uri is not None:
-            yield name, urlparse(uri).hostname or ""
+            yield name, urlparse.urlparse(uri).hostname or ""
 
 
 # -- do they answer --------------------------------------------------------------------------------------------------
@@ -350,7 +350,7 @@ def rosnodemain(argv: Sequence[str] | None = None) -> None:
     Args:
         argv: its command line; sys.argv by default.
     """
-    from rosnode.command import run
+    from rosnode._command import run
 
     run(list(sys.argv if argv is None else argv))
 

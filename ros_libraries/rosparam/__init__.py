@@ -10,7 +10,7 @@ from typing import Any
 import rosgraph
 from rosgraph.names import GLOBALNS, get_ros_namespace, make_caller_id, make_global_ns, ns_join
 
-from rosparam.documents import (
+from rosparam._documents import (
     RosParamException,
     construct_angle_degrees,
     construct_angle_radians,
@@ -248,13 +248,13 @@ def yamlmain(argv: Sequence[str] | None = None) -> None:
     Args:
         argv: its command line; sys.argv by default.
     """
-    from rosparam.command import run
+    from rosparam._command import run
 
     run(list(sys.argv if argv is None else argv))
 
 
 def _fullusage() -> None:
     """Say how the command is used, and end the program."""
-    from rosparam.command import print_usage
+    from rosparam._command import print_usage
 
     print_usage()

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 
 
-def current_distro_codename() -> str | None:
-    """Return the code name of the distribution, such as "noetic", from ROS_DISTRO, or None if that is not set."""
-    return os.environ.get("ROS_DISTRO")
+def current_distro_codename(env: Mapping[str, str] | None = None) -> str | None:
+    """Return the code name of the distribution, such as "noetic", from ROS_DISTRO, or None if that is not set.
+
+    Args:
+        env: the environment; None for the node's own.
+    """
+    return (os.environ if env is None else env).get("ROS_DISTRO")

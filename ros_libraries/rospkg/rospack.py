@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 from typing import Any
-from xml.etree import ElementTree
+from xml.etree import ElementTree as _ElementTree
 
 from rospkg import _places  # type: ignore[attr-defined]  # made for the node, which knows where its packages lie
 from rospkg.common import MANIFEST_FILE, PACKAGE_FILE, STACK_FILE, ResourceNotFound
@@ -221,7 +221,7 @@ def _resource(folder: str, files: Iterable[str], manifest_name: str) -> str | No
     if "CATKIN_IGNORE" in files:
         return None
     if PACKAGE_FILE in files:
-        root = ElementTree.parse(os.path.join(folder, PACKAGE_FILE)).getroot()
+        root = _ElementTree.parse(os.path.join(folder, PACKAGE_FILE)).getroot()
         is_stack = root.find("export/metapackage") is not None
         wanted = manifest_name == PACKAGE_FILE or (manifest_name == STACK_FILE) == is_stack
         return (root.findtext("name") or "").strip() if wanted else None
@@ -262,7 +262,7 @@ def get_package_name(path: str) -> str | None:
         if _has(folder, MANIFEST_FILE):
             return os.path.basename(folder)
         if _has(folder, PACKAGE_FILE):
-            return ElementTree.parse(os.path.join(folder, PACKAGE_FILE)).getroot().findtext("name")
+            return _ElementTree.parse(os.path.join(folder, PACKAGE_FILE)).getroot().findtext("name")
     return None
 
 

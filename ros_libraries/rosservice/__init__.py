@@ -18,7 +18,7 @@ import rospy
 from ros_tools import command_of
 
 NAME = "rosservice"
-ID = "/rosservice"
+_ID = "/rosservice"
 
 
 class ROSServiceException(Exception):
@@ -30,7 +30,7 @@ class ROSServiceIOException(ROSServiceException):
 
 
 def _get_master() -> rosgraph.Master:
-    return rosgraph.Master(ID)
+    return rosgraph.Master(_ID)
 
 
 def _no_master() -> ROSServiceIOException:
@@ -111,7 +111,7 @@ def get_service_headers(service_name: str, service_uri: str) -> dict[str, str]:
         raise ROSServiceException(f"service [{service_name}] has an invalid RPC URI [{service_uri}]")
     node: Any = ServerProxy(f"http://{parts.hostname}:{parts.port}")
     try:
-        found: dict[str, str] = _succeed(node.getServiceHeader(ID, service_name))
+        found: dict[str, str] = _succeed(node.getServiceHeader(_ID, service_name))
     except OSError:
         text = f"Unable to communicate with service [{service_name}], address [{service_uri}]"
         raise ROSServiceIOException(text) from None
@@ -231,7 +231,7 @@ def rosservicemain(argv: Sequence[str] | None = None) -> None:
     Args:
         argv: its command line; sys.argv by default.
     """
-    from rosservice.command import run
+    from rosservice._command import run
 
     run(list(sys.argv if argv is None else argv))
 

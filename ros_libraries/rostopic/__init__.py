@@ -16,10 +16,10 @@ import roslib.message
 import rospy
 from ros_tools import command_of
 
-from rostopic.echo import CallbackEcho, create_field_filter, create_value_transform
-from rostopic.errors import ROSTopicException, ROSTopicIOException
-from rostopic.fields import _str_plot, _str_plot_fields, msgevalgen
-from rostopic.publishing import (
+from rostopic._echo import CallbackEcho, create_field_filter, create_value_transform
+from rostopic._errors import ROSTopicException, ROSTopicIOException
+from rostopic._fields import _str_plot, _str_plot_fields, msgevalgen
+from rostopic._publishing import (
     SUBSCRIBER_TIMEOUT,
     argv_publish,
     create_publisher,
@@ -31,7 +31,7 @@ from rostopic.publishing import (
     stdin_yaml_arg,
     wait_for_subscriber,
 )
-from rostopic.statistics import ROSTopicBandwidth, ROSTopicDelay, ROSTopicHz
+from rostopic._statistics import ROSTopicBandwidth, ROSTopicDelay, ROSTopicHz
 
 __all__ = [
     "NAME",
@@ -66,12 +66,12 @@ __all__ = [
 ]
 
 NAME = "rostopic"
-ID = "/rostopic"
+_ID = "/rostopic"
 UNKNOWN = "unknown type"
 
 _caller_apis: dict[str, str] = {}
 
-Row = tuple[str, str, list[str]]
+_Row = tuple[str, str, list[str]]
 """A topic, its type, the nodes on it."""
 
 
@@ -82,7 +82,7 @@ def _check_master() -> None:
         ROSTopicIOException: it does not.
     """
     try:
-        rosgraph.Master(ID).getPid()
+        rosgraph.Master(_ID).getPid()
     except OSError:
         raise ROSTopicIOException("Unable to communicate with master!") from None
 
@@ -93,7 +93,7 @@ def _master_get_topic_types(master: rosgraph.Master) -> Any:
 
 def _topic_types(master: rosgraph.Master | None = None) -> list[list[str]]:
     try:
-        found: list[list[str]] = _master_get_topic_types(master or rosgraph.Master(ID))
+        found: list[list[str]] = _master_get_topic_types(master or rosgraph.Master(_ID))
     except OSError:
         raise ROSTopicIOException("Unable to communicate with master!") from None
     return found
@@ -193,13 +193,13 @@ def get_api(master: rosgraph.Master, caller_id: str) -> str:
     return _caller_apis[caller_id]
 
 
-def get_topic_list(master: rosgraph.Master | None = None) -> tuple[list[Row], list[Row]]:
+def get_topic_list(master: rosgraph.Master | None = None) -> tuple[list[_Row], list[_Row]]:
     """Return published and subscribed topics: name, type and nodes of each.
 
     Args:
         master: the master to ask; by default from the environment.
     """
-    master = master or rosgraph.Master(ID)
+    master = master or rosgraph.Master(_ID)
     types = dict(_topic_types(master))
     publishers, subscribers = (
         [(name, types.get(name, UNKNOWN), nodes) for name, nodes in entries] for entries in master.getSystemState()[:2]
@@ -214,7 +214,7 @@ def get_info_text(topic: str) -> str:
         ROSTopicException: the topic has no nodes.
         ROSTopicIOException: the master does not answer.
     """
-    master = rosgraph.Master(ID)
+    master = rosgraph.Master(_ID)
     try:
         sides = get_topic_list(master)
     except OSError:
@@ -230,10 +230,10 @@ def get_info_text(topic: str) -> str:
 
 
 def _rostopic_list_group_by_host(
-    master: rosgraph.Master, pubs: Sequence[Row], subs: Sequence[Row]
-) -> tuple[dict[str, list[Row]], dict[str, list[Row]]]:
+    master: rosgraph.Master, pubs: Sequence[_Row], subs: Sequence[_Row]
+) -> tuple[dict[str, list[_Row]], dict[str, list[_Row]]]:
     """Return rows by the machine that the nodes run on."""
-    sides: tuple[dict[str, list[Row]], dict[str, list[Row]]] = ({}, {})
+    sides: tuple[dict[str, list[_Row]], dict[str, list[_Row]]] = ({}, {})
     for side, rows in zip(sides, (pubs, subs), strict=True):
         for topic, kind, nodes in rows:
             hosts: dict[str, list[str]] = {}
@@ -250,7 +250,7 @@ def rostopicmain(argv: Sequence[str] | None = None) -> None:
     Args:
         argv: its command line; sys.argv by default.
     """
-    from rostopic.command import run
+    from rostopic._command import run
 
     run(list(sys.argv if argv is None else argv))
 

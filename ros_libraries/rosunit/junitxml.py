@@ -15,25 +15,28 @@ class TestInfo:
         text: its text.
     """
 
-    kind = "failure"
+    _kind = "failure"
 
     def __init__(self, type_: str, text: str) -> None:
         self.type = type_
         self.text = text
 
-    def xml(self) -> str:
+    def _xml(self) -> str:
         """Return the tag, as text."""
-        return f"<{self.kind} type={quoteattr(self.type)}>{escape(self.text)}</{self.kind}>"
+        return f"<{self._kind} type={quoteattr(self.type)}>{escape(self.text)}</{self._kind}>"
 
 
 class TestError(TestInfo):
     """An exception that the test did not expect."""
 
-    kind = "error"
+    _kind = "error"
+    xml = TestInfo._xml
 
 
 class TestFailure(TestInfo):
     """An assertion that did not hold."""
+
+    xml = TestInfo._xml
 
 
 class TestCaseResult:
@@ -74,7 +77,7 @@ class TestCaseResult:
 
     def xml(self) -> str:
         """Return the tag, as text."""
-        inner = "".join(info.xml() for info in (*self.failures, *self.errors))
+        inner = "".join(info._xml() for info in (*self.failures, *self.errors))
         names = f"classname={quoteattr(self.classname)} name={quoteattr(self.name)}"
         return f'<testcase {names} time="{self.time}">{inner}</testcase>'
 
@@ -111,7 +114,7 @@ class Result:
         """Add one test, without counting it."""
         self.test_case_results.append(r)
 
-    def xml(self) -> str:
+    def _xml(self) -> str:
         """Return the suite, as text."""
         counts = (
             f'tests="{self.num_tests}" failures="{self.num_failures}" time="{self.time}" errors="{self.num_errors}"'

@@ -16,6 +16,8 @@ from genpy import Message
 
 from sensor_msgs.msg import PointCloud2, PointField
 
+_NONE: Iterable[tuple[int, int]] = []
+
 # By datatype: code of `struct` and size in bytes.
 _DATATYPES = {
     PointField.INT8: ("b", 1),
@@ -33,7 +35,7 @@ def read_points(
     cloud: Any,
     field_names: Collection[str] | None = None,
     skip_nans: bool = False,
-    uvs: Iterable[tuple[int, int]] = (),
+    uvs: Iterable[tuple[int, int]] = _NONE,
 ) -> Iterator[tuple[Any, ...]]:
     """Yield the points of a cloud, row by row.
 
@@ -68,7 +70,7 @@ def read_points_list(
     cloud: Any,
     field_names: Sequence[str] | None = None,
     skip_nans: bool = False,
-    uvs: Iterable[tuple[int, int]] = (),
+    uvs: Iterable[tuple[int, int]] = _NONE,
 ) -> list[Any]:
     """Return the points as `read_points`, as a list of named tuples.
 

@@ -11,9 +11,9 @@ from typing import Any
 from tf2_ros import ConnectivityException, ExtrapolationException, LookupException
 from tf2_ros import TransformException as Exception
 
+from tf._transformer import Transformer
 from tf.broadcaster import TransformBroadcaster
 from tf.listener import TransformerROS, TransformListener
-from tf.transformer import Transformer
 
 __all__ = [
     "ConnectivityException",

@@ -21,7 +21,7 @@ from geometry_msgs.msg import (
 )
 from sensor_msgs.msg import PointCloud
 
-from tf.transformer import Transformer, strip_leading_slash
+from tf._transformer import Transformer, strip_leading_slash
 
 __all__ = [
     "TransformListener",

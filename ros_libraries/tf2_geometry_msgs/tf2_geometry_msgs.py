@@ -112,13 +112,13 @@ def _quaternion(rows: Rows) -> tuple[float, float, float, float]:
     return (xz + zx) / s, (yz + zy) / s, 0.25 * s, (yx - xy) / s
 
 
-for _type, _apply in (
+for _kind, _apply in (
     (PointStamped, do_transform_point),
     (Vector3Stamped, do_transform_vector3),
     (PoseStamped, do_transform_pose),
     (WrenchStamped, do_transform_wrench),
 ):
-    tf2_ros.TransformRegistration().add(_type, _apply)
-    if _type is not WrenchStamped:
-        tf2_ros.ConvertRegistration().add_to_msg(_type, to_msg_msg)
-        tf2_ros.ConvertRegistration().add_from_msg(_type, from_msg_msg)
+    tf2_ros.TransformRegistration().add(_kind, _apply)
+    if _kind is not WrenchStamped:
+        tf2_ros.ConvertRegistration().add_to_msg(_kind, to_msg_msg)
+        tf2_ros.ConvertRegistration().add_from_msg(_kind, from_msg_msg)

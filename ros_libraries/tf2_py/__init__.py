@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from tf2_py._tf2 import BufferCore
-from tf2_py.exceptions import (
+from tf2_py._exceptions import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,
@@ -11,6 +10,7 @@ from tf2_py.exceptions import (
     TimeoutException,
     TransformException,
 )
+from tf2_py._tf2 import BufferCore
 
 __all__ = [
     "BufferCore",

@@ -8,10 +8,10 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from tf2_py import reports
-from tf2_py.cache import StaticCache, TimeCache, seconds
-from tf2_py.checks import does_not_exist, name_problem, problems_of
-from tf2_py.exceptions import (
+from tf2_py import _reports
+from tf2_py._cache import StaticCache, TimeCache, seconds
+from tf2_py._checks import does_not_exist, name_problem, problems_of
+from tf2_py._exceptions import (
     ConnectivityException,
     ExtrapolationException,
     InvalidArgumentException,
@@ -19,9 +19,9 @@ from tf2_py.exceptions import (
     TimeoutException,
     TransformException,
 )
-from tf2_py.messages import message_of, rigid_of, time_of, to_ns
-from tf2_py.rotation import IDENTITY, Rigid, compose, inverse, product
-from tf2_py.tree import Tree
+from tf2_py._messages import message_of, rigid_of, time_of, to_ns
+from tf2_py._rotation import IDENTITY, Rigid, compose, inverse, product
+from tf2_py._tree import Tree
 
 __all__ = [
     "BufferCore",
@@ -226,10 +226,10 @@ class BufferCore:
 
     def all_frames_as_yaml(self) -> str:
         """Return the frames with parent, authority, rate and times, as YAML."""
-        return reports.as_yaml(self.__tree, self.__authorities)
+        return _reports.as_yaml(self.__tree, self.__authorities)
 
     def _allFramesAsDot(self, time: Any = None) -> str:
-        return reports.as_dot(self.__tree, self.__authorities, 0 if time is None else to_ns(time))
+        return _reports.as_dot(self.__tree, self.__authorities, 0 if time is None else to_ns(time))
 
     def _chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str

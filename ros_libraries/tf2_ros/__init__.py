@@ -24,7 +24,7 @@ from tf2_py import (
     TransformException,
 )
 
-from tf2_ros.buffer import Buffer
+from tf2_ros.buffer import DEFAULT_CAN_TRANSFORM_POLLING_SCALE, Buffer
 from tf2_ros.buffer_interface import (
     BufferInterface,
     ConvertRegistration,
@@ -43,6 +43,7 @@ if TYPE_CHECKING:
     from tf2_ros.buffer_server import BufferServer
 
 __all__ = [
+    "DEFAULT_CAN_TRANSFORM_POLLING_SCALE",
     "Buffer",
     "BufferClient",
     "BufferCore",

@@ -12,7 +12,7 @@ import rospy
 from tf2_msgs.srv import FrameGraph, FrameGraphResponse
 from tf2_py import BufferCore
 
-from tf2_ros.buffer_interface import NO_WAIT, BufferInterface
+from tf2_ros.buffer_interface import _NO_WAIT, BufferInterface
 
 DEFAULT_CAN_TRANSFORM_POLLING_SCALE = 0.01
 _BIG_JUMP = rospy.Duration(3.0)  # of the clock backwards, after which waiting makes no sense
@@ -42,7 +42,7 @@ class Buffer(BufferCore, BufferInterface):
     def __frames(self, request: Any) -> Any:
         return FrameGraphResponse(self.all_frames_as_yaml())
 
-    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
+    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = _NO_WAIT) -> Any:
         """Return the transform that takes coordinates in the source frame to the target frame.
 
         Args:
@@ -58,7 +58,7 @@ class Buffer(BufferCore, BufferInterface):
             LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not
                 available.
         """
-        if timeout != NO_WAIT:
+        if timeout != _NO_WAIT:
             self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -69,7 +69,7 @@ class Buffer(BufferCore, BufferInterface):
         source_frame: str,
         source_time: Any,
         fixed_frame: str,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
     ) -> Any:
         """Return the transform from the source frame at one time to the target frame at another.
 
@@ -88,7 +88,7 @@ class Buffer(BufferCore, BufferInterface):
             LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: as
                 `lookup_transform`.
         """
-        if timeout != NO_WAIT:
+        if timeout != _NO_WAIT:
             self.can_transform_full(target_frame, target_time, source_frame, source_time, fixed_frame, timeout)
         return self.lookup_transform_full_core(target_frame, target_time, source_frame, source_time, fixed_frame)
 
@@ -97,7 +97,7 @@ class Buffer(BufferCore, BufferInterface):
         target_frame: str,
         source_frame: str,
         time: Any,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether `lookup_transform` would succeed.
@@ -126,7 +126,7 @@ class Buffer(BufferCore, BufferInterface):
         source_frame: str,
         source_time: Any,
         fixed_frame: str,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
         return_debug_tuple: bool = False,
     ) -> Any:
         """Return whether `lookup_transform_full` would succeed.
@@ -142,7 +142,7 @@ class Buffer(BufferCore, BufferInterface):
 
     def __wait(self, ask: Callable[[], tuple[int, str]], timeout: Any) -> tuple[int, str]:
         """Ask again and again until the answer is yes or the time is over."""
-        if timeout == NO_WAIT:
+        if timeout == _NO_WAIT:
             return ask()
         start = rospy.Time.now()
         pause = timeout * self.CAN_TRANSFORM_POLLING_SCALE

@@ -20,7 +20,7 @@ from tf2_py import (
     TransformException,
 )
 
-from tf2_ros.buffer_interface import NO_WAIT, BufferInterface
+from tf2_ros.buffer_interface import _NO_WAIT, BufferInterface
 
 _EXCEPTIONS: dict[int, type[TransformException]] = {
     TF2Error.LOOKUP_ERROR: LookupException,
@@ -30,6 +30,7 @@ _EXCEPTIONS: dict[int, type[TransformException]] = {
     TF2Error.TIMEOUT_ERROR: TimeoutException,
 }
 _GOAL = "The LookupTransform goal sent to the BufferServer did not come back"
+_PADDING = rospy.Duration(2)
 _WRONG = "Something is likely wrong with the server"
 
 
@@ -42,14 +43,14 @@ class BufferClient(BufferInterface):
         timeout_padding: how much longer than the server to wait, a rospy.Duration.
     """
 
-    def __init__(self, ns: str, check_frequency: Any = None, timeout_padding: Any = None) -> None:
+    def __init__(self, ns: str, check_frequency: Any = None, timeout_padding: Any = _PADDING) -> None:
         super().__init__()
         self.client = actionlib.SimpleActionClient(ns, LookupTransformAction)
-        self.timeout_padding = rospy.Duration(2) if timeout_padding is None else timeout_padding
+        self.timeout_padding = timeout_padding
         if check_frequency is not None:
             rospy.logwarn("Argument check_frequency is deprecated and should not be used.")
 
-    def wait_for_server(self, timeout: Any = NO_WAIT) -> Any:
+    def wait_for_server(self, timeout: Any = _NO_WAIT) -> Any:
         """Wait until the server is available.
 
         Args:
@@ -60,7 +61,7 @@ class BufferClient(BufferInterface):
         """
         return self.client.wait_for_server(timeout)
 
-    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
+    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = _NO_WAIT) -> Any:
         """Return the transform as `tf2_ros.Buffer.lookup_transform` does.
 
         Raises:
@@ -83,7 +84,7 @@ class BufferClient(BufferInterface):
         source_frame: str,
         source_time: Any,
         fixed_frame: str,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
     ) -> Any:
         """Return the transform as `tf2_ros.Buffer.lookup_transform_full` does.
 
@@ -101,7 +102,7 @@ class BufferClient(BufferInterface):
             )
         )
 
-    def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> bool:
+    def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = _NO_WAIT) -> bool:
         """Return whether `lookup_transform` succeeds."""
         try:
             self.lookup_transform(target_frame, source_frame, time, timeout)
@@ -116,7 +117,7 @@ class BufferClient(BufferInterface):
         source_frame: str,
         source_time: Any,
         fixed_frame: str,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
     ) -> bool:
         """Return whether `lookup_transform_full` succeeds."""
         try:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import rospy
 from std_msgs.msg import Header
 
-NO_WAIT = rospy.Duration(0.0)
+_NO_WAIT = rospy.Duration(0.0)
 
 
 class TypeException(Exception):
@@ -128,7 +128,7 @@ class BufferInterface:
     def __init__(self) -> None:
         self.registration = TransformRegistration()
 
-    def transform(self, object_stamped: Any, target_frame: str, timeout: Any = NO_WAIT, new_type: Any = None) -> Any:
+    def transform(self, object_stamped: Any, target_frame: str, timeout: Any = _NO_WAIT, new_type: Any = None) -> Any:
         """Return stamped data as seen from another frame.
 
         Args:
@@ -152,7 +152,7 @@ class BufferInterface:
         target_frame: str,
         target_time: Any,
         fixed_frame: str,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
         new_type: Any = None,
     ) -> Any:
         """Return stamped data as seen from another frame at another time.
@@ -177,7 +177,7 @@ class BufferInterface:
         found = apply(object_stamped, between)
         return convert(found, new_type) if new_type else found
 
-    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
+    def lookup_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = _NO_WAIT) -> Any:
         """Return the transform between two frames. A subclass implements it."""
         raise NotImplementedException
 
@@ -188,12 +188,12 @@ class BufferInterface:
         source_frame: str,
         source_time: Any,
         fixed_frame: str,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
     ) -> Any:
         """Return the transform between two frames at different times. A subclass implements it."""
         raise NotImplementedException
 
-    def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = NO_WAIT) -> Any:
+    def can_transform(self, target_frame: str, source_frame: str, time: Any, timeout: Any = _NO_WAIT) -> Any:
         """Return whether `lookup_transform` would succeed. A subclass implements it."""
         raise NotImplementedException
 
@@ -204,7 +204,7 @@ class BufferInterface:
         source_frame: str,
         source_time: Any,
         fixed_frame: str,
-        timeout: Any = NO_WAIT,
+        timeout: Any = _NO_WAIT,
     ) -> Any:
         """Return whether `lookup_transform_full` would succeed. A subclass implements it."""
         raise NotImplementedException

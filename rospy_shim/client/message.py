@@ -55,9 +55,9 @@ class AnyMsg(Message):
         octets = self.__pack__()
         buff.write(octets)
 
-    def deserialize(self, str_: bytes) -> AnyMsg:
+    def deserialize(self, str: bytes) -> AnyMsg:
         """Take the bytes."""
-        self._buff = str_
+        self._buff = str
         return self
 
 

@@ -6,13 +6,15 @@ They are made by name when a node first imports them, from the node's own functi
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.nodes import imported
 from rospy_shim.client import link, logs, message, params, service, subscription, timer, topic_side, topics
+from rospy_shim.library_parts import shown_names
 from rospy_shim.master import make_get_master, make_master_proxy
 from rospy_shim.types import exceptions, genpy, names
 
@@ -384,11 +386,19 @@ class RosModules:
         elif part == "names":
             late = {name: partial(self._graph_name, name) for name in _GRAPH_NAMES}
             live = {"_mappings": (self._node.names, "_mappings"), "_resolved_mappings": (self._node.names, "_resolved")}
-        module = RosModule(f"rospy.{part}", self._tables[part](), late, live)
+        ready = self._tables[part]()
+        late = {**self._imports(f"rospy.{part}", {*ready, *live}), **late}
+        module = RosModule(f"rospy.{part}", ready, late, live)
         if part == "impl":
             module.__path__ = []
             module._late.update(self._submodules_of_impl())
         return module
+
+    def _imports(self, module: str, known: Container[str]) -> Makers:
+        """Return the names that a module has because the original imports them, without those that are known."""
+        load = self._node.universe.importer.load
+        shown = (shown_names(module) or {}).items()
+        return {name: partial(imported, home, load, module) for name, home in shown if home and name not in known}
 
     def _core_tool(self, name: str) -> Any:
         return getattr(self._node.universe.importer.load("rospy.impl._core"), name)

@@ -125,7 +125,7 @@ class Node:
         self.universe.name = self.names.name.lstrip("/")
         self.graph.register_node(self)
         for service in self.services:
-            service.connect()
+            service.__connect__()
         for link in list(self.links.values()):
             link.connect()
         for subscription in list(self.subscriptions.values()):
@@ -147,7 +147,7 @@ class Node:
         self.leave_graph()
         for holder in holders:
             try:
-                holder.give_back()
+                holder.__give_back__()
             except CfeError:
                 pass  # ES has cleaned up before
 

@@ -201,7 +201,6 @@ class Service:
         self.service_class = service_class
         self.request_class = service_class._request_class
         self.response_class = service_class._response_class
-        self.type = service_class._type
         self.handler = handler
         self.buff_size = buff_size
         if error_handler is not None:
@@ -220,21 +219,16 @@ class Service:
         if any(each.resolved_name == self.resolved_name for each in node.services):
             raise ServiceException(f"service [{self.resolved_name}] already registered")
         if node.initialized:
-            self.connect()
+            self.__connect__()
         node.services.append(self)
 
-    def connect(self) -> None:
+    def __connect__(self) -> None:
         """Offer the service when the node is initialised, unless the master refuses its name."""
         self.__refused = self.__node__.is_refused("service", self.resolved_name, "service")
         if not self.__refused:
             self.__entry = self.__node__.graph.register_service(self)
             if not self.__is_quiet__:
                 self.__begin()
-
-    @property
-    def node(self) -> Node:
-        """The node that offers it."""
-        return self.__node__
 
     def __begin(self) -> None:
         name = self.__node__.task_name(self.resolved_name)
@@ -248,9 +242,9 @@ class Service:
             self.__pipe = bus.create_pipe(depth, name)
             bus.subscribe_ex(self.__entry.request_id, self.__pipe, 0, depth)
 
-    def error_handler(self, error: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
+    def error_handler(self, e: Exception, exc_type: Any, exc_value: Any, tb: Any) -> None:
         """Log an exception in the handler; the traceback is a list in brackets, as in rospy."""
-        self.__node__.logs.logerr("Error processing request: %s\n%s", error, traceback_parts(error))
+        self.__node__.logs.logerr("Error processing request: %s\n%s", e, traceback_parts(e))
 
     def shutdown(self, reason: str = "") -> None:
         """Stop offering the service. A handler that runs still answers its caller; requests that wait get an error."""
@@ -280,13 +274,13 @@ class Service:
 
     # -- in its tasks ------------------------------------------------------------------------------------------------
 
-    def attend(self) -> None:
+    def __attend__(self) -> None:
         """Provide a free task for a waiting request."""
         if self.__busy >= self.__tasks and not self.__done:
             self.__tasks += 1
             self.__node__.start_task(self.resolved_name, self.__help)
 
-    def has_room(self, packet: bytes) -> bool:
+    def __has_room__(self, packet: bytes) -> bool:
         """Return True if a packet of a request may be sent; False before the first task has made the pipe."""
         pipe = self.__node__.cfe.sb.find_pipe(self.__pipe)
         return pipe is not None and len(pipe.items) < room_of(pipe, packet)
@@ -295,7 +289,7 @@ class Service:
         """Serve as the first task, as long as the service is offered."""
         self.__tasks += 1
         self.__work(FOREVER_MS)
-        self.give_back()
+        self.__give_back__()
 
     def __help(self) -> None:
         """Serve as a further task until no request waits."""
@@ -321,9 +315,9 @@ class Service:
     def __attend_waiting(self) -> None:
         pipe = self.__node__.cfe.sb.find_pipe(self.__pipe)
         if pipe is not None and pipe.items:
-            self.attend()
+            self.__attend__()
 
-    def give_back(self) -> None:
+    def __give_back__(self) -> None:
         """Delete the pipe."""
         pipe, self.__pipe = self.__pipe, NO_PIPE
         if pipe != NO_PIPE and self.__node__.cfe.sb.find_pipe(pipe) is not None:

@@ -157,7 +157,7 @@ class ServiceProxy:
             raise ServiceException(f"service [{self.resolved_name}] responded with an error: {answer!r}")
         response = self.__read(answer)
         response._connection_header = {
-            "callerid": entry.service.node.names.name,
+            "callerid": entry.service.__node__.names.name,
             "md5sum": self.service_class._md5sum,
             "service": self.resolved_name,
             "type": self.service_class._type,
@@ -252,13 +252,13 @@ class ServiceProxy:
     def __send(self, entry: ServiceEntry, number: int, body: bytes) -> None:
         bus = self.__node__.cfe.sb
         for packet in request_packets(entry.request_id, number, body, bus.config.sb_max_msg_size):
-            while not entry.service.has_room(packet):
+            while not entry.service.__has_room__(packet):
                 if (error := self.__end(entry, number)) is not None:
                     raise error
-                entry.service.attend()
+                entry.service.__attend__()
                 self.__node__.kernel.delay(PACE_NS)
             bus.transmit_msg(packet)
-            entry.service.attend()
+            entry.service.__attend__()
 
     def __await(self, entry: ServiceEntry, number: int, pipe: int) -> tuple[bool, bytes]:
         receive, pieces = self.__node__.cfe.sb.receive_buffer, Pieces(ANSWER_LEAD)

@@ -396,7 +396,7 @@ class Subscription(TopicSide):
             if self._pipe != NO_PIPE:
                 self.node.logs.logerr("subscription of %s ends: %s", self.name, error)
         finally:
-            self.give_back()
+            self.__give_back__()
 
     def _take_latched(self, topic: TopicEntry) -> None:
         """Take latched messages as a new subscriber in ROS does: of all earlier messages, only the last counts."""
@@ -408,7 +408,7 @@ class Subscription(TopicSide):
             for link in at_once:
                 link.give_latched(self)
 
-    def give_back(self) -> None:
+    def __give_back__(self) -> None:
         """Delete the pipe."""
         pipe, self._pipe = self._pipe, NO_PIPE
         if pipe != NO_PIPE and self._bus.find_pipe(pipe) is not None:

@@ -7,7 +7,7 @@ and nodes can join it (rospy.timer).
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from cfepy.units import NS_PER_S
 from rospy_shim.client.rostime import Duration, Time
@@ -17,17 +17,22 @@ if TYPE_CHECKING:
     from rospy_shim.client.node import Node
 
 
-class TimerEvent(NamedTuple):
+class TimerEvent:
     """The argument of a timer's callback; the three `last_` values are None the first time."""
 
-    last_expected: Time | None
-    last_real: Time | None
-    current_expected: Time
-    current_real: Time
-    last_duration: float | None
+    __module__ = "rospy.timer"
 
-
-TimerEvent.__module__ = "rospy.timer"
+    def __init__(
+        self,
+        last_expected: Time | None,
+        last_real: Time | None,
+        current_expected: Time,
+        current_real: Time,
+        last_duration: float | None,
+    ) -> None:
+        self.last_expected, self.last_real = last_expected, last_real
+        self.current_expected, self.current_real = current_expected, current_real
+        self.last_duration = last_duration
 
 
 def make_timer(node: Node) -> type:

@@ -85,18 +85,17 @@ class CompiledService:
     """
 
     def __init__(self, node: CompiledNode, name: str, declared: DeclaredType) -> None:
-        self.node = node
+        self.__node__ = node
         self.resolved_name = name
         self.service_class = declared
-        self.type = declared._type
         self.uri = f"rosrpc://cfepy:{node.pid}"
 
-    def has_room(self, packet: bytes) -> bool:
+    def __has_room__(self, packet: bytes) -> bool:
         """Return True if a packet of a request may be sent."""
-        pipe = self.node.bus.find_pipe(self.node.pipe)
+        pipe = self.__node__.bus.find_pipe(self.__node__.pipe)
         return pipe is not None and len(pipe.items) < room_of(pipe, packet)
 
-    def attend(self) -> None:
+    def __attend__(self) -> None:
         """Do nothing: the node takes its requests when it spins."""
 
     def shutdown(self, reason: str = "") -> None:
@@ -231,7 +230,7 @@ class CompiledNodes:
             for name in {**node.published, **node.subscribed}:
                 self._graph.topic(name).leave_compiled(node)
             services = self._graph.services
-            for name in [name for name, entry in services.items() if entry.service.node is node]:
+            for name in [name for name, entry in services.items() if entry.service.__node__ is node]:
                 del services[name]
 
     def _answer(self, body: bytes) -> bytes:
@@ -331,7 +330,7 @@ class CompiledNodes:
 
     def _serve_no_more(self, node: CompiledNode, name: str, declared: DeclaredType) -> Enrolled:
         entry = self._graph.services.get(name)
-        if entry is not None and entry.service.node is node:
+        if entry is not None and entry.service.__node__ is node:
             del self._graph.services[name]
         return Enrolled(0)
 

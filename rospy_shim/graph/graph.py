@@ -304,7 +304,7 @@ class Graph:
         """
         name = service.resolved_name
         former = self.services.get(name)
-        if former is not None and former.service.node is service.node:
+        if former is not None and former.service.__node__ is service.__node__:
             raise ServiceException(f"service [{name}] already registered")
         entry = ServiceEntry(service, self.ids)
         if former is not None:
@@ -326,11 +326,11 @@ class Graph:
         service = self.services[name].service
         if isinstance(service, CompiledService):
             for node in self.nodes.values():
-                return node, node.library.service_class(service.type)
+                return node, node.library.service_class(service.service_class._type)
             raise ServiceException(
                 f"service [{name}] of a compiled node can only be called from a node in Python, and none is running"
             )
-        return service.node, service.service_class
+        return service.__node__, service.service_class
 
     def forget_service(self, service: Service) -> None:
         """Remove a service."""

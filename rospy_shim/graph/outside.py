@@ -187,7 +187,7 @@ class OutsideGraph:
         if len(self.nodes) <= MOST_NAMES:
             return
         sides = (*self.links, *self.subscriptions)
-        offers = any(each.node.names.name == name for each in self.services.values())
+        offers = any(each.__node__.names.name == name for each in self.services.values())
         if not offers and not any(node == name for _, node in sides):
             self.nodes.pop(name, None)
 
@@ -300,18 +300,18 @@ class OutsideGraph:
 
         def send() -> None:
             for packet in packets:
-                while not entry.service.has_room(packet):
+                while not entry.service.__has_room__(packet):
                     if self._graph.services.get(service) is not entry:
                         return
-                    entry.service.attend()
+                    entry.service.__attend__()
                     self._kernel.delay(PACE_NS)
                 self._cfe.sb.transmit_msg(packet)
-                entry.service.attend()
+                entry.service.__attend__()
 
-        if all(entry.service.has_room(packet) for packet in packets):
+        if all(entry.service.__has_room__(packet) for packet in packets):
             send()
             return
-        node = self._graph.nodes.get(entry.service.node.names.name)
+        node = self._graph.nodes.get(entry.service.__node__.names.name)
         if node is not None:
             node.start_task("host", send)
         else:
@@ -377,7 +377,7 @@ class OutsideGraph:
         def take(packet: bytes) -> None:
             number = call_of_request(packet)
             body = pieces.add(number, packet)
-            way, call = self._way_to(entry.service.node.names.name), entry.calls.get(number)
+            way, call = self._way_to(entry.service.__node__.names.name), entry.calls.get(number)
             if body is not None and way is not None and call is not None:
                 way.request(service, number, call.header, body)
 
@@ -390,7 +390,7 @@ class OutsideGraph:
             entry = self._graph.services.get(service)
             if entry is not None and entry.service is made:
                 del self._graph.services[service]
-            self._forget_node(made.node.names.name)
+            self._forget_node(made.__node__.names.name)
 
     def _answer(self, service: str, number: int, good: bool, body: bytes) -> bool:
         """Send the answer of an outside service. Returns False if no call waits for it."""

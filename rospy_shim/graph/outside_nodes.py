@@ -254,7 +254,7 @@ class OutsideService(CompiledService):
         self._open = open_outlet
         self._outlet: Outlet | None = None
 
-    def has_room(self, packet: bytes) -> bool:
+    def __has_room__(self, packet: bytes) -> bool:
         """Return True: a request is passed on at once."""
         if self._outlet is None:
             self._outlet = self._open()

@@ -67,6 +67,6 @@ class CompiledApi(NodeApi):
     def getServiceHeader(self, caller: str, service: str) -> Answer:
         """Return the header that a probe of the service gets: type and md5sum."""
         entry = self._graph.services.get(service)
-        if entry is None or entry.service.node is not self._node:
+        if entry is None or entry.service.__node__ is not self._node:
             return -1, f"Not a provider of [{service}]", {}
         return 1, "service header", service_header(self._node.names.name, service, entry.service.service_class)

@@ -126,14 +126,14 @@ def make_get_master(node: Node, proxy: type[MasterProxy]) -> Callable[..., Maste
     """Make the function `rospy.get_master` of a node; all calls return the same proxy, of the node's class `proxy`."""
     made: list[MasterProxy] = []
 
-    def get_master(env: Mapping[str, str] | None = None) -> MasterProxy:
+    def get_master(env: Mapping[str, str] = node.universe.environ) -> MasterProxy:
         """Return the master that the environment names.
 
         Args:
             env: environment with ROS_MASTER_URI; the node's environment by default.
         """
         if not made:
-            uri = (node.universe.environ if env is None else env).get("ROS_MASTER_URI", "http://localhost:11311")
+            uri = env.get("ROS_MASTER_URI", "http://localhost:11311")
             made.append(proxy(uri))
         return made[0]
 

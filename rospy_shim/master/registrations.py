@@ -63,7 +63,7 @@ class Registrations:
 
     def providers(self) -> Entries:
         """Return offered services, and their nodes."""
-        pairs = ((name, entry.service.node) for name, entry in self._graph.services.items())
+        pairs = ((name, entry.service.__node__) for name, entry in self._graph.services.items())
         return {**self._providers, **self._of_nodes(pairs)}
 
     def topic_types(self) -> dict[str, str]:
@@ -156,7 +156,7 @@ class Registrations:
     def unregister_service(self, service: str, caller: str) -> None:
         """Remove a service."""
         entry = self._graph.services.get(service)
-        if entry is not None and entry.service.node.names.name == caller:
+        if entry is not None and entry.service.__node__.names.name == caller:
             entry.service.shutdown("unregistered at the master")
         self._leave(self._providers, service, caller, None)
         self._service_uris.pop(service, None)

@@ -59,12 +59,13 @@ def test_colors(bridge: Any, package: Any) -> None:
     assert bridge.imgmsg_to_cv2(message, "mono8").tolist() == [[76, 10, 150], [29, 255, 0]]
     with_alpha = bridge.imgmsg_to_cv2(message, "bgra8")
     assert (with_alpha[..., 3] == 255).all()
-    assert (package.cvtColor2(with_alpha, "bgra8", "rgb8") == PICTURE).all()
+    assert (package.boost.cv_bridge_boost.cvtColor2(with_alpha, "bgra8", "rgb8") == PICTURE).all()
     gray = np.array([[0, 7]], dtype=np.uint8)
-    assert package.cvtColor2(gray, "mono8", "rgb8").tolist() == [[[0, 0, 0], [7, 7, 7]]]
-    assert package.cvtColor2(gray, "mono8", "mono16").tolist() == [[0, 7 * 257]]
-    assert package.cvtColor2(np.array([[65535, 300]], np.uint16), "mono16", "mono8").tolist() == [[255, 1]]
-    assert package.cvtColor2(gray, "mono8", "8UC1").tolist() == [[0, 7]]
+    convert = package.boost.cv_bridge_boost.cvtColor2
+    assert convert(gray, "mono8", "rgb8").tolist() == [[[0, 0, 0], [7, 7, 7]]]
+    assert convert(gray, "mono8", "mono16").tolist() == [[0, 7 * 257]]
+    assert convert(np.array([[65535, 300]], np.uint16), "mono16", "mono8").tolist() == [[255, 1]]
+    assert convert(gray, "mono8", "8UC1").tolist() == [[0, 7]]
 
 
 def test_for_display(package: Any) -> None:
@@ -123,5 +124,5 @@ def test_with_opencv() -> None:
     assert packed.format == "png"
     assert (bridge.compressed_imgmsg_to_cv2(packed) == PICTURE).all()
     assert (bridge.compressed_imgmsg_to_cv2(packed, "rgb8") == PICTURE[..., ::-1]).all()
-    assert package.cvtColor2(PICTURE[..., 0], "bayer_rggb8", "rgba8").shape == (2, 3, 4)
-    assert (package.cvtColor2(PICTURE[..., :2], "yuv422", "mono8") == PICTURE[..., 1]).all()
+    assert package.boost.cv_bridge_boost.cvtColor2(PICTURE[..., 0], "bayer_rggb8", "rgba8").shape == (2, 3, 4)
+    assert (package.boost.cv_bridge_boost.cvtColor2(PICTURE[..., :2], "yuv422", "mono8") == PICTURE[..., 1]).all()

@@ -145,7 +145,7 @@ def test_module_of_a_configuration(tmp_path: Path) -> None:
 def test_script_that_generates_another_name(tmp_path: Path) -> None:
     script = tmp_path / "Arm.cfg"
     script.write_text(CFG, encoding="utf-8")
-    contents_of = universe().importer.load("dynamic_reconfigure.cfg_script").contents_of
+    contents_of = universe().importer.load("dynamic_reconfigure._cfg_script").contents_of
     with pytest.raises(ImportError, match=r"Arm\.cfg did not call generate"):
         contents_of(str(script), "Arm")
 

@@ -7,8 +7,8 @@ from pathlib import Path
 from rospy_shim.types.config import NodeConfig
 from tests.rospy_shim.missions import Run, run_nodes
 
-RECORD = "from rosbag.record import main\nmain()\n"
-PLAY = "from rosbag.play import main\nmain()\n"
+RECORD = "from rosbag._record import main\nmain()\n"
+PLAY = "from rosbag._play import main\nmain()\n"
 TALKS = """
     import rospy
     from std_msgs.msg import String

@@ -63,7 +63,7 @@ def test_statistics(tmp_path: Path) -> None:
         from geometry_msgs.msg import PointStamped
         rospy.init_node("tool")
         rates, delays, counted = rostopic.ROSTopicHz(20), rostopic.ROSTopicDelay(-1), rostopic.ROSTopicBandwidth()
-        print(rates.get_hz(), delays.get_delay(), counted.get_bw())
+        print(rates.get_hz(), delays.get_delay(), counted._get_bw())
         rospy.Subscriber("/points", PointStamped, rates.callback_hz)
         rospy.Subscriber("/points", PointStamped, rates.callback_hz, callback_args="/points")
         rospy.Subscriber("/points", PointStamped, delays.callback_delay)

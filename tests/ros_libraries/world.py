@@ -9,13 +9,13 @@ from typing import Any
 from cfepy.nodes import Universe
 from cfepy.rtos import Kernel
 from rospy_shim.client import rostime
-from rospy_shim.library_parts import FOLDER, library_names
+from rospy_shim.library_parts import FOLDER, library_names, shown_names
 from rospy_shim.types.msgs import make_module
 
 
 def universe() -> Universe:
     """Return a fresh universe. `universe().importer.load(name)` is an import in it."""
-    return Universe(Kernel(), name="node", library_paths=[FOLDER], find_module=_find)
+    return Universe(Kernel(), name="node", library_paths=[FOLDER], find_module=_find, shown_names=shown_names)
 
 
 def _find(name: str) -> Callable[[Any], ModuleType] | None:

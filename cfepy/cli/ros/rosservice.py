@@ -49,7 +49,13 @@ def _services(arguments: argparse.Namespace) -> dict[str, dict[str, Any]]:
 def _described(name: str, service: Any, near: Path) -> dict[str, Any]:
     kind = service.service_class
     fields = _arguments(kind, near)
-    return {"service": name, "node": service.node.names.name, "uri": service.uri, "type": kind._type, "args": fields}
+    return {
+        "service": name,
+        "node": service.__node__.names.name,
+        "uri": service.uri,
+        "type": kind._type,
+        "args": fields,
+    }
 
 
 def _arguments(kind: Any, near: Path) -> list[str]:

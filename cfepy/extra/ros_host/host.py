@@ -343,7 +343,7 @@ class RosHost:
         """Return the connection header of a service of the mission, or None if the node does not offer it."""
         assert self.ros is not None
         entry = self.ros.graph.services.get(service)
-        if entry is None or entry.service.node.names.name != name:
+        if entry is None or entry.service.__node__.names.name != name:
             return None
         kind = entry.service.service_class
         return {"callerid": name, "md5sum": kind._md5sum, "service": service, "type": kind._type}

@@ -182,7 +182,7 @@ def _offers(mission: Mission) -> Iterator[Offer]:
     if mission.ros is None:
         return
     for name, entry in sorted(mission.ros.graph.services.items()):
-        yield Offer(name, entry.service.service_class._type, entry.service.node.names.name, "service")
+        yield Offer(name, entry.service.service_class._type, entry.service.__node__.names.name, "service")
     for row in mission.ros.topics():
         if row.name.endswith("/goal") and row.type.endswith(_GOAL):
             for server in row.subscribers:

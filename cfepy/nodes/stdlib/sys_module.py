@@ -11,7 +11,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes.made_modules import made, proxy
+from cfepy.nodes.made_modules import proxy
 from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.nodes.ordered_sets import SET_NAME, OrderedSet
 
@@ -49,7 +49,30 @@ def io_module(universe: Universe) -> ModuleType:
     return proxy(io, open=open_file, open_code=lambda path: open_file(path, "rb"), FileIO=universe.files.raw_type)
 
 
-def builtins_module(universe: Universe, ordered_sets: bool) -> ModuleType:
+class Builtins(ModuleType):
+    """The module `builtins` of a universe."""
+
+    def __init__(self) -> None:
+        super().__init__("builtins")
+        vars(self)["__copies__"] = []
+
+    def copy_for_library(self) -> dict[str, Any]:
+        """Return a copy for a module of a library, which gets more names. It follows later changes by the node."""
+        known = vars(self)
+        copied = dict(known)
+        known["__copies__"].append(copied)
+        return copied
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        known = vars(self)
+        before = known.get(name)
+        for each in known["__copies__"]:
+            if each.get(name) is before:
+                each[name] = value
+        super().__setattr__(name, value)
+
+
+def builtins_module(universe: Universe, ordered_sets: bool) -> Builtins:
     """Return the module `builtins` of a universe; its dictionary is the `__builtins__` of the node's code."""
     streams = universe.importer.modules
 
@@ -66,7 +89,7 @@ def builtins_module(universe: Universe, ordered_sets: bool) -> ModuleType:
     def leave(code: object = None) -> None:
         raise SystemExit(code)
 
-    module = made("builtins")
+    module = Builtins()
     vars(module).update(vars(builtins))
     vars(module).update(
         __import__=universe.importer.import_name,

@@ -5,13 +5,13 @@ Angles are in rad. Decompositions of matrices use eigenvectors, with the signs t
 
 from __future__ import annotations
 
-from tf.transformations.arcball import (
+from tf.transformations._arcball import (
     Arcball,
     arcball_constrain_to_axis,
     arcball_map_to_sphere,
     arcball_nearest_axis,
 )
-from tf.transformations.composition import (
+from tf.transformations._composition import (
     compose_matrix,
     concatenate_matrices,
     decompose_matrix,
@@ -20,13 +20,13 @@ from tf.transformations.composition import (
     orthogonalization_matrix,
     superimposition_matrix,
 )
-from tf.transformations.euler import (
+from tf.transformations._euler import (
     euler_from_matrix,
     euler_from_quaternion,
     euler_matrix,
     quaternion_from_euler,
 )
-from tf.transformations.matrices import (
+from tf.transformations._matrices import (
     identity_matrix,
     reflection_from_matrix,
     reflection_matrix,
@@ -39,8 +39,8 @@ from tf.transformations.matrices import (
     translation_from_matrix,
     translation_matrix,
 )
-from tf.transformations.projections import clip_matrix, projection_from_matrix, projection_matrix
-from tf.transformations.quaternions import (
+from tf.transformations._projections import clip_matrix, projection_from_matrix, projection_matrix
+from tf.transformations._quaternions import (
     quaternion_about_axis,
     quaternion_conjugate,
     quaternion_from_matrix,
@@ -51,7 +51,7 @@ from tf.transformations.quaternions import (
     random_quaternion,
     random_rotation_matrix,
 )
-from tf.transformations.vectors import random_vector, unit_vector, vector_norm
+from tf.transformations._vectors import random_vector, unit_vector, vector_norm
 
 __all__ = [
     "Arcball",

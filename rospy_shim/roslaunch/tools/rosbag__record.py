@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from rosbag import record
+from rosbag import _record
 
-record.main()
+_record.main()

@@ -6,10 +6,10 @@ import functools
 import logging
 import os
 import traceback
+import urllib.parse as urlparse
 from collections.abc import Callable, Sequence
 from hashlib import md5
 from typing import Any
-from urllib.parse import urlparse
 from xmlrpc.client import ServerProxy
 
 from rospy.core import MASTER_NAME, ROSRPC, get_node_uri
@@ -54,7 +54,7 @@ def is_publishers_list(paramName: str) -> Callable[[Any, str], Any]:
         for each in value:
             if not isinstance(each, str):
                 raise ParameterInvalid(f"ERROR: param [{paramName}] must be a list of strings")
-            if not all(urlparse(each)[:2]):
+            if not all(urlparse.urlparse(each)[:2]):
                 raise ParameterInvalid(f"ERROR: param [{paramName}] does not contain valid URLs [{each}]")
         return value
 

@@ -184,12 +184,21 @@ def _arrays(spec: Spec, table: TypeTable, owner: str = "") -> Iterator[str]:
 
 
 def _compile_later(cls: MessageClass, spec: Spec, names: Namespace, name: str, source: Callable[[], list[str]]) -> None:
-    def first_call(self: Message, *args: Any) -> Any:
+    def compiled() -> Callable[..., Any]:
         function = _function(spec, names, source(), name)
         setattr(cls, name, function)
-        return function(self, *args)
+        return function
 
-    setattr(cls, name, first_call)
+    def first_call(self: Message, *args: Any) -> Any:
+        return compiled()(self, *args)
+
+    def deserialize(self: Message, str: bytes) -> Any:
+        return compiled()(self, str)
+
+    def deserialize_numpy(self: Message, str: bytes, numpy: Any) -> Any:
+        return compiled()(self, str, numpy)
+
+    setattr(cls, name, {"deserialize": deserialize, "deserialize_numpy": deserialize_numpy}.get(name, first_call))
 
 
 def _constructor(spec: Spec, table: TypeTable, names: Namespace) -> Callable[..., Any]:

@@ -69,7 +69,8 @@ class MessageModule(ModuleType):
         return made
 
     def __dir__(self) -> list[str]:
-        return sorted({*self.__dict__, *self._cfepy_names})
+        whole = self.__all__ if "__all__" in self._cfepy_makers else self._cfepy_names
+        return sorted({*self.__dict__, *whole})
 
 
 def make_module(name: str, library: Library | None = None) -> ModuleType | None:
@@ -187,7 +188,7 @@ def isstring(s: object) -> bool:
 
 
 def _finder(library: Library, kind: Kind) -> Callable[..., Any]:
-    def find(type_name: str, reload_on_error: bool = False) -> Any:
+    def class_of(type_name: str) -> Any:
         """Return the class of a message or service type, or None if there is no such type.
 
         Raises:
@@ -204,8 +205,15 @@ def _finder(library: Library, kind: Kind) -> Callable[..., Any]:
             return None
         return library.message_class(type_name) if kind == "msg" else library.service_class(type_name)
 
-    find.__name__ = find.__qualname__ = "get_message_class" if kind == "msg" else "get_service_class"
-    return find
+    def get_message_class(message_type: str, reload_on_error: bool = False) -> Any:
+        return class_of(message_type)
+
+    def get_service_class(service_type: str, reload_on_error: bool = False) -> Any:
+        return class_of(service_type)
+
+    found = get_message_class if kind == "msg" else get_service_class
+    found.__qualname__, found.__module__ = found.__name__, "genpy.message"
+    return found
 
 
 def generate_dynamic(core_type: str, msg_cat: str) -> dict[str, Any]:

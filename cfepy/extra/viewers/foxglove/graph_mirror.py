@@ -196,7 +196,7 @@ class GraphMirror:
             published[name] += [node.names.name for node in entry.compiled_publishers]
             subscribed[name] = [each.node.names.name for each in entry.subscriptions]
             subscribed[name] += [node.names.name for node in entry.compiled_subscribers]
-        services = {name: [entry.service.node.names.name] for name, entry in list(graph.services.items())}
+        services = {name: [entry.service.__node__.names.name] for name, entry in list(graph.services.items())}
         found: Graph = (published, subscribed, services)
         if found != self._told:
             self._told = found

@@ -1,0 +1,1 @@
+"""The package of cv_bridge's extension module."""
