@@ -131,9 +131,7 @@ class ClientGoalHandle:
 
     def cancel(self) -> None:
         """Ask the server to cancel this goal."""
-        machine = self.comm_state_machine
-        if machine is None:
-            raise AttributeError("an inactive ClientGoalHandle has no goal to cancel")
+        machine: Any = self.comm_state_machine  # without one, AttributeError as in ROS
         with machine.mutex:
             machine.send_cancel_fn(GoalID(stamp=rospy.Time(0), id=machine.action_goal.goal_id.id))
             machine.transition_to(CommState.WAITING_FOR_CANCEL_ACK)

@@ -127,7 +127,7 @@ class ActionClient:
         self.feedback_sub = self.__subscriber("feedback", self.ActionFeedback, self.manager.update_feedbacks)
 
     def __publisher(self, topic: str, kind: Any) -> Any:
-        return rospy.Publisher(f"{rospy.remap_name(self.ns)}/{topic}", kind, queue_size=self.pub_queue_size)
+        return rospy.Publisher(rospy.remap_name(self.ns) + f"/{topic}", kind, queue_size=self.pub_queue_size)
 
     def __subscriber(self, topic: str, kind: Any, callback: Callable[[Any], object]) -> Any:
         name = f"{rospy.remap_name(self.ns)}/{topic}"

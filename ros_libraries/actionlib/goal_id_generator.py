@@ -28,4 +28,4 @@ class GoalIDGenerator:
     def generate_ID(self) -> Any:  # actionlib's name
         """Return a new GoalID, stamped now."""
         now = rospy.Time.now()
-        return GoalID(id=f"{self.name}-{next(_goal_numbers)}-{now.secs}.{now.nsecs}", stamp=now)
+        return GoalID(id=self.name + f"-{next(_goal_numbers)}-{now.secs}.{now.nsecs}", stamp=now)

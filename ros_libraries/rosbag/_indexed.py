@@ -12,10 +12,15 @@ from ._search import Filter
 
 
 class Indexed:
-    """The index of a `Bag`. `_connection_indexes_read` is true if the positions of messages have been read."""
+    """The index of a `Bag`.
+
+    `_connection_indexes_read` is true if the positions of messages have been read from the file. As in ROS, a bag that
+    is written or was indexed anew knows them already (`__knows_entries__`), and then has each of them twice.
+    """
 
     __storage__: BagFile
     _connection_indexes_read: bool
+    __knows_entries__: bool
 
     def flush(self) -> None:
         """See `Bag.flush`."""
@@ -26,7 +31,10 @@ class Indexed:
         self.flush()
         if not self._connection_indexes_read:
             self._connection_indexes_read = True
-            self.__storage__.read_entries()
+            if self.__knows_entries__:
+                self.__storage__.contents.double()
+            else:
+                self.__storage__.read_entries()
         return self.__storage__.contents
 
     def __all_chunks__(self) -> list[Chunk]:

@@ -34,29 +34,29 @@ def connections(
 
 def _canonical(topic: str) -> str:
     """Without a slash at the end, and none twice (roslib.names.canonicalize_name)."""
-    lead = "/" if topic.startswith("/") else ""
+    lead = "/" if topic[0] == "/" else ""
     return lead + "/".join(part for part in topic.split("/") if part)
 
 
 def entries(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: Any) -> Iterator[Entry]:
     """Yield the entries of connections (None: of all) from one time to another, both included, None without limit."""
     contents = bag.__contents__()
-    first = start.to_nsec() if start else None
-    last_ns = end.to_nsec() if end else None
     for entry in contents.entries(list(contents.connections.values() if chosen is None else chosen)):
-        if first is not None and entry.time < first:
+        time = genpy.Time(0, entry.time) if start or end else genpy.Time()
+        if start and time < start:
             continue
-        if last_ns is not None and entry.time > last_ns:
+        if end and time > end:
             return
         yield entry
 
 
 def message_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[str, str]]]:
     """Return a message's bytes, and a function that makes its connection header."""
+    kind = message.__class__
+    type_name = kind._type  # before the message is serialized, as in ROS
     buffer = io.BytesIO()
     message.serialize(buffer)
-    kind = message.__class__
-    return buffer.getvalue(), lambda: _header(topic, kind._type, kind._md5sum, message._full_text)
+    return buffer.getvalue(), lambda: _header(topic, type_name, kind._md5sum, message._full_text)
 
 
 def raw_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[str, str]]]:

@@ -59,7 +59,7 @@ class Bag(Indexed):
     """A bag.
 
     Args:
-        f: name of the file, or a seekable binary stream.
+        f: name of the file, or an open binary file.
         mode: "r" to read, "w" to write a new one, "a" to append to one.
         compression: compression of written chunks; see `Compression`.
         chunk_threshold: size in bytes, without compression, at which a chunk ends.
@@ -98,10 +98,13 @@ class Bag(Indexed):
         self._skip_index = skip_index
         self._mode = mode
         self._filename = None if isinstance(f, io.IOBase) else f
+        if self._filename is None:
+            f.mode  # noqa: B018  # a stream without it raises AttributeError, as in ROS
         self._file: Any = self.__open_file(f) if self._filename is not None else f
         self.__storage__ = opened(self._file) if mode == "r" else BagFile(self._file)
         self._topic_connections: dict[str, Connection] = {}
-        self._connection_indexes_read = True
+        self._connection_indexes_read = mode != "w"
+        self.__knows_entries__ = mode == "w"
         self.__begin(allow_unindexed)
 
     def __open_file(self, name: Any) -> Any:
@@ -290,6 +293,7 @@ class Bag(Indexed):
 
         Raises:
             ValueError: no topic, no message, or the bag is closed.
+            io.UnsupportedOperation: the bag was opened to read.
             ROSBagException: the class of a raw message is unknown.
         """
         self.__opened__()
@@ -297,15 +301,19 @@ class Bag(Indexed):
             raise ValueError("topic is invalid")
         if not msg:
             raise ValueError("msg is invalid")
+        if self._mode == "r":
+            raise io.UnsupportedOperation("write")
         if t is None:
             t = genpy.Time.from_sec(time.time())
         data, header = _search.raw_parts(topic, msg) if raw else _search.message_parts(topic, msg)
         connection = self._topic_connections.get(topic)
         if connection is None:
+            if not isinstance(topic, str | bytes):
+                topic.encode()  # AttributeError as in ROS
             made = connection_header if connection_header is not None else header()
             connection = self.__storage__.connect(topic, made, self._compression)
             self._topic_connections[topic] = connection
-        size = self.__storage__.write(connection, t.to_nsec(), data, self._compression)
+        size = self.__storage__.write(connection, t.secs * 1_000_000_000 + t.nsecs, data, self._compression)
         if size > self._chunk_threshold:
             self.flush()
 
@@ -316,10 +324,12 @@ class Bag(Indexed):
 
     def reindex(self) -> Iterator[int]:
         """Rebuild the index of a bag. Iterate over the result to do it; it yields the positions of the chunks."""
-        self.__opened__()
+        self._file.seek(0, 1)  # AttributeError if the bag is closed, as in ROS
+        self.flush()
         self._topic_connections.clear()
-        self._connection_indexes_read = True
-        return self.__storage__.reindex()
+        self._connection_indexes_read = not isinstance(self.__storage__, BagFile)
+        self.__knows_entries__ = True
+        yield from self.__storage__.reindex()
 
     def close(self) -> None:
         """Close the bag. Further calls do nothing."""

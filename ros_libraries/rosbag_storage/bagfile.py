@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 import re
+import sys
+from bisect import insort
 from collections.abc import Iterator, Mapping
-from io import BytesIO
+from io import BytesIO, UnsupportedOperation
+from operator import attrgetter
 from typing import BinaryIO, NamedTuple
 
 from . import compression, index, records, scan
 from .contents import Chunk, Connection, Contents, Entry
 from .errors import ROSBagEncryptNotSupportedException, ROSBagException, ROSBagFormatException, ROSBagUnindexedException
+
+_OVERWRITTEN = (
+    "cfepy: the bag was read after the last write, so that its index overwrites a part of it and the bag is unindexed,"
+    " as in ROS; write a message before closing it, or read it when it is closed"
+)
 
 
 class Message(NamedTuple):
@@ -38,6 +46,8 @@ class BagFile:
         self.version = 200
         self.header_pos = 0
         self._cached: tuple[int, bytes] = (-1, b"")
+        self._cached_end = 0
+        self._read_end = 0  # where the last reading ended in the file; 0 if something was written since
         self._open: OpenChunk | None = None
 
     # -- reading -----------------------------------------------------------------------------------------------------
@@ -99,11 +109,17 @@ class BagFile:
 
         Raises:
             ROSBagException: the file has no valid header.
+            UnsupportedOperation: the file cannot be written, and has no index; as in ROS the last chunk is then
+                missing.
         """
+        is_indexed = records.uint64_field(self._file_header(), "index_pos") > 0
         self._file_header()
         self.contents = Contents()
         start = self.file.tell()
         end = yield from scan.scan(self.file, self.contents, start)
+        if not is_indexed and not self.file.writable():
+            del self.contents.chunks[-1:]
+            raise UnsupportedOperation("truncate")
         if start < end < self.file.seek(0, 2) and self.file.writable():
             self.file.truncate(end)
 
@@ -133,6 +149,8 @@ class BagFile:
             self.file.seek(chunk.data_pos)
             stored = records.read(self.file, chunk.stored_size)
             self._cached = (pos, compression.decompress(chunk.compression, stored))
+            self._cached_end = self.file.tell()
+        self._read_end = self._cached_end
         return self._cached[1]
 
     # -- writing -----------------------------------------------------------------------------------------------------
@@ -184,6 +202,7 @@ class BagFile:
         Returns:
             The bytes of the chunk so far; `flush` ends it when there are enough.
         """
+        self._read_end = 0
         return self._chunk(kind).write_message(connection, time, data)
 
     def _chunk(self, kind: str) -> OpenChunk:
@@ -213,16 +232,24 @@ class BagFile:
         for number, found in made.entries.items():
             index.write_entries(self.file, number, found)
             known = self.contents.indexes.setdefault(number, [])
-            in_order = not known or known[-1].time <= found[0][0]
-            known.extend(Entry(time, chunk.pos, offset) for time, offset in found)
-            if not in_order:
-                known.sort(key=lambda entry: entry.time)
+            added = [Entry(time, chunk.pos, offset) for time, offset in found]
+            if not known or known[-1].time <= added[0].time:
+                known.extend(added)
+            else:
+                for entry in added:
+                    insort(known, entry, key=attrgetter("time"))
         self.file.flush()
 
     def finish(self) -> None:
-        """Write the index and its position, which completes the bag."""
+        """Write the index and its position, which completes the bag.
+
+        As in ROS, the index begins where the last reading ended, if there was one after the last writing.
+        """
         self.flush()
-        end = self.file.seek(0, 2)
+        end = self.file.seek(self._read_end) if self._read_end else self.file.seek(0, 2)
+        if end < self.file.seek(0, 2):
+            print(_OVERWRITTEN, file=sys.stderr)
+        self.file.seek(end)
         index.write_index(self.file, self.contents)
         self._write_file_header(end)
         self.file.flush()

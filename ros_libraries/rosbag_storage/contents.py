@@ -82,6 +82,11 @@ class Contents:
         """Return the entries of some connections, by time."""
         return heapq.merge(*(self.indexes.get(each.id, []) for each in connections), key=attrgetter("time"))
 
+    def double(self) -> None:
+        """List each entry twice, as ROS does when it reads the entries that it knows from the file."""
+        for index in self.indexes.values():
+            index += index[:]
+
     def settle(self) -> None:
         """All entries were read: put them in order, and forget connections that have no message."""
         for number, index in list(self.indexes.items()):

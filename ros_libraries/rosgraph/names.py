@@ -35,12 +35,12 @@ def isstring(s: object) -> bool:
 
 def is_global(name: str) -> bool:
     """Return whether a name begins at the root."""
-    return bool(name) and name.startswith(SEP)
+    return bool(name) and name[0] == SEP
 
 
 def is_private(name: str) -> bool:
     """Return whether a name is private to a node, `~name`."""
-    return bool(name) and name.startswith(PRIV_NAME)
+    return bool(name) and name[0] == PRIV_NAME
 
 
 def is_legal_name(name: str | None) -> bool:
@@ -70,8 +70,8 @@ def canonicalize_name(name: str) -> str:
     """Return a name without doubled or trailing slashes."""
     if not name or name == SEP:
         return name
-    plain = SEP.join(part for part in name.split(SEP) if part)
-    return SEP + plain if is_global(name) else plain
+    start = SEP if is_global(name) else ""
+    return start + SEP.join(part for part in name.split(SEP) if part)
 
 
 def namespace(name: str) -> str:
@@ -92,7 +92,7 @@ def ns_join(ns: str, name: str) -> str:
     """Return a name in a namespace. Global and private names stay unchanged."""
     if is_private(name) or is_global(name) or not ns:
         return name
-    return ns + name if ns == PRIV_NAME or ns.endswith(SEP) else ns + SEP + name
+    return ns + name if ns == PRIV_NAME or ns[-1] == SEP else ns + SEP + name
 
 
 def make_global_ns(name: str) -> str:
@@ -104,7 +104,7 @@ def make_global_ns(name: str) -> str:
     if is_private(name):
         raise ValueError(f"cannot turn [{name}] into a global name")
     name = name if is_global(name) else SEP + name
-    return name if name.endswith(SEP) else name + SEP
+    return name if name[-1] == SEP else name + SEP
 
 
 # -- a program's names -----------------------------------------------------------------------------------------------

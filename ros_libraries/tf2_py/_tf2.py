@@ -67,6 +67,7 @@ class BufferCore:
         self.__set(transform, authority, StaticCache())
 
     def __set(self, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
+        _check_texts((2, authority))
         child, parent = message.child_frame_id.removeprefix("/"), message.header.frame_id.removeprefix("/")
         stamp, rigid = to_ns(message.header.stamp), rigid_of(message.transform)
         problems = problems_of(child, parent, rigid, authority)
@@ -109,6 +110,7 @@ class BufferCore:
             LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: it is not
                 available.
         """
+        _check_texts((1, target_frame), (2, source_frame))
         return message_of(target_frame, source_frame, *self.__lookup(target_frame, source_frame, to_ns(time)))
 
     def lookup_transform_full_core(
@@ -130,7 +132,11 @@ class BufferCore:
             LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: as
                 `lookup_transform_core`.
         """
-        at_target, at_source = to_ns(target_time), to_ns(source_time)
+        _check_texts((1, target_frame))
+        at_target = to_ns(target_time)
+        _check_texts((3, source_frame))
+        at_source = to_ns(source_time)
+        _check_texts((5, fixed_frame))
         for role, name in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
             self.__validate(f"lookupTransform argument {role}_frame", name)
         _, first = self.__lookup(fixed_frame, source_frame, at_source)
@@ -155,8 +161,6 @@ class BufferCore:
         return path.time, compose((("", *compose(path.up)), ("", *back)))
 
     def __validate(self, role: str, name: str) -> None:
-        if not isinstance(name, str):
-            raise TypeError(f"{role} must be str, not {type(name).__name__}")
         problem = name_problem(role, name)
         if problem:
             raise InvalidArgumentException(problem)
@@ -167,6 +171,7 @@ class BufferCore:
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[int, str]:
         """Return whether `lookup_transform_core` would succeed: 1 or 0, and why not."""
+        _check_texts((1, target_frame), (2, source_frame))
         at = to_ns(time)
         if target_frame == source_frame:
             return 1, ""
@@ -178,7 +183,11 @@ class BufferCore:
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[int, str]:
         """Return whether `lookup_transform_full_core` would succeed: 1 or 0, and why not."""
-        at_target, at_source = to_ns(target_time), to_ns(source_time)
+        _check_texts((1, target_frame))
+        at_target = to_ns(target_time)
+        _check_texts((3, source_frame))
+        at_source = to_ns(source_time)
+        _check_texts((5, fixed_frame))
         frames = {"target_frame": target_frame, "source_frame": source_frame, "fixed_frame": fixed_frame}
         problem = self.__unknown(frames)
         if problem is not None:
@@ -210,6 +219,7 @@ class BufferCore:
             InvalidArgumentException, LookupException: a frame is unknown.
             TransformException: the frames are not connected.
         """
+        _check_texts((1, target_frame), (2, source_frame))
         self.__validate("get_latest_common_time", target_frame)
         self.__validate("get_latest_common_time", source_frame)
         try:
@@ -245,6 +255,21 @@ class BufferCore:
 
     def _getFrameStrings(self) -> list[str]:
         return list(self.__tree.caches)
+
+
+def _check_texts(*arguments: tuple[int, Any]) -> None:
+    """Refuse what is no text, as the arguments of the extension module.
+
+    Args:
+        arguments: position and value of each.
+
+    Raises:
+        TypeError: one is no text.
+    """
+    for position, value in arguments:
+        if not isinstance(value, str):
+            kind = "None" if value is None else type(value).__name__
+            raise TypeError(f"argument {position} must be str, not {kind}")
 
 
 def _report(level: str, text: str) -> None:

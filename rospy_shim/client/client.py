@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from cfepy.reading.plain_yaml import plain_yaml
 from cfepy.rtos import FOREVER, WaitList
 from rospy_shim.client.logs import LoggerServices
-from rospy_shim.client.rostime import nanoseconds
+from rospy_shim.client.rostime import limit_of
 from rospy_shim.types.exceptions import ROSException, ROSInitException, ROSInterruptException
 from rospy_shim.types.names import SEP, command_line_params, program_arguments
 
@@ -162,7 +162,7 @@ class Client:
                 kernel.wake_all(waits)
 
         begin = kernel.now
-        limit = None if timeout is None else nanoseconds(timeout)
+        limit = None if timeout != timeout else limit_of(timeout)  # nothing is later than NaN
         subscriber = self._node.Subscriber(topic, topic_type, keep)
         try:
             while not found and not life.is_shutdown():

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from cfepy.reading.texts import without_addresses
 from cfepy.units import NS_PER_S
-from rospy_shim.client.rostime import nanoseconds
+from rospy_shim.client.rostime import Duration
 from rospy_shim.client.service import make_quiet_service
 from rospy_shim.graph.msg_ids import ROSOUT
 from rospy_shim.types.exceptions import ROSException
@@ -394,7 +394,7 @@ class LoggingThrottle:
         """
         now = self._node.clock.now_ns()
         last = self.last_logging_time_table.get(caller_id)
-        if last is not None and last <= now <= last + nanoseconds(period):
+        if last is not None and last <= now <= last + Duration(period).to_nsec():
             return False
         if last is not None and last > now:
             self.last_logging_time_table.clear()

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.parsers.expat import ExpatError
 
 from cfepy.rtos import Mutex, Task
 from cfepy.status import CfeError
@@ -24,6 +25,7 @@ from rospy_shim.client.shutdown import Life
 from rospy_shim.client.subscription import Subscription
 from rospy_shim.client.timer import make_rate, make_timer
 from rospy_shim.client.topics import make_publisher, make_subscriber
+from rospy_shim.parameters.values import through_xml
 from rospy_shim.types.exceptions import ROSInitException
 from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 from rospy_shim.types.names import Names, is_legal_name, refusal
@@ -34,6 +36,10 @@ if TYPE_CHECKING:
     from rospy_shim.client.tasks import NodeTasks
     from rospy_shim.graph.graph import Graph, TopicEntry
     from rospy_shim.types.msgs import MessageClass
+
+
+NO_MASTER = "Unable to immediately register with master node [%s]: master may not be running yet. Will keep trying."
+AGAIN_NS = 200_000_000
 
 
 class Node:
@@ -67,6 +73,7 @@ class Node:
         self.call_ns = call_ns
         self.publish_slot_ns = publish_slot_ns
         self.initialized = False
+        self._is_stuck = False
         self.links: dict[str, Link] = {}
         self.handler: Any = None  # its ROSHandler, once a program of the node has loaded the class
         self.subscriptions: dict[str, Subscription] = {}
@@ -202,11 +209,24 @@ class Node:
         return None
 
     def is_refused(self, kind: str, name: str, registration: str) -> bool:
-        """Return True if the master refuses the resolved name of a "topic" or "service"; the refusal is logged."""
+        """Return True if the master refuses the resolved name of a "topic" or "service"; the refusal is logged.
+
+        XML cannot carry some characters. With one, rospy tries again until the node shuts down, and so does this; the
+        node can make no other topic meanwhile.
+        """
+        if not _fits_in_xml(name):
+            self.logs.logerr(NO_MASTER, self.universe.environ.get("ROS_MASTER_URI", ""))
+            self._is_stuck = True
+        self.wait_for_registration()
         reason = refusal(kind, name)
         if reason is not None:
             self.logs.logfatal("unable to register %s [%s] with master: %s", registration, name, reason)
         return reason is not None
+
+    def wait_for_registration(self) -> None:
+        """Wait while a name cannot be registered: until the shutdown."""
+        while self._is_stuck and not self.life.is_shutdown():
+            self.kernel.delay(AGAIN_NS)
 
     def wait_for_service(self, service: str, timeout: Any = None) -> None:
         """Wait until a node offers a service; see `rospy_shim.client.service_proxy.wait_for_service`."""
@@ -258,6 +278,14 @@ class Node:
         self.universe.stdout.write(f"shutdown request: {request}\n")
         reason = f"external shutdown request from [/master]: [{request}]"
         self.start_task("shutdown", lambda: self.life.signal_shutdown(reason))
+
+
+def _fits_in_xml(name: str) -> bool:
+    try:
+        through_xml("register", name, name)
+    except ExpatError:
+        return False
+    return True
 
 
 def _depth_of_rospy() -> int:

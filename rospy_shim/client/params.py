@@ -13,7 +13,7 @@ from xml.parsers.expat import ExpatError
 from rospy_shim.parameters.tree import ParameterTree
 from rospy_shim.parameters.values import DateTime, marshalled, through_xml
 from rospy_shim.types.exceptions import ROSException
-from rospy_shim.types.names import SEP, is_legal_name
+from rospy_shim.types.names import SEP
 
 if TYPE_CHECKING:
     from rospy_shim.client.node import Node
@@ -62,8 +62,19 @@ class Params:
         return default
 
     def get_param_cached(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
-        """Return the same as `get_param`; the tree is as fast as a cache would be."""
-        return self.get_param(param_name, default)
+        """Return the same as `get_param`; the tree is as fast as a cache would be.
+
+        Raises:
+            TypeError: before `init_node`.
+        """
+        if not self._node.initialized:  # rospy asks the master to report changes to the node's URI, which is None
+            raise TypeError("cannot marshal None unless allow_none is enabled")
+        value = self.get_param(param_name, default)
+        if value == {} and default is not value:
+            if default is UNSPECIFIED:
+                raise KeyError(param_name)
+            return default  # rospy takes an empty namespace for none
+        return value
 
     def has_param(self, param_name: str) -> bool:
         """Return True if a parameter or namespace exists."""
@@ -109,7 +120,10 @@ class Params:
             ROSException: a private name.
         """
         key = self._node.names.get_mappings().get(param_name, param_name)
-        if not is_legal_name(key) or key.startswith("~"):
+        key = self._sent("searchParam", marshalled(key))[0]
+        if not isinstance(key, str) or not key:
+            return None
+        if key.startswith("~"):
             raise ROSException("cannot search for parameter: Internal failure: invalid key")
         if key.startswith(SEP):
             return key if self._tree.find(key) is not _MISSING else None

@@ -7,6 +7,7 @@ belongs to one simulated computer.
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.rtos import WaitList
@@ -30,6 +31,25 @@ def nanoseconds(duration: Any) -> int:
     if isinstance(duration, genpy.Duration):
         return duration.secs * NS_PER_S + duration.nsecs
     return round(float(duration) * NS_PER_S) if not isinstance(duration, int) else duration * NS_PER_S
+
+
+def limit_of(timeout: Any) -> int | None:
+    """Convert the longest time of a wait to ns, None for no limit.
+
+    Args:
+        timeout: a genpy Duration, seconds as a number, or None.
+
+    Raises:
+        TypeError: anything else.
+    """
+    if timeout is None:
+        return None
+    if isinstance(timeout, genpy.Duration):
+        return nanoseconds(timeout)
+    seconds = 0.0 + timeout
+    if seconds == inf:
+        return None
+    return 1 if seconds != seconds else nanoseconds(timeout)  # no time is before NaN
 
 
 class Duration(genpy.Duration):
@@ -221,8 +241,11 @@ class RosClock:
         if self._set is not None:
             self._sleep_until(duration)
             return
-        if not isinstance(duration, genpy.Duration) and duration < 0:
-            return
+        if not isinstance(duration, genpy.Duration):
+            if duration < 0:
+                return
+            if duration != duration:
+                raise ValueError("Invalid value NaN (not a number)")
         wait = nanoseconds(duration)
         if wait > 0:
             self._kernel.delay(wait)

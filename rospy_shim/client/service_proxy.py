@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, NoReturn
 from cfepy.rtos import FOREVER, WaitList
 from cfepy.status import CfeError
 from rospy_shim.client.message import args_kwds_to_message, packer, unpacker
-from rospy_shim.client.rostime import nanoseconds
+from rospy_shim.client.rostime import limit_of
 from rospy_shim.client.service import ANSWER_LEAD, Pieces, call_of_answer, request_packets
 from rospy_shim.graph.graph import ServiceCall
 from rospy_shim.types.exceptions import ROSException, ROSInterruptException, ServiceException
@@ -109,12 +109,14 @@ class ServiceProxy:
         self.request_class = service_class._request_class
         self.response_class = service_class._response_class
         self.persistent = persistent
+        if persistent:
+            headers = headers or {}
+            headers["persistent"] = "1"
         self.__header: Header = {
             "callerid": "",
             "md5sum": service_class._md5sum,
             "service": self.resolved_name,
-            **(headers or {}),
-            **({"persistent": "1"} if persistent else {}),
+            **(headers if isinstance(headers, dict) else {}),
         }
         self.__pack = packer(self.request_class)
         self.__unpack = unpacker(self.response_class)
@@ -308,7 +310,7 @@ def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
         ROSException: no node offered it in time.
         ROSInterruptException: the node is shut down.
     """
-    limit = None if timeout is None else nanoseconds(timeout)
+    limit = None if isinstance(timeout, list | tuple | dict | str) and not timeout else limit_of(timeout)
     if limit == 0:
         raise ValueError("timeout must be non-zero")
     name, kernel = node.names.resolve_name(service), node.kernel

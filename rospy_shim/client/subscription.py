@@ -138,7 +138,9 @@ class Subscription(TopicSide):
         Raises:
             ROSException: it is not a positive integer.
         """
-        if not isinstance(buff_size, int) or buff_size <= 0:
+        if type(buff_size) is not int:
+            raise ROSException("buffer size must be an integer")
+        if buff_size <= 0:
             raise ROSException("buffer size must be a positive integer")
         self.buff_size = buff_size
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 from rospy_shim.client.message import args_kwds_to_message
 from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, Subscription
 from rospy_shim.types.exceptions import ROSException
+from rospy_shim.types.genpy import Message
 from rospy_shim.types.names import is_legal_name
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ class TopicHandle:
             raise ValueError("topic parameter 'data_class' is not initialized")
         if not isinstance(data_class, type):
             raise ValueError(f"data_class [{data_class}] is not a class")
-        if not hasattr(data_class, "_md5sum"):
+        if not issubclass(data_class, Message):
             raise ValueError(f"data_class [{type(data_class).__name__}] is not a message data class")
         node = self.__node__
         if not is_legal_name(name):
@@ -62,11 +63,20 @@ class TopicHandle:
         self.type: str = message._type
         self.md5sum: str = message._md5sum
         self.reg_type = reg_type
+        node.wait_for_registration()
 
     def get_num_connections(self) -> int:
-        """Return the number of connections."""
+        """Return the number of connections.
+
+        Raises:
+            AttributeError: after `unregister`.
+        """
         self.__node__.universe.charge()
-        return self.impl.get_num_connections() if self.impl is not None else 0
+        return int(self.impl.get_num_connections())
+
+    def __forget__(self) -> None:
+        """Lose the topic after `unregister`, as on ROS."""
+        self.impl = self.resolved_name = self.data_class = self.type = self.md5sum = cast(Any, None)
 
 
 class Publisher(TopicHandle):
@@ -143,7 +153,7 @@ class Publisher(TopicHandle):
         link = self.impl
         if link is None:
             return
-        self.impl = None
+        self.__forget__()
         link.ref_count -= 1
         if link.ref_count == 0:
             link.close()
@@ -206,7 +216,7 @@ class Subscriber(TopicHandle):
         subscription = self.impl
         if subscription is None:
             return
-        self.impl = None
+        self.__forget__()
         if self.callback is not None:
             subscription.remove_callback(self.callback, self.callback_args)
         subscription.ref_count -= 1

@@ -340,6 +340,8 @@ class Graph:
 
     def published(self, namespace: str) -> list[list[str]]:
         """Return [name, type] of the published topics below a namespace."""
+        if not isinstance(namespace, str):  # as XML-RPC brings it: an empty list means all, bytes are no text
+            namespace = "" if not namespace else "\0"
         prefix = namespace.rstrip("/") + "/"
         return [
             [topic.name, topic.type] for topic in self.topics.values() if topic.links and topic.name.startswith(prefix)

@@ -28,8 +28,9 @@ def canonicalize_name(name: str) -> str:
     """Return the name without doubled or trailing slashes."""
     if not name or name == SEP:
         return name
+    is_global = name[0] == SEP
     parts = [part for part in name.split(SEP) if part]
-    return SEP.join(["", *parts] if name[0] == SEP else parts)
+    return SEP.join(["", *parts] if is_global else parts)
 
 
 def namespace_of(name: str) -> str:
@@ -53,7 +54,7 @@ def join(namespace: str, name: str) -> str:
 
 def is_legal_name(name: str) -> bool:
     """Return True if a name follows ROS's rules for graph resource names."""
-    return not name or (bool(_LEGAL.match(name)) and "//" not in name)
+    return name is not None and (name == "" or (bool(_LEGAL.match(name)) and "//" not in name))
 
 
 def scoped_name(caller_id: str, name: str) -> str:
@@ -111,13 +112,15 @@ class Names:
         self._environ = environ
         self._mappings: dict[str, str] = {}
         self._resolved: dict[str, str] = {}
+        self.name = UNNAMED
         self.reload_mappings(argv)
 
     def reload_mappings(self, argv: Sequence[str]) -> None:
-        """Read the remappings of a command line anew; the node has no name yet."""
+        """Read the remappings of a command line anew. A node that has its name keeps it and what it has resolved."""
         self._mappings = load_mappings(argv)
+        if self.name != UNNAMED:
+            return
         self._resolved = {}
-        self.name = UNNAMED
         given = self._mappings.get("__ns") or self._environ.get("ROS_NAMESPACE") or GLOBALNS
         self.namespace = canonicalize_name(SEP + given) if given != GLOBALNS else GLOBALNS
 
@@ -178,13 +181,15 @@ class Names:
         """Return the global name, without remappings."""
         if not caller_id:
             caller_id = self.name if self.name != UNNAMED else join(self.get_namespace(), UNNAMED[1:])
+        if not isinstance(caller_id, str) and not (name and str(name)[0] in SEP + PRIV_NAME):
+            raise TypeError("name")
         if not name:
             return namespace_of(caller_id)
-        name = canonicalize_name(name)
+        name = canonicalize_name(str(name))
         if name.startswith(SEP):
             return name
         if name.startswith(PRIV_NAME):
-            return join(caller_id, canonicalize_name(name[1:]))
+            return join(canonicalize_name(caller_id), canonicalize_name(name[1:]))
         return namespace_of(caller_id) + name
 
     def resolve_name_without_node_name(self, name: str) -> str:

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.files.overlay import Overlay
 
 _Opener = Callable[[Any, int], int]
+_STDERR = 2  # the last of the standard streams
 _PATHS = (str, bytes, os.PathLike)
 _FLAGS = {"r": os.O_RDONLY, "w": os.O_CREAT | os.O_TRUNC, "x": os.O_CREAT | os.O_EXCL, "a": os.O_CREAT | os.O_APPEND}
 
@@ -84,7 +85,7 @@ class OpenFiles:
         ) -> IO[Any]:
             texts = {"encoding": encoding, "errors": errors, "newline": newline}
             if self._overlay is None or not isinstance(file, _PATHS):
-                place = self._where(file) if isinstance(file, _PATHS) else file
+                place = self._where(file) if isinstance(file, _PATHS) else _own(file)
                 opened: IO[Any] = open(place, mode, buffering, closefd=closefd, opener=opener, **texts)  # noqa: SIM115
             else:
                 _check(mode, buffering, closefd, texts)
@@ -103,7 +104,7 @@ class OpenFiles:
 
             def __init__(this, file: Any, mode: str = "r", closefd: bool = True, opener: _Opener | None = None) -> None:
                 if isinstance(file, int):
-                    super().__init__(file, mode, closefd, None, overlay)
+                    super().__init__(_own(file), mode, closefd, None, overlay)
                     return
                 _check(f"{mode.replace('b', '')}b", 0, closefd, {})
                 path = os.fspath(file)
@@ -135,6 +136,11 @@ class OpenFiles:
         for opened in list(self._files.values()):
             with suppress(OSError, ValueError):
                 opened.close()
+
+
+def _own(file: Any) -> Any:
+    """Return a descriptor that the program may close: a copy of the host's standard streams, any other as it is."""
+    return os.dup(file) if isinstance(file, int) and 0 <= file <= _STDERR else file
 
 
 def _check(mode: str, buffering: int, closefd: bool, texts: dict[str, str | None]) -> None:

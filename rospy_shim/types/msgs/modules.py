@@ -198,7 +198,7 @@ def _finder(library: Library, kind: Kind) -> Callable[..., Any]:
             return _TIMES[type_name]
         if type_name == "Header":
             type_name = "std_msgs/Header"
-        if type_name.count("/") != 1:
+        if "/" not in type_name or type_name.count("/") != 1:
             problem = "invalid name [{}]" if "/" in type_name else "message type is missing package name: {}"
             raise ValueError(problem.format(type_name))
         if not library.has(type_name, kind):
