@@ -19,7 +19,7 @@ from cfepy.rtos import TIMEOUT, WaitList
 from cfepy.status import CfeError
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, NO_PIPE
-from rospy_shim.types.exceptions import ROSInterruptException, ServiceException
+from rospy_shim.types.exceptions import ServiceException
 from rospy_shim.types.genpy import Message
 from rospy_shim.types.transport import FIRST, LAST, MIDDLE, WHOLE
 
@@ -354,7 +354,7 @@ class Service:
             body = self.__pack(response)
             self.__entry.half_answered.discard(number)
             return True, body
-        except (ServiceException, ROSInterruptException) as error:
+        except ServiceException as error:
             return False, f"service cannot process request: {error}".encode()
         except Exception as error:
             self.error_handler(error, *sys.exc_info())

@@ -276,6 +276,8 @@ class ServiceProxy:
             answered, good = call_of_answer(packet)
             answer = pieces.add(answered, packet) if answered == number else None
             if answer is not None:
+                if self.__node__.life.is_shutdown():
+                    raise ServiceException(f"service [{self.resolved_name}] returned no response")
                 return good, answer
 
     def __end(self, entry: ServiceEntry, number: int) -> ServiceException | ROSInterruptException | None:

@@ -131,7 +131,10 @@ class Names:
 
     def give(self, base_name: str) -> None:
         """Set the node's name: add the namespace and resolve the remappings against it."""
-        self.name = canonicalize_name(join(self.namespace, base_name))
+        if base_name.startswith(PRIV_NAME):  # rospy resolves it for the name that the node has so far
+            self.set_caller_id(canonicalize_name(self._full(base_name, None)))
+        else:
+            self.name = canonicalize_name(join(self.namespace, base_name))
         self.initialize_mappings(self.name)
 
     def initialize_mappings(self, node_name: str) -> None:

@@ -53,13 +53,21 @@ def split_parts(definition: Definition) -> list[Definition]:
 
 
 def split_service(definition: Definition) -> tuple[Definition, Definition]:
-    """Return request and response of a service. Only the first line of dashes separates them; further ones are
-    ignored.
+    """Return request and response of a service, each line with its line feed, the last one with two, as in genmsg.
+
+    Only the first line of dashes separates them; further ones are ignored.
     """
     request, *rest = split_parts(definition)
     text = "\n\n".join(part.text for part in rest)
     first_line = rest[0].first_line if rest else definition.first_line
-    return request, Definition(text, definition.file, first_line)
+    return (
+        request._replace(text=_ended(request.text)),
+        Definition(_ended(text), definition.file, first_line),
+    )
+
+
+def _ended(text: str) -> str:
+    return f"{text}\n" if text else ""
 
 
 def messages_of(actions: Mapping[str, Definition], mistakes: Mistakes | None = None) -> dict[str, Definition]:

@@ -193,3 +193,61 @@ for persistent in (True, False):
 """
     closed = "AttributeError: 'NoneType' object has no attribute 'tell'"
     assert answers(tmp_path, SERVICE + body) == ["answered", closed, "None", "answered", "answered", "None"]
+
+
+def test_service_handler_that_is_interrupted_or_ends_its_node(tmp_path: Path) -> None:
+    body = """
+import roscpp.srv
+def interrupted(request):
+    raise rospy.ROSInterruptException("why")
+def ends(request):
+    rospy.signal_shutdown("from the handler")
+    return roscpp.srv.EmptyResponse()
+for name, handler in (("interrupted", interrupted), ("ends", ends)):
+    rospy.Service(name, roscpp.srv.Empty, handler)
+    tried(rospy.ServiceProxy(name, roscpp.srv.Empty))
+tried(rospy.ServiceProxy("ends", roscpp.srv.Empty))
+"""
+    lines = [line for line in answers(tmp_path, body) if line.startswith(("ServiceExc", "answered"))]
+    assert lines == [
+        "ServiceException: service [/interrupted] responded with an error: b'error processing request: why'",
+        "ServiceException: service [/ends] returned no response",
+        "ServiceException: service [/ends] unavailable",
+    ]
+
+
+def test_private_name_of_a_node(tmp_path: Path) -> None:
+    for name, expected in (("~y", "/unnamed/y /unnamed/ /unnamed/y/q /unnamed/q"), ("~", "/unnamed / /unnamed/q /q")):
+        script = f"""
+            import rospy
+            rospy.init_node({name!r})
+            print(rospy.get_name(), rospy.get_namespace(), rospy.resolve_name("~q"), rospy.resolve_name("q"))
+        """
+        folder = tmp_path / str(len(name))
+        folder.mkdir()
+        assert [*run_nodes(folder, {"A": script}).printed.values()] == [[expected]]
+
+
+def test_times_with_a_zone_are_parameters(tmp_path: Path) -> None:
+    body = """
+import rosparam
+rospy.set_param("/z", rosparam.load_str("a: 2001-12-14t21:59:43.10-05:00", "file")[0][0])
+print(rospy.get_param("/z/a").value)
+tried(rospy.set_param, "/z", rosparam.load_str("a: 2001-12-14", "file")[0][0])
+"""
+    assert answers(tmp_path, body) == ["20011214T21:59:43", "TypeError: cannot marshal <class 'datetime.date'> objects"]
+
+
+def test_topic_name_that_xml_cannot_carry_is_tried_forever(tmp_path: Path) -> None:
+    body = r"""
+import threading
+made = []
+for name in ("a\0b", "fine"):
+    thread = threading.Thread(target=lambda: made.append(rospy.Publisher(name, String, queue_size=1)), daemon=True)
+    thread.start()
+    thread.join(2)
+    print(thread.is_alive(), made)
+"""
+    lines = answers(tmp_path, body, seconds=6.0)
+    assert [line for line in lines if line.startswith("True")] == ["True []", "True []"]
+    assert "[ERROR] Unable to immediately register with master node [http://cfepy:11311]" in "".join(lines)

@@ -12,7 +12,7 @@ import pytest
 
 from rospy_shim.types import genpy
 from rospy_shim.types.genpy.checks import check_type
-from rospy_shim.types.msgs import from_full_text, message_class
+from rospy_shim.types.msgs import from_full_text, message_class, shipped
 from tests.rospy_shim.missions import run_nodes
 
 String = message_class("std_msgs/String")
@@ -274,3 +274,11 @@ def test_numpy_msg_returns_one_class_for_a_class(tmp_path: Path) -> None:
     print(numpy_msg(Floats) is numpy_msg(Floats), isinstance(numpy_msg(Floats)(), Floats))
     """
     assert run_nodes(tmp_path, {"N": source}).printed["N"] == ["True True"]
+
+
+def test_full_texts_of_services_end_as_in_ros() -> None:
+    services = {name: shipped().service_class(name) for name in ("tf/FrameGraph", "tf2_msgs/FrameGraph")}
+    texts = [(each._request_class._full_text, each._response_class._full_text) for each in services.values()]
+    assert texts == [("", "string dot_graph\n\n"), ("", "string frame_yaml\n\n")]
+    level = shipped().service_class("roscpp/SetLoggerLevel")
+    assert (level._request_class._full_text, level._response_class._full_text) == ("string logger\nstring level\n", "")
