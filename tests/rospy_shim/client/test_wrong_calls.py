@@ -33,6 +33,7 @@ def without_texts(outcome: Any) -> Any:
     return [without_texts(each) for each in outcome] if isinstance(outcome, list) else outcome
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("situation", RECORD)
 def test_outcomes_equal_the_record_of_ros(situation: str, tmp_path: Path) -> None:
     calls, expected = RECORD[situation]

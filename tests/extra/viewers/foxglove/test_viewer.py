@@ -138,7 +138,7 @@ def test_services_are_called(run: ShownRun) -> None:
         answer = SET_BOOL._response_class().deserialize(body)
         assert (answer.success, answer.message) == (True, "on")
         service = client.services["/switch"]
-        assert (service["type"], service["request"]["schema"]) == ("std_srvs/SetBool", "bool data")
+        assert (service["type"], service["request"]["schema"]) == ("std_srvs/SetBool", "bool data\n")
         client.call("/switch", 6, SET_BOOL._request_class(False).__pack__())
         client.wait_for(lambda: client.told("serviceCallFailure"))
         assert "off is not possible" in client.told("serviceCallFailure")[0]["message"]
