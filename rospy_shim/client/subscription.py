@@ -448,6 +448,8 @@ class Subscription(TopicSide):
                         callback(message, argument)
                 except Exception as error:
                     self._bad_callback(callback, error)
+                except SystemExit:
+                    break  # it ends only this message; rospy's connection catches it, and is made anew
 
     def _attend(self) -> bool:
         """Handle work between two messages. Returns False if the task is to end."""

@@ -251,3 +251,20 @@ for name in ("a\0b", "fine"):
     lines = answers(tmp_path, body, seconds=6.0)
     assert [line for line in lines if line.startswith("True")] == ["True []", "True []"]
     assert "[ERROR] Unable to immediately register with master node [http://cfepy:11311]" in "".join(lines)
+
+
+def test_callback_that_calls_exit_ends_only_its_message(tmp_path: Path) -> None:
+    body = """
+def take(message):
+    print("took", message.data)
+    if message.data == 1:
+        exit(4)
+rospy.Subscriber("numbers", Int32, take)
+numbers = rospy.Publisher("numbers", Int32, queue_size=1)
+rospy.sleep(0.5)
+for number in range(3):
+    numbers.publish(number)
+    rospy.sleep(0.3)
+print(rospy.is_shutdown())
+"""
+    assert answers(tmp_path, body) == ["took 0", "took 1", "took 2", "False"]
