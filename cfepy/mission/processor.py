@@ -21,7 +21,7 @@ from cfepy.fs import FileServices
 from cfepy.mission.compiled_code import CodeLoader, CompiledFiles, CompiledRuntime
 from cfepy.mission.loader import BuiltInApps, Finder, ModuleLoader
 from cfepy.mission.python_code import NodeScripts, PythonLoader, python_finders
-from cfepy.mission.record import RunRecord
+from cfepy.mission.record import Leak, RunRecord
 from cfepy.mission.spec import MissionSpec
 from cfepy.nodes import Accesses, AppModules, make_app_universe, turn_hook
 from cfepy.osal import (
@@ -43,6 +43,7 @@ from cfepy.time import TimeServices
 from cfepy.writing.console import Console
 
 if TYPE_CHECKING:
+    from cfepy.mission.holdings import Holdings
     from cfepy.nodes import Overlay, Universe
     from rospy_shim.graph.graph import TopicRow
     from rospy_shim.runtime import RosRuntime
@@ -125,12 +126,14 @@ class Processor:
         ports, osal, psp, memory, loader, es_task, sb_task: the parts.
         ros: the ROS side, created when the first node starts; None before.
         booted: virtual ns at which it became OPERATIONAL; None before.
+        holdings: what applications took and did not give back; None without the guard.
     """
 
     def __init__(self, machine: Machine, start_ns: int = 0) -> None:
         self.machine = machine
         self.ros: RosRuntime | None = None
         self.booted: int | None = None
+        self.holdings: Holdings | None = None
         self._start_ns = start_ns
         self._scripts = machine.spec.scripts
         self._costs = machine.board.cpu_costs()
@@ -208,7 +211,7 @@ class Processor:
         """Return the services, connected by their ports and with the parts that outlive the processor."""
         machine, ports = self.machine, self.ports
         kernel, config, console = machine.kernel, machine.config, machine.console
-        es = ExecutiveServices(kernel, ports, config, self.osal, self.psp, console, self.loader)
+        es = self._executive()(kernel, ports, config, self.osal, self.psp, console, self.loader)
         fs = ports.fs = FileServices(self.osal, ports, config, es.background_wakeup)
         sb = machine.bus(kernel, ports, config, self._costs, object_sizes(machine.board))
         evs = EventServices(kernel, ports, config, console, self.osal)
@@ -221,16 +224,32 @@ class Processor:
         evs.first_errors = record.first_errors
         return Cfe(es, sb, evs, time, tbl, self.osal, self.psp, fs, ConfigServices(config, machine.spec.name))
 
-    def _handle_for_apps(self) -> Cfe:
-        """Return the services themselves, or with call points if a policy decides; only such a run loads the call
-        points.
-        """
-        kernel = self.machine.kernel
-        if kernel.policy is None:
-            return self.cfe
-        from cfepy.mission.call_points import with_call_points
+    def _executive(self) -> type[ExecutiveServices]:
+        """Return the class of Executive Services; the guard's has the ledger."""
+        machine = self.machine
+        if not machine.spec.compiled.guard:
+            return ExecutiveServices
+        from cfepy.mission.holdings import Holdings, noting_executive
 
-        return with_call_points(self.cfe, kernel)
+        kernel, leaks = machine.kernel, machine.record.leaks
+        kernel.frames_wanted = True  # the ledger has the lines of compiled code
+        self.holdings = Holdings(kernel, lambda app, text: leaks.append(Leak(kernel.now, app, text)))
+        return noting_executive(self.holdings)
+
+    def _handle_for_apps(self) -> Cfe:
+        """Return the services themselves; with call points if a policy decides, and with the ledger of the guard. Only
+        such runs load the code for them.
+        """
+        kernel, handle = self.machine.kernel, self.cfe
+        if kernel.policy is not None:
+            from cfepy.mission.call_points import with_call_points
+
+            handle = with_call_points(handle, kernel)
+        if self.holdings is not None:
+            from cfepy.mission.holdings import noting
+
+            handle = noting(handle, self.cfe, kernel, self.holdings)
+        return handle
 
     def _build_text(self) -> str:
         machine = self.machine

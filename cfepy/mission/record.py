@@ -79,6 +79,14 @@ class Overwrite(NamedTuple):
         return f"{self.app}: {self.text}" if self.app else self.text
 
 
+class Leak(NamedTuple):
+    """Something that an application held when it ended: the time, the application, a description with the line."""
+
+    at_ns: int
+    app: str
+    text: str
+
+
 class StackUse(NamedTuple):
     """The stack use of a compiled task: the maximum bytes used, and the size."""
 
@@ -94,9 +102,9 @@ class RunRecord:
     `errors_by_app` counts ERROR and CRITICAL events, and `first_errors` has the first of them by application and event
     id. The services of each processor write into these four. `topics` has rows of ROS topics by MsgId. `tables`
     provides more rows for the report, by title; an attachment adds its function there. `data_races` are the races
-    found, and `overwrites` the memory errors that the guard found. `stack_use` is by application and task, for ended
-    tasks. `traps` are loops that wait without a sleep, and other code that works badly on ROS too; their texts are
-    lines of the report.
+    found. `overwrites` and `leaks` are the memory errors and the things not given back that the guard found.
+    `stack_use` is by application and task, for ended tasks. `traps` are loops that wait without a sleep, and other code
+    that works badly on ROS too; their texts are lines of the report.
     """
 
     resets: list[Reset] = field(default_factory=list)
@@ -108,6 +116,7 @@ class RunRecord:
     tables: dict[str, Callable[[], list[dict[str, Any]]]] = field(default_factory=dict)
     data_races: list[DataRace] = field(default_factory=list)
     overwrites: list[Overwrite] = field(default_factory=list)
+    leaks: list[Leak] = field(default_factory=list)
     stack_use: dict[tuple[str, str], StackUse] = field(default_factory=dict)
     traps: list[object] = field(default_factory=list)
     _parts: dict[type, object] = field(default_factory=dict)

@@ -34,7 +34,8 @@ class CompiledConfig:
     Attributes:
         omit_deprecated: whether they were built with OMIT_DEPRECATED, which makes CFE_TBL_Handle_t an id instead of an
             int16.
-        guard: whether they get guarded, nonzero memory, to find memory errors.
+        guard: whether they get guarded, nonzero memory, to find memory errors, and whether all applications are watched
+            for what they do not give back.
     """
 
     omit_deprecated: bool = False

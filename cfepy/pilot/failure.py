@@ -20,6 +20,8 @@ class FailureKind:
     DEADLOCK = "deadlock"
     RACE = "data race"
     OVERWRITE = "overwritten memory"
+    LEAK = "not given back"
+    WAITING_LOAD = "waiting load"
     STUCK = "stuck"
     STALLED = "stalled"
     EXPECTATION = "missed expectation"

@@ -20,6 +20,8 @@ from cfepy.units import NS_PER_S, instant_text
 if TYPE_CHECKING:
     from cfepy.script import Outcome
 
+LONG_WAIT_NS = 2 * NS_PER_S
+"""A table's load that waits for a held address is a problem from here on; applications use tables for shorter times."""
 BESIDE = "beside"
 """The table of the record with a row for each mission that flew together with it."""
 
@@ -51,6 +53,7 @@ def problems_of(mission: Mission, endless: EndlessWaits, outcome: Outcome | None
     found = [*_startup(mission), *_stall(mission), *_abortion(mission), *_deaths(mission), *_bad_ends(mission)]
     found += _events(mission, outcome)
     found += [*_resets(mission), *_invariants(mission), *_deadlines(mission), *_of_compiled_code(mission)]
+    found += [*_leaks(mission), *_waiting_loads(mission)]
     found += [*map(_circle, endless.circles), *_printed(mission)]
     found += _alone(endless.alone, _failures(found))
     return [*found, *_missed_steps(outcome), *_beside(mission)]
@@ -64,7 +67,7 @@ def is_reported(problem: RunProblem) -> bool:
 def problems_so_far(mission: Mission) -> list[RunProblem]:
     """Return the problems with their own time that can be found while the mission runs."""
     found = [*_deaths(mission), *_events(mission, None), *_printed(mission), *_invariants(mission)]
-    return [*found, *_of_compiled_code(mission)]
+    return [*found, *_of_compiled_code(mission), *_leaks(mission)]
 
 
 def failures_of(problems: Iterable[RunProblem]) -> list[Failure]:
@@ -261,6 +264,32 @@ def _of_compiled_code(mission: Mission) -> Iterator[RunProblem]:
     for each in mission.record.overwrites:
         failure = Failure(FailureKind.OVERWRITE, each.app, each.text, each.at_ns)
         yield RunProblem(f"overwritten memory: {each}", each.at_ns, (failure,))
+
+
+# -- what applications hold --------------------------------------------------------------------------------------------
+
+
+def _leaks(mission: Mission) -> Iterator[RunProblem]:
+    """Yield what applications held when they ended, which the guard writes down."""
+    for each in mission.record.leaks:
+        failure = Failure(FailureKind.LEAK, each.app, each.text, each.at_ns)
+        yield RunProblem(failure.title, each.at_ns, (failure,))
+
+
+def _waiting_loads(mission: Mission) -> Iterator[RunProblem]:
+    """Yield table loads that have waited for a held address for too long, and still wait."""
+    es, holdings = mission.cfe.es, mission.processor.holdings
+    for each in mission.cfe.tbl.registry.waiting_loads():
+        if mission.kernel.now - each.since_ns < LONG_WAIT_NS:
+            continue
+        holder = es.apps.find(each.holder.app_id)
+        who = "" if holder is None else holder.name
+        place = "" if holdings is None else holdings.place_of_address(each.holder.handle)
+        load = f"the load of {each.source} waits" if each.source else "loads are refused"
+        taken = f", taken at {place}" if place else ""
+        text = f"{load} since {instant_text(each.since_ns)}: {who} holds the address of table {each.table}{taken}"
+        failure = Failure(FailureKind.WAITING_LOAD, who, text, each.since_ns, cause=each.table)
+        yield RunProblem(failure.title, each.since_ns, (failure,))
 
 
 # -- the end of the run ------------------------------------------------------------------------------------------------

@@ -148,6 +148,16 @@ class InvariantResult:
 
 
 @dataclass(frozen=True, slots=True)
+class HeldResult:
+    """What an application took from one line and held at the end of the run; the virtual time of the oldest in s."""
+
+    app: str
+    what: str
+    number: int
+    since_s: float
+
+
+@dataclass(frozen=True, slots=True)
 class Mark:
     """The state of a run at the end of its time."""
 
@@ -162,6 +172,7 @@ class Mark:
     idle_nodes: list[str]
     starved: list[str]
     returned: list[str]
+    held: list[HeldResult]
 
 
 def mark(mission: Mission, wall_ns: int) -> Mark:
@@ -185,12 +196,19 @@ def mark(mission: Mission, wall_ns: int) -> Mark:
         _idle_nodes(mission),
         _starved(mission),
         [_returned(app.name) for app in mission.cfe.es.apps if _state(app) == ENDED],
+        _held(mission),
     )
 
 
 def _returned(app: str) -> str:
     why = "its main function has returned without CFE_ES_ExitApp"
     return f"{app}: {why}; ES keeps the application and its objects"
+
+
+def _held(mission: Mission) -> list[HeldResult]:
+    holdings = mission.processor.holdings
+    rows = [] if holdings is None else holdings.rows()
+    return [HeldResult(row.app, row.text, row.number, row.since_ns / NS_PER_S) for row in rows]
 
 
 def _state(app: AppRecord) -> str:
@@ -207,16 +225,17 @@ class Results:
     time.
 
     `booted_s` is about the first boot. `resets` are in order; pipes, memory and `sb` are about the processor since the
-    last one. `own_errors` counts ERROR and CRITICAL events of the mission's own applications. `problems` has a line for
-    each problem; a run without problems went well. `faults` has a row for each planned fault, `deadlines` one for each
-    deadline of the mission file. `inversions` has one for each lock for which a task waited while a third task delayed
-    the holder. `ros_peers` has one for each connected external ROS node, `viewer_peers` one for the traffic between
-    each viewer and each topic, and `beside` one for each mission that flew together with it. `script_problems` are the
-    entries of the startup script that could not be started. `endless_waits` has a line for each task that no task can
-    wake any more. `missed_steps` are the failed steps of the script. `never_judged` are the rules of the mission file
-    without input. `loose_ends` are topics that connect to nothing, idle nodes, and applications that kept others from
-    running. `traps` are loops that wait without a sleep, and similar. `missed_moves` are the moves of the schedule that
-    were not possible. `why_tasks` is why tasks are threads by default although greenlets are installed.
+    last one, and so is `held`, which only the guard fills. `own_errors` counts ERROR and CRITICAL events of the
+    mission's own applications. `problems` has a line for each problem; a run without problems went well. `faults` has a
+    row for each planned fault, `deadlines` one for each deadline of the mission file. `inversions` has one for each
+    lock for which a task waited while a third task delayed the holder. `ros_peers` has one for each connected external
+    ROS node, `viewer_peers` one for the traffic between each viewer and each topic, and `beside` one for each mission
+    that flew together with it. `script_problems` are the entries of the startup script that could not be started.
+    `endless_waits` has a line for each task that no task can wake any more. `missed_steps` are the failed steps of the
+    script. `never_judged` are the rules of the mission file without input. `loose_ends` are topics that connect to
+    nothing, idle nodes, and applications that kept others from running. `traps` are loops that wait without a sleep,
+    and similar. `missed_moves` are the moves of the schedule that were not possible. `why_tasks` is why tasks are
+    threads by default although greenlets are installed.
     """
 
     mission: str
@@ -238,6 +257,7 @@ class Results:
     sb: dict[str, int]
     pipes: list[PipeResult]
     memory: MemoryResult
+    held: list[HeldResult]
     deadlines: list[DeadlineResult]
     inversions: list[InversionResult]
     faults: list[dict[str, Any]]
@@ -296,6 +316,7 @@ class Results:
             sb=at.sb,
             pipes=at.pipes,
             memory=at.memory,
+            held=at.held,
             deadlines=[check.result() for check in record.part(DeadlineRecord).checks],
             inversions=record.part(InversionRecord).results(),
             faults=record.rows("faults"),

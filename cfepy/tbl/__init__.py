@@ -39,6 +39,7 @@ if TYPE_CHECKING:
         OPT_USR_DEF_ADDR,
         TableHandle,
         Validator,
+        WaitingLoad,
     )
     from cfepy.tbl.services import TableServices
 
@@ -61,6 +62,7 @@ __all__ = [
     "TableServices",
     "TableType",
     "Validator",
+    "WaitingLoad",
     "build",
     "is_intact",
     "mark_for",
@@ -109,6 +111,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "OPT_USR_DEF_ADDR",
                 "TableHandle",
                 "Validator",
+                "WaitingLoad",
             ),
             ".services": ("TableServices",),
         },

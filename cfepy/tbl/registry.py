@@ -7,10 +7,12 @@ that shares it have released their handles.
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 from cfepy.config.platform import PlatformConfig
 from cfepy.ids import TBL_HANDLE_BASE, TBL_REGID_BASE, UNDEFINED, IdTable, name_size
 from cfepy.ports import Ports
+from cfepy.rtos import Kernel
 from cfepy.status import (
     CFE_SUCCESS,
     CFE_TBL_ERR_DUPLICATE_DIFF_SIZE,
@@ -158,10 +160,27 @@ class Access:
         self.updated = not table.dump_only and table.is_loaded
 
 
+class WaitingLoad(NamedTuple):
+    """A load that cannot be made active because an application holds the address of the buffer that it needs.
+
+    Attributes:
+        table: full name of the table.
+        source: the loaded file or address; empty if the load was refused, as for a double-buffered table.
+        since_ns: virtual time of the first refusal in ns.
+        holder: the handle through which the application holds the address.
+    """
+
+    table: str
+    source: str
+    since_ns: int
+    holder: Access
+
+
 class TableRegistry:
     """All tables and handles of a mission.
 
     Args:
+        kernel: its clock.
         config: the limits.
         memory: the source of the tables' buffers.
         ports: provides the system log.
@@ -170,7 +189,9 @@ class TableRegistry:
         services_app_id: AppId of Table Services, which may use every handle; 0 before its task runs.
     """
 
-    def __init__(self, config: PlatformConfig, memory: BufferMemory, ports: Ports) -> None:
+    def __init__(self, kernel: Kernel, config: PlatformConfig, memory: BufferMemory, ports: Ports) -> None:
+        self._kernel = kernel
+        self._refused: dict[TableRecord, tuple[int, Access]] = {}  # the first refusal, and who held the address
         self._ports = ports
         self.services_app_id = UNDEFINED
         self._config = config
@@ -341,11 +362,31 @@ class TableRegistry:
             return buffer
         holder = self._holder(table, buffer) if buffer.load_id != UNDEFINED else None
         if holder is not None:
+            if self._refused.get(table, (0, None))[1] is not holder:
+                self._refused[table] = self._kernel.now, holder
             text = f"Inactive Buff Locked for '{table.name}' by AppId={holder.app_id}"
             self._ports.syslog.write_to_sys_log(f"CFE_TBL_GetInactiveBufferExclusive: {text}")
             return None
+        self._refused.pop(table, None)
         buffer.load_id = next_id
         return buffer
+
+    def waiting_loads(self) -> list[WaitingLoad]:
+        """Return the loads that were refused because of a held address, if the address is still held."""
+        return [
+            WaitingLoad(table.name, self._source_of_load(table), at_ns, holder)
+            for table, (at_ns, holder) in self._refused.items()
+            if self._is_in_the_way(table, holder)
+        ]
+
+    def _is_in_the_way(self, table: TableRecord, holder: Access) -> bool:
+        buffer = self.locate(table, self._memory.ids.after(table.active_id, self._category(table)))
+        held = self.locate(table, holder.buffer_id) if holder.locked and holder in table.accesses else None
+        return buffer is not None and buffer is held and buffer.load_id != UNDEFINED
+
+    def _source_of_load(self, table: TableRecord) -> str:
+        buffer = self.locate(table, table.next_id)
+        return buffer.source if buffer is not None and buffer.load_id == table.next_id else ""
 
     def working_buffer(self, table: TableRecord) -> Buffer | None:
         """Return the buffer of the load in progress, and start a load if there is none (CFE_TBL_GetWorkingBuffer)."""
@@ -384,6 +425,7 @@ class TableRegistry:
             table.buffers.append(self._memory.allocate(table.size, table.name))
 
     def _forget(self, table: TableRecord) -> None:
+        self._refused.pop(table, None)
         if not table.user_defined:
             self.discard_load(table)
         for buffer in table.buffers:

@@ -63,7 +63,7 @@ class TableServices(TableAccess):
             shared_size=config.tbl_max_sngl_table_size,
             tables=config.tbl_max_num_tables,
         )
-        registry = TableRegistry(config, memory, ports)
+        registry = TableRegistry(kernel, config, memory, ports)
         super().__init__(kernel, ports, registry)
         self._config = config
         self._memory = memory

@@ -30,7 +30,13 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--for": ("SECONDS", "seconds"),
     "--from": ("SECONDS", "(begin at this virtual time|vary the order from here on)"),
     "--from-disk": (None, "use the mission's files on this computer, not those in the journal"),
-    "--guard": (None, "report writes of compiled applications past a buffer, and uses of freed buffers"),
+    "--guard": (
+        None,
+        (
+            "report writes of compiled applications past a buffer, uses of freed buffers, and what applications do not "
+            "give back"
+        ),
+    ),
     "--jobs": ("N", "processes on this computer"),
     "--json": ("FILE|-", "as JSON; - writes to standard output"),
     "--layout": ("FILE.yaml", "take a table's layout from a YAML file"),

@@ -104,7 +104,7 @@ class Bench:
         self.files: dict[str, bytes] = {}
         self.left_open: list[str] = []
         self.too_long = ""
-        self.kernel = cast(Any, SimpleNamespace(current=SimpleNamespace(owner=None)))
+        self.kernel = cast(Any, SimpleNamespace(current=SimpleNamespace(owner=None), now=0))
         ports = SimpleNamespace(
             es=SimpleNamespace(
                 get_app_name=APPS.__getitem__,

@@ -91,6 +91,7 @@ def show(results: Results, stream: TextIO) -> None:
         *_inversions(results),
         *_invariants(results),
         *_memory(results),
+        *_held(results),
         *(table for make in REPORT_TABLES.all() for table in make(results)),
     ]
     show_tables([*tables, *more], stream)
@@ -238,6 +239,14 @@ def _invariants(results: Results) -> list[Table]:
     for each in results.invariants:
         at = "" if each.first_at_s is None else f"{each.first_at_s:.6f}"
         table.add(each.name, each.judged, each.violated, at, each.first or ("" if each.judged else "never judged"))
+    return [table] if table.rows else []
+
+
+def _held(results: Results) -> list[Table]:
+    """Return a table of what applications held at the end of a run with the guard."""
+    table = Table("Held at the end", ("application", "what", "number", "since, s"), right=(2, 3), least=(1,))
+    for each in results.held:
+        table.add(each.app, each.what, each.number, f"{each.since_s:.6f}")
     return [table] if table.rows else []
 
 

@@ -27,6 +27,8 @@ MEANINGS: Mapping[str, str] = {
     FailureKind.DEADLOCK: "tasks wait for each other",
     FailureKind.RACE: "two accesses, one of them a write, have no order",
     FailureKind.OVERWRITE: "compiled code wrote past its memory",
+    FailureKind.LEAK: "an application ended with something that it took from cFE",
+    FailureKind.WAITING_LOAD: "a table's load waits for an application that holds the table's address",
     FailureKind.STUCK: "a task waits for something that no task can end",
     FailureKind.STALLED: "a task does not give up the CPU",
     FailureKind.EXPECTATION: "a step of the script failed",
