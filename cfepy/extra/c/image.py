@@ -63,6 +63,9 @@ class Linker(Protocol):
     def resolve_weak(self, name: str) -> int:
         """Return the address of a symbol that may be missing; 0 if it is."""
 
+    def of_library(self, name: str) -> int | None:
+        """Return the address of a symbol in the libraries that all code sees; None if they do not have it."""
+
     def resolve_thread_local(self, name: str) -> tuple[int, int]:
         """Return module and offset of a thread-local variable of another object."""
 
@@ -89,6 +92,7 @@ class Image:
         size: its bytes.
         symbols: addresses of its exports.
         thread_locals: offsets of its exported thread-local variables.
+        replaced: its own symbols in place of which it uses those of a library.
 
     Raises:
         ElfError: it needs a loader feature that this one does not have.
@@ -99,6 +103,7 @@ class Image:
         self.size = source.size
         self.symbols: dict[str, int] = {}
         self.thread_locals: dict[str, int] = {}
+        self.replaced: list[str] = []
         self._arena = arena
         self._linker = linker
         self._engine = engine()
@@ -165,7 +170,14 @@ class Image:
 
     def _address_of(self, symbol: Symbol) -> int:
         if symbol.is_defined:
-            return self.base + symbol.address
+            is_of_cpp = symbol.is_weak and symbol.name.startswith(
+                "_Z"
+            )  # each object has it, such as an inline function
+            found = None if is_of_cpp or not symbol.name else self._linker.of_library(symbol.name)
+            if found is None:
+                return self.base + symbol.address
+            self.replaced.append(symbol.name)
+            return found
         return self._linker.resolve_weak(symbol.name) if symbol.is_weak else self._linker.resolve(symbol.name)
 
     def _check(self, word: Relocation, kind: str | None) -> None:

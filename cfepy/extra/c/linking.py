@@ -45,6 +45,10 @@ STAND_INS = frozenset(
     )
 )
 """Refused functions that there is something of, for libgcov and libstdc++."""
+C_LIBRARIES = ("libc.so.6", "libm.so.6")
+"""The libraries of NASA's core-cpu1 whose functions all code sees."""
+NASAS = ("CFE_", "OS_")
+"""How names begin that only cFE, OSAL and the PSP define, so that NASA's loader finds none either."""
 STATIC = "-static-libstdc++ -static-libgcc"
 FOLDERS = ("/lib", "/usr/lib", "/lib64", "/usr/lib64")
 
@@ -97,6 +101,23 @@ def refused_names(source: SharedObject) -> set[str]:
     found = {name for name in wanted_names(source) if name in REASONS}
     has_libraries = source.has_coverage or any(each.is_defined and each.name == IN_IT for each in source.symbols)
     return found - STAND_INS if has_libraries else found
+
+
+def undefined_on_linux(source: SharedObject, missing: list[str]) -> list[str]:
+    """Return the missing names that NASA's Linux does not define either, so that dlopen refuses the object.
+
+    Args:
+        source: the object.
+        missing: names that it needs and that are defined nowhere here.
+    """
+    if not missing or set(source.needed) - {*LIBRARIES, *C_LIBRARIES}:
+        return [name for name in missing if name.startswith(NASAS)]  # another library that it needs may have the others
+    try:
+        known = {each.name for library in C_LIBRARIES for each in host_library(library).symbols if each.is_defined}
+    except ElfError:  # this computer has another C library
+        return [name for name in missing if name.startswith(NASAS)]
+    known |= set(REASONS)
+    return [name for name in missing if name not in known]
 
 
 class Exports:
@@ -175,6 +196,9 @@ class LinkedWith:
 
     def resolve_weak(self, name: str) -> int:
         return self._exports.symbol(name, self._own) or 0
+
+    def of_library(self, name: str) -> int | None:
+        return next((image.symbols[name] for image in self._exports.shared() if name in image.symbols), None)
 
     def resolve_thread_local(self, name: str) -> tuple[int, int]:
         """Return module and offset; see `Linker`.

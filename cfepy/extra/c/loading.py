@@ -10,6 +10,7 @@ from cfepy.extra.c.abi import abi_profile
 from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.image import Image, LoadedCode
+from cfepy.extra.c.linking import undefined_on_linux
 from cfepy.extra.c.runtime import CRuntime
 from cfepy.status import OS_ERROR, OsalError
 from cfepy.writing.console import Console
@@ -17,9 +18,6 @@ from cfepy.writing.console import Console
 NO_SYMBOL = "NULL"
 NODE_MARK = "roscfe_node"
 """The symbol that marks a ROS node; the convertor's wrapper defines it."""
-
-NASAS = ("CFE_", "OS_")
-"""Beginnings of names that only cFE, OSAL and the PSP define, so that NASA's loader finds none either."""
 
 
 class CompiledLoader:
@@ -65,8 +63,9 @@ class CompiledLoader:
         source = self.read(file, data)
         try:
             missing = self.runtime.missing(source)
-            if any(name.startswith(NASAS) for name in missing):
-                raise ElfError(f"Error loading shared library: {file}: undefined symbol: {', '.join(missing)}")
+            nowhere = undefined_on_linux(source, missing)
+            if nowhere:
+                raise ElfError(f"Error loading shared library: {file}: undefined symbol: {', '.join(nowhere)}")
             if missing:
                 self._console.write(f"OS_ModuleLoad: {file} has undefined symbols: {', '.join(missing)}")
             profile = abi_profile(source)
@@ -74,7 +73,11 @@ class CompiledLoader:
                 self._console.write(
                     f"OS_ModuleLoad: {file} was built {profile.value}, but the mission specifies otherwise"
                 )
-            return self.runtime.load(source)
+            image = self.runtime.load(source)
+            if image.replaced:
+                names = ", ".join(sorted(image.replaced))
+                self._console.write(f"OS_ModuleLoad: {file} uses {names} of a library in place of its own")
+            return image
         except (ElfError, MemoryError) as error:
             raise self._failed(error) from error
         except CFault as error:

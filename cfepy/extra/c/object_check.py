@@ -9,9 +9,9 @@ from pathlib import Path
 from cfepy.es import CFE_LIB, NODE_SYMBOL, StartupEntry
 from cfepy.extra.c.abi import AbiProfile, abi_profile
 from cfepy.extra.c.api import function_names
-from cfepy.extra.c.elf import ElfError, read_shared_object
+from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.ground_check import ground_differences
-from cfepy.extra.c.linking import refused_names, wanted_names
+from cfepy.extra.c.linking import refused_names, undefined_on_linux, wanted_names
 from cfepy.extra.c.refused import BY_REASON, REASONS
 from cfepy.mission import MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
@@ -45,12 +45,12 @@ def check_compiled(
     if entry.symbol not in ("", NO_SYMBOL, *functions):
         hint = did_you_mean(entry.symbol, functions, "correct the name, or export the function (it may be static)")
         yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
-    yield from _check_needs(script, entries, entry, wanted)
+    yield from _check_needs(script, entries, entry, source, wanted)
     yield from ground_differences(entry.path, script.parent)
 
 
 def _check_needs(
-    script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, wanted: set[str]
+    script: Path, entries: Sequence[StartupEntry], entry: StartupEntry, source: SharedObject, wanted: set[str]
 ) -> Iterator[MissionProblem]:
     before = True
     for each in entries:
@@ -67,7 +67,9 @@ def _check_needs(
     unknown = {name for name in wanted if name not in REASONS}
     if unknown:
         text = f"{entry.name} needs {_listed(unknown)}, but cfepy and the libraries of the mission do not define them"
-        yield MissionProblem(script, entry.line, text + "; calling it is a fault", is_warning=True)
+        nowhere = undefined_on_linux(source, sorted(unknown))
+        so = f"; it cannot be loaded without {_listed(set(nowhere))}" if nowhere else "; calling it is a fault"
+        yield MissionProblem(script, entry.line, text + so, is_warning=not nowhere)
     for reason, names in BY_REASON.items():
         refused = wanted.intersection(names)
         if refused:
