@@ -173,9 +173,9 @@ def noting_executive(holdings: Holdings) -> type[ExecutiveServices]:
     """Return the class of Executive Services that report to a ledger when an application ends."""
 
     class NotingExecutive(ExecutiveServices):
-        def cleanup_app(self, app: AppRecord) -> None:
+        def cleanup_app(self, app: AppRecord) -> bool:
             with holdings.ending(app):
-                super().cleanup_app(app)
+                return super().cleanup_app(app)
 
     return NotingExecutive
 

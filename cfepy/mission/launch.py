@@ -142,6 +142,7 @@ def _with_sections(spec: MissionSpec, path: Path, said: MissionSections) -> Miss
         name=spec.name if said.name is None else said.name,
         mission_file=path,
         board=said.board_in(spec.folder),
+        memory=said.memory,
         ros=ros,
         limits=limits,
         cfe_version=said.cfe_version,

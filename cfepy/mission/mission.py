@@ -11,6 +11,7 @@ import warnings
 import weakref
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, ParamSpec, TypeVar
@@ -123,6 +124,8 @@ class Mission:
         self.seed = seed
         self.tasks, self.why_tasks = kind = task_kind(tasks)
         self.board = board if isinstance(board, BoardProfile) else load_profile(board or self.spec.board)
+        if self.spec.memory is not None:
+            self.board = replace(self.board, memory=self.spec.memory)
         self.config = self.spec.config(self.board)
         self.console = console if console is not None else Console()
         self.trace = Trace() if trace is None else trace

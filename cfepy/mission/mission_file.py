@@ -23,6 +23,7 @@ from cfepy.mission.parameter_files import merged, read_files, read_tree
 from cfepy.mission.spec import CompiledConfig, SweepConfig
 from cfepy.msg import HIGHEST_VALID_MSG_ID
 from cfepy.nodes import BridgedPacket, NodeConfig, RosBridge, RosConfig, TopicConfig
+from cfepy.psp import read_memory
 from cfepy.reading.marked_yaml import Marked, load
 from cfepy.reading.mistakes import Mistakes, each_of
 from cfepy.reading.suggestions import did_you_mean
@@ -43,15 +44,16 @@ class MissionSections:
     """The content of a mission file, as far as it could be read.
 
     Attributes:
-        name, board, cfe_version, safe, scheduling, epoch, compiled, cpp_nodes, limits, nodes, topics, params,
+        name, board, memory, cfe_version, safe, scheduling, epoch, compiled, cpp_nodes, limits, nodes, topics, params,
             params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep: the values of these sections;
-            `name`, `board` and `epoch` are None if missing.
+            `name`, `board`, `memory` and `epoch` are None if missing.
         demands: the sections of `DEMANDS`, unread.
         places: all known sections in the file, unread.
     """
 
     name: str | None = None
     board: str | None = None
+    memory: str | None = None
     cfe_version: str = DEFAULT_RELEASE
     safe: bool = False
     scheduling: str = REAL_TIME
@@ -377,6 +379,7 @@ def _single(read: Callable[[Marked], Any]) -> Callable[[Marked, Mistakes], Any]:
 _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "name": _single(Marked.text),
     "board": _single(Marked.text),
+    "memory": _single(read_memory),
     "cfe_version": _single(_release),
     "safe": _single(Marked.flag),
     "scheduling": _single(_scheduling),

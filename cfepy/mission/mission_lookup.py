@@ -160,6 +160,7 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
         name=spec.name if said.name is None else said.name,
         mission_file=path,
         board=said.board_in(spec.folder),
+        memory=said.memory,
         ros=said.ros,
         limits=said.limits,
         cfe_version=said.cfe_version,

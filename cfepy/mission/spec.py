@@ -94,6 +94,7 @@ class MissionSpec:
         script: the startup script.
         mission_file: None if there is none.
         board: its board: a shipped board's name or a path.
+        memory: how its applications reach memory by address, one of `cfepy.psp.MEMORIES`; None for the board's way.
         cfe_version: its release of cFE.
         safe: whether it prevents what hangs, leaks or ends the process on NASA's Linux.
         scheduling: how its tasks are scheduled, one of `cfepy.config.platform.SCHEDULINGS`.
@@ -131,6 +132,7 @@ class MissionSpec:
     ids: Mapping[str, int] = field(default_factory=dict)
     epoch_ns: int | None = None
     beside: tuple[MissionSpec, ...] = ()
+    memory: str | None = None
 
     @property
     def startup_script(self) -> bytes:

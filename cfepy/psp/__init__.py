@@ -12,11 +12,22 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.psp.addresses import AllMemory, BadAddress
     from cfepy.psp.exceptions import ExceptionSummary
     from cfepy.psp.measured import Measured
     from cfepy.psp.memory import MemoryBudget, OverBudget, object_sizes
-    from cfepy.psp.profile import LIMIT_NAMES, BoardProfile, Limit, available_boards, load_profile, read_limit
+    from cfepy.psp.profile import (
+        LIMIT_NAMES,
+        MEMORIES,
+        BoardProfile,
+        Limit,
+        available_boards,
+        load_profile,
+        read_limit,
+        read_memory,
+    )
     from cfepy.psp.psp import (
+        AREA_ADDRESSES,
         RST_SUBTYPE_EXCEPTION,
         RST_SUBTYPE_HW_SPECIAL_COMMAND,
         RST_SUBTYPE_HW_WATCHDOG,
@@ -32,8 +43,10 @@ if TYPE_CHECKING:
     from cfepy.psp.watchdog import Watchdog
 
 __all__ = [
+    "AREA_ADDRESSES",
     "EEPROM_BYTES",
     "LIMIT_NAMES",
+    "MEMORIES",
     "RST_SUBTYPE_EXCEPTION",
     "RST_SUBTYPE_HW_SPECIAL_COMMAND",
     "RST_SUBTYPE_HW_WATCHDOG",
@@ -41,6 +54,8 @@ __all__ = [
     "RST_SUBTYPE_RESET_COMMAND",
     "RST_TYPE_POWERON",
     "RST_TYPE_PROCESSOR",
+    "AllMemory",
+    "BadAddress",
     "BoardProfile",
     "ExceptionSummary",
     "Limit",
@@ -56,12 +71,17 @@ __all__ = [
     "load_profile",
     "object_sizes",
     "read_limit",
+    "read_memory",
 ]
 
 if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".addresses": (
+                "AllMemory",
+                "BadAddress",
+            ),
             ".exceptions": ("ExceptionSummary",),
             ".measured": ("Measured",),
             ".memory": (
@@ -71,13 +91,16 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ),
             ".profile": (
                 "LIMIT_NAMES",
+                "MEMORIES",
                 "BoardProfile",
                 "Limit",
                 "available_boards",
                 "load_profile",
                 "read_limit",
+                "read_memory",
             ),
             ".psp": (
+                "AREA_ADDRESSES",
                 "RST_SUBTYPE_EXCEPTION",
                 "RST_SUBTYPE_HW_SPECIAL_COMMAND",
                 "RST_SUBTYPE_HW_WATCHDOG",

@@ -1,7 +1,11 @@
 """Memory and I/O ports by address (CFE_PSP_Mem*, CFE_PSP_Eeprom*, CFE_PSP_Port*), and byte order.
 
-A memory range holds bytes if an area is attached to it. The PSP attaches the retained areas and the EEPROM. NASA's
-Linux PSP refuses direct RAM access, so reading and writing RAM works better here than there.
+A memory range holds bytes if an area is attached to it. The PSP attaches the retained areas and the EEPROM.
+
+The profile chooses how memory is reached (`cfepy.psp.profile.MEMORIES`). With `linux`, as on NASA's Linux, one range of
+RAM is all of memory, CFE_PSP_MemRead8 and its relatives are not implemented, and a wrong address of the other functions
+is a fault of the caller. With `direct` these functions work, and fault as well. With `ranges` only the board's own
+ranges exist, and a wrong address is a status.
 
 EEPROM has its own write functions, and can be protected and switched off by bank. On a board with data flash both work,
 and the EEPROM starts protected, as such a part does after a reset. On other boards it behaves as on NASA's Linux: a
@@ -15,7 +19,7 @@ The simulated processors are little-endian, so the LE forms of CFE_PSP_HtoBE16 a
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple, Protocol
 
 from cfepy.psp.profile import PortRange
@@ -44,6 +48,7 @@ _WORD_SIZES = (1, 2, 4)
 NUM_EEPROM_BANKS = 1
 _ADDRESSES = 1 << 64
 """cpuaddr wraps around"""
+SIZE_MAX = _ADDRESSES - 1
 
 
 class MemRange(NamedTuple):
@@ -66,8 +71,49 @@ class MemoryArea(Protocol):
         """Replace a slice by the same number of bytes."""
 
 
+class BadAddress(Exception):
+    """An access to an address without memory, which a processor answers by an exception: on Linux, SIGSEGV."""
+
+
+class AllMemory:
+    """All of memory as one area, whose first address is 0: areas of the board, and the memory of compiled code.
+
+    Args:
+        areas: the first address and the bytes of each area; asked again each time, because areas can be moved.
+
+    Attributes:
+        elsewhere: the memory outside of the areas; None for none.
+    """
+
+    def __init__(self, areas: Callable[[], Iterable[tuple[int, bytearray | memoryview]]]) -> None:
+        self._areas = areas
+        self.elsewhere: MemoryArea | None = None
+
+    def __getitem__(self, where: slice, /) -> bytes | bytearray | memoryview:
+        area, part = self._place(where)
+        return area[part]
+
+    def __setitem__(self, where: slice, data: bytes, /) -> None:
+        area, part = self._place(where)
+        area[part] = data
+
+    def _place(self, where: slice) -> tuple[MemoryArea, slice]:
+        for start, data in self._areas():
+            if start <= where.start and where.stop <= start + len(data):
+                return data, slice(where.start - start, where.stop - start)
+        if self.elsewhere is None:
+            raise BadAddress(f"SIGSEGV (invalid memory), address {where.start:#x}")
+        return self.elsewhere, where
+
+
 class AddressSpace:
-    """The memory ranges of a board, and their bytes."""
+    """The memory ranges of a board, and their bytes.
+
+    Attributes:
+        has_ram_access: whether CFE_PSP_MemRead8, CFE_PSP_MemWrite8 and their relatives are implemented.
+    """
+
+    has_ram_access = True
 
     def __init__(self) -> None:
         super().__init__()
@@ -123,14 +169,22 @@ class AddressSpace:
         """Check that a block of memory lies in one range of a type (CFE_PSP_MemValidateRange).
 
         Raises:
-            OsalError: CFE_PSP_INVALID_MEM_TYPE for an invalid or different type, CFE_PSP_INVALID_MEM_ADDR if it begins
-                in no range, CFE_PSP_INVALID_MEM_RANGE if it ends beyond the range or the last address. If it begins in
-                several ranges, one of them must match; otherwise the error is about the last one.
+            OsalError: CFE_PSP_INVALID_MEM_TYPE for an invalid type, CFE_PSP_INVALID_MEM_RANGE if the block ends beyond
+                the last address. Otherwise the error is about the last range of the table, whichever contains the
+                block, as in NASA's PSP: CFE_PSP_INVALID_MEM_ADDR unless the block begins in that range.
         """
-        self._range_of(address, size, memory_type)
+        found = self._find(address, size, memory_type)
+        if isinstance(found, OsalError):
+            raise found
 
     def mem_read8(self, address: int) -> int:
-        """Return the byte at an address (CFE_PSP_MemRead8); raises CFE_PSP_INVALID_MEM_*."""
+        """Return the byte at an address (CFE_PSP_MemRead8).
+
+        Raises:
+            OsalError: CFE_PSP_ERROR_NOT_IMPLEMENTED with NASA's PSP for Linux. CFE_PSP_INVALID_MEM_* on a board with
+                `memory: ranges`.
+            BadAddress: no memory is there, with `memory: direct`.
+        """
         return self._read(address, 1)
 
     def mem_read16(self, address: int) -> int:
@@ -156,11 +210,11 @@ class AddressSpace:
         self._write(address, value, 4, MEM_RAM)
 
     def mem_cpy(self, dest: int, src: int, size: int) -> None:
-        """Copy bytes between addresses (CFE_PSP_MemCpy); raises CFE_PSP_INVALID_MEM_*."""
+        """Copy bytes between addresses (CFE_PSP_MemCpy); raises CFE_PSP_INVALID_MEM_* or `BadAddress`."""
         self._store(dest, self._load(src, size))
 
     def mem_set(self, dest: int, value: int, size: int) -> None:
-        """Set all bytes of a block (CFE_PSP_MemSet); raises CFE_PSP_INVALID_MEM_*."""
+        """Set all bytes of a block (CFE_PSP_MemSet); raises CFE_PSP_INVALID_MEM_* or `BadAddress`."""
         self._store(dest, bytes([value & 0xFF]) * size)
 
     def _check_number(self, range_num: int) -> None:
@@ -170,26 +224,41 @@ class AddressSpace:
             )
 
     def _range_of(self, address: int, size: int, memory_type: int) -> int:
-        """Return the number of the first range that contains the whole block."""
+        """Return the number of the first range that contains the whole block; the error is about the range that the
+        block begins in, if there is one.
+        """
+        found = self._find(address, size, memory_type)
+        if not isinstance(found, OsalError):
+            return found
+        near = (self._fit(number, address, size, memory_type) for number in range(MEM_TABLE_SIZE))
+        raise next((each for each in near if each is not None and each.status != CFE_PSP_INVALID_MEM_ADDR), found)
+
+    def _find(self, address: int, size: int, memory_type: int) -> int | OsalError:
+        """Return the number of the first range that contains the whole block, otherwise NASA's error."""
         if memory_type not in (MEM_RAM, MEM_EEPROM, MEM_ANY):
-            raise OsalError(CFE_PSP_INVALID_MEM_TYPE, f"invalid memory type {memory_type}")
+            return OsalError(CFE_PSP_INVALID_MEM_TYPE, f"invalid memory type {memory_type}")
         if (address + size) % _ADDRESSES < address:
-            raise OsalError(CFE_PSP_INVALID_MEM_RANGE, f"{size} bytes at {address:#x} reach beyond the last address")
-        problem = OsalError(CFE_PSP_INVALID_MEM_ADDR, f"address {address:#x} is not in a memory range")
-        for number, entry in enumerate(self._ranges):
-            end = (entry.start_addr + entry.size) % _ADDRESSES
-            if not entry.start_addr <= address < end:
-                continue
-            if address + size > end:
-                text = f"{size} bytes at {address:#x} exceed memory range {number}"
-                problem = OsalError(CFE_PSP_INVALID_MEM_RANGE, text)
-            elif memory_type not in (MEM_ANY, entry.memory_type):
-                problem = OsalError(
-                    CFE_PSP_INVALID_MEM_TYPE, f"address {address:#x} is in memory of type {entry.memory_type}"
-                )
-            else:
+            return OsalError(CFE_PSP_INVALID_MEM_RANGE, f"{size} bytes at {address:#x} reach beyond the last address")
+        problem = OsalError(CFE_PSP_INVALID_MEM_ADDR, "the table has no ranges")
+        for number in range(MEM_TABLE_SIZE):
+            misfit = self._fit(number, address, size, memory_type)
+            if misfit is None:
                 return number
-        raise problem
+            problem = misfit
+        return problem
+
+    def _fit(self, number: int, address: int, size: int, memory_type: int) -> OsalError | None:
+        """Return None if a range contains a block, otherwise why not. A range that was never set is empty."""
+        entry = self._ranges[number]
+        end = (entry.start_addr + entry.size) % _ADDRESSES
+        if not entry.start_addr <= address < end:
+            return OsalError(CFE_PSP_INVALID_MEM_ADDR, f"address {address:#x} is not in memory range {number}")
+        if address + size > end:
+            return OsalError(CFE_PSP_INVALID_MEM_RANGE, f"{size} bytes at {address:#x} exceed memory range {number}")
+        if memory_type not in (MEM_ANY, entry.memory_type):
+            text = f"address {address:#x} is in memory of type {entry.memory_type}"
+            return OsalError(CFE_PSP_INVALID_MEM_TYPE, text)
+        return None
 
     def _load(self, address: int, size: int) -> bytes:
         area, where = self._place(address, size, MEM_ANY, False)
@@ -212,10 +281,17 @@ class AddressSpace:
         """Check the access to memory that cannot always be read or written; see `cfepy.psp.addresses`."""
 
     def _read(self, address: int, size: int) -> int:
+        self._check_ram_access()
         _check_alignment(address, size)
         return int.from_bytes(self._load(address, size), "little")
 
+    def _check_ram_access(self) -> None:
+        if not self.has_ram_access:
+            raise OsalError(CFE_PSP_ERROR_NOT_IMPLEMENTED, "this PSP does not read and write RAM by address")
+
     def _write(self, address: int, value: int, size: int, memory_type: int) -> None:
+        if memory_type == MEM_RAM:
+            self._check_ram_access()
         _check_alignment(address, size)
         self._store(address, _little(value, size), memory_type)
 

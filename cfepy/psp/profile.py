@@ -30,6 +30,11 @@ LIMIT_NAMES = tuple(known.name for known in fields(PlatformConfig) if known.name
 Limit = int | str | tuple[int, ...]
 """A value of `PlatformConfig`."""
 
+LINUX, DIRECT, RANGES = "linux", "direct", "ranges"
+MEMORIES = (LINUX, DIRECT, RANGES)
+"""How flight software reaches memory by address: as with NASA's PSP for Linux; the same with its module ram_direct in
+place of ram_notimpl; or only in the ranges that the board has.
+"""
 REGION_FIELDS = ("name", "size", "retained")
 PORT_FIELDS = ("name", "address", "size")
 SIZES = ("program_flash", "data_flash")
@@ -88,6 +93,7 @@ class BoardProfile:
         program_flash, data_flash: size in bytes; 0 for no limit.
         sram: regions of RAM; empty for no limit.
         ports: I/O ports; empty for none.
+        memory: how flight software reaches memory by address, one of `MEMORIES`.
         watchdog_max_ms: longest time of the watchdog, which resets the processor, in ms; 0 for a watchdog without
             effect.
         context_switch_cycles: processor cycles of a task switch.
@@ -107,6 +113,7 @@ class BoardProfile:
     data_flash: int = 0
     sram: tuple[MemoryRegion, ...] = ()
     ports: tuple[PortRange, ...] = ()
+    memory: str = RANGES
     watchdog_max_ms: int = 0
     context_switch_cycles: int = 0
     syscall_cycles: int = 0
@@ -230,6 +237,17 @@ def _port_range(entry: Marked) -> PortRange:
     return PortRange(**_each(readers, parts))
 
 
+def read_memory(entry: Marked) -> str:
+    """Return how flight software reaches memory by address.
+
+    Raises:
+        UsageError: it is none of `MEMORIES`.
+    """
+    if entry.value not in MEMORIES:
+        raise entry.fail(f"must be {' or '.join(MEMORIES)}, not {entry.shown()}")
+    return str(entry.value)
+
+
 def _address(entry: Marked) -> int:
     return entry.integer(highest=MOST_BYTES)
 
@@ -281,6 +299,7 @@ def _memory_costs(entry: Marked) -> MemoryCosts:
 _PARTS: Mapping[str, Callable[[Marked], Any]] = {
     "sram": _sram,
     "ports": _ports,
+    "memory": read_memory,
     "limits": _limits,
     "memory_costs": _memory_costs,
 }

@@ -14,9 +14,9 @@ from cfepy.config.platform import PlatformConfig
 from cfepy.config.versions import VersionFunctions
 from cfepy.osal import Osal, OsTime, time_from_total_nanoseconds
 from cfepy.psp import addresses as endian
-from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM, EepromSpace, PortSpace
+from cfepy.psp.addresses import MEM_ATTR_READWRITE, MEM_EEPROM, MEM_RAM, SIZE_MAX, AllMemory, EepromSpace, PortSpace
 from cfepy.psp.exceptions import ExceptionApi
-from cfepy.psp.profile import BoardProfile
+from cfepy.psp.profile import LINUX, RANGES, BoardProfile
 from cfepy.psp.retained import EEPROM_BYTES, Retained
 from cfepy.psp.watchdog import WATCHDOG_MAX, Watchdog
 from cfepy.rtos import Kernel
@@ -49,12 +49,19 @@ RESTART_DELAY_MS = 10_000
 EEPROM_ADDRESS = 0x1000_0000
 RESET_AREA_ADDRESS = 0x2000_0000
 USER_RESERVED_ADDRESS = 0x3000_0000
+AREA_ADDRESSES = {
+    "reset_area": RESET_AREA_ADDRESS,
+    "eeprom": EEPROM_ADDRESS,
+    "user_reserved": USER_RESERVED_ADDRESS,
+}
+"""The addresses of the retained areas, by their names in `Retained`."""
 # The modules of NASA's Linux PSP with a counterpart here, their ids, and their console lines.
 _MODULES = (
     ("soft_timebase", 0x0110FF00, f"Instantiated software timebase '{SOFT_TIMEBASE_NAME}' running at 10000 usec"),
-    ("ram_notimpl", 0x0110FF03, "Physical RAM access not implemented"),
     ("endian_api", 0x0110FF07, "Host CPU Endian=LITTLE"),
 )
+_RAM_NOTIMPL = ("ram_notimpl", 0x0110FF03, "Physical RAM access not implemented")
+_RAM_DIRECT = ("ram_direct", 0x0110FF03, "Using DIRECT memory mapped RAM implementation")
 _PORTS_NOTIMPL = ("port_notimpl", 0x0110FF04, "I/O Port access not implemented")
 _PORTS_DIRECT = ("port_direct", 0x0110FF04, "Using DIRECT memory mapped PORT implementation")
 _MEMORY_REMOVED = """\
@@ -133,6 +140,9 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         osal: provides the software time base.
         retained: memory that outlives a processor reset; None makes a new one.
         on_restart: called with the reset type, the reason and whether it is a fault; None stops the run.
+
+    Attributes:
+        all_memory: the range of all memory; None on a board with `memory: ranges`.
     """
 
     hto_be16 = be16_to_h = staticmethod(endian.swap_16)
@@ -173,6 +183,8 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         has_watchdog = profile.watchdog_max_ms > 0
         self.watchdog = Watchdog(kernel, self.bite if has_watchdog else None, profile.watchdog_max_ms or WATCHDOG_MAX)
         self.declare_ports(profile.ports)
+        self.has_ram_access = profile.memory != LINUX
+        self.all_memory = None if profile.memory == RANGES else AllMemory(self._placed_areas)
         if profile.data_flash:
             self.protect_eeprom()
         self._restart_type = RestartType(RST_TYPE_POWERON, RST_SUBTYPE_POWER_CYCLE)
@@ -394,23 +406,30 @@ class Psp(EepromSpace, PortSpace, ExceptionApi, AbsentHardware, VersionFunctions
         self.osal.time_base_set(timebase, SOFT_TIMEBASE_PERIOD_US, SOFT_TIMEBASE_PERIOD_US)
         self.osal.add_one_hz_timer(timebase)
         ports = _PORTS_DIRECT if self.profile.ports else _PORTS_NOTIMPL
-        for name, module_id, says in (*_MODULES[:2], ports, *_MODULES[2:]):
+        ram = _RAM_DIRECT if self.has_ram_access else _RAM_NOTIMPL
+        for name, module_id, says in (_MODULES[0], ram, ports, *_MODULES[1:]):
             self.console.write(f"CFE_PSP: initializing module '{name}' with ID {module_id:08x}")
             self.console.write(f"CFE_PSP: {says}")
 
     def _map_memory(self) -> None:
-        """Map the areas to addresses; the EEPROM is the second range, as in NASA's PSP."""
+        """Map the areas to addresses. The EEPROM is the second range. On Linux the first is all of memory."""
         kept, eeprom = self.retained, self.retained.eeprom
-        for number, kind, address, area in (
-            (0, MEM_RAM, RESET_AREA_ADDRESS, kept.reset_area),
-            (1, MEM_EEPROM, EEPROM_ADDRESS, eeprom),
-            (2, MEM_RAM, USER_RESERVED_ADDRESS, kept.user_reserved),
-        ):
-            self.mem_range_set(number, kind, address, len(area), 4, MEM_ATTR_READWRITE, area)
+        self.mem_range_set(1, MEM_EEPROM, EEPROM_ADDRESS, len(eeprom), 4, MEM_ATTR_READWRITE, eeprom)
+        if self.all_memory is not None:
+            self.mem_range_set(0, MEM_RAM, 0, SIZE_MAX, 4, MEM_ATTR_READWRITE, self.all_memory)
+        else:
+            for number, address, area in (
+                (0, RESET_AREA_ADDRESS, kept.reset_area),
+                (2, USER_RESERVED_ADDRESS, kept.user_reserved),
+            ):
+                self.mem_range_set(number, MEM_RAM, address, len(area), 4, MEM_ATTR_READWRITE, area)
         self.console.write(
             f"CFE_PSP: EEPROM Range (2) created: Start Address = {EEPROM_ADDRESS:08X}, "
             f"Size = {len(eeprom):08X} Status = 0"
         )
+
+    def _placed_areas(self) -> list[tuple[int, bytearray | memoryview]]:
+        return [(address, getattr(self.retained, name)) for name, address in AREA_ADDRESSES.items()]
 
     def _clear_memory(self) -> None:
         for area in ("CDS", "Reset", "User Reserved"):

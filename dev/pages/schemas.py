@@ -156,6 +156,7 @@ def mission_schema() -> Schema:
     shapes: dict[str, Schema] = {
         "name": TEXT,
         "board": TEXT,
+        "memory": one_of(profile.MEMORIES),
         "cfe_version": one_of(RELEASES),
         "safe": FLAG,
         "scheduling": one_of(SCHEDULINGS),
@@ -345,6 +346,7 @@ def board_schema() -> Schema:
         **numbers,
         "sram": _list(region),
         "ports": _list(port),
+        "memory": one_of(profile.MEMORIES),
         "limits": record(profile.LIMIT_NAMES, _limits()),
         "memory_costs": record(costs, dict.fromkeys(costs, integer())),
     }

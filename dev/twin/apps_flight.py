@@ -176,7 +176,7 @@ class RealApps(Real):
 
 
 def simulated(
-    built: Path, more: Mapping[str, bytes] | None = None, steps: Sequence[Step] = ()
+    built: Path, more: Mapping[str, bytes] | None = None, steps: Sequence[Step] = (), memory: str = "linux"
 ) -> AbstractContextManager[Simulated]:
     """Return the prepared mission in cfepy.
 
@@ -184,6 +184,7 @@ def simulated(
         built: the folder of NASA's executable.
         more: replacement files, by virtual path.
         steps: steps to fly first, after the preparation.
+        memory: how applications reach memory by address, as in a mission file.
     """
     flown = [f"{app.name.lower()}.so" for app in FLIGHT_APPS]
     files = {
@@ -194,7 +195,7 @@ def simulated(
     heard = ", ".join(map(hex, TELEMETRY_HEARD))
     link = LINK_APP.with_suffix(".py").read_text(encoding="utf-8").replace("WATCHED = (", f"WATCHED = ({heard}, ")
     files |= {**tables(), STARTUP_PATH: STARTUP.encode(), "/cf/link.py": link.encode(), **(more or {})}
-    return prepared_simulation(files, [*preparation(), *steps], lambda flown: SimulatedApps(flown, LINE))
+    return prepared_simulation(files, [*preparation(), *steps], lambda flown: SimulatedApps(flown, LINE), memory=memory)
 
 
 def real(

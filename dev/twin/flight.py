@@ -191,6 +191,7 @@ def prepared_simulation(
     steps: Iterable[Step],
     make: Callable[[Mission], Simulated] = Simulated,
     release: str = RELEASE,
+    memory: str = "linux",
 ) -> Iterator[Simulated]:
     """Return a mission in cfepy.
 
@@ -199,12 +200,13 @@ def prepared_simulation(
         steps: steps to fly first.
         make: makes the computer of the mission.
         release: release of cFE, such as "7.0.0".
+        memory: how applications reach memory by address, as in a mission file.
     """
     with tempfile.TemporaryDirectory() as folder:
         for path, data in files.items():
             (Path(folder) / Path(path).name).write_bytes(data)
         (Path(folder) / "startup.scr").write_bytes(files[STARTUP_PATH])
-        (Path(folder) / "mission.yaml").write_text(f'cfe_version: "{release}"\n', encoding="utf-8")
+        (Path(folder) / "mission.yaml").write_text(f'cfe_version: "{release}"\nmemory: {memory}\n', encoding="utf-8")
         with Mission(folder, console=Console(quiet=True)) as flown:
             yield _after(steps, make(flown))
 

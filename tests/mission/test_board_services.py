@@ -66,6 +66,7 @@ def test_hanging_application_is_ended_by_the_watchdog(tmp_path: Path) -> None:
 
 
 def test_eeprom_and_ram_disk_survive_a_processor_reset(tmp_path: Path) -> None:
+    (tmp_path / "mission.yaml").write_text("memory: direct\n", encoding="utf-8")
     lines = flight(
         tmp_path,
         """

@@ -32,6 +32,7 @@ ordered_sets: maybe
 cfe_version: 6.7
 safe: perhaps
 scheduling: unfair
+memory: all
 epoch: soon
 compiled: {omit_deprecated: 1, strip: true}
 cpp_nodes: {profile: hard, arena_bytes: 3}
@@ -52,7 +53,7 @@ def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> 
     mistakes = Mistakes()
     said = read(tmp_path, WRONG, mistakes)
     fields = "name board bord limits.sb_max_pipes limits.nodes nodes.A.namespace nodes.A.args nodes.A.keys[0] topics.b "
-    fields += "topics./c params.x params_from ordered_sets cfe_version safe scheduling epoch "
+    fields += "topics./c params.x params_from ordered_sets cfe_version safe scheduling memory epoch "
     fields += "compiled.omit_deprecated compiled.strip "
     fields += "cpp_nodes.profile cpp_nodes.arena_bytes "
     fields += "connection_delay ros_bridge.publish.a ros_bridge.publish./b ros_bridge.subscribe[0] "

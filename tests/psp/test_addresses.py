@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import pytest
 
-from cfepy.psp import BoardProfile, Retained
+from cfepy.psp import AREA_ADDRESSES, BadAddress, BoardProfile, Retained
 from cfepy.psp.addresses import (
     MEM_ANY,
     MEM_ATTR_READWRITE,
@@ -76,7 +76,7 @@ def test_range_allocates_its_bytes_on_demand(memory: EepromSpace) -> None:
 
 
 def test_area_of_the_retained_memory_can_be_moved() -> None:
-    board = Board()
+    board = Board(profile=BoardProfile("test"))
     board.psp.boot()
     psp, places = board.psp, []
     address = psp.mem_range_get(2).start_addr
@@ -136,8 +136,8 @@ def test_addresses_wrap_around() -> None:
     [
         (RAM - 1, 4, MEM_ANY, CFE_PSP_INVALID_MEM_ADDR),
         (RAM + 64, 1, MEM_ANY, CFE_PSP_INVALID_MEM_ADDR),
-        (RAM + 62, 4, MEM_ANY, CFE_PSP_INVALID_MEM_RANGE),
-        (RAM, 4, MEM_EEPROM, CFE_PSP_INVALID_MEM_TYPE),
+        (RAM + 62, 4, MEM_ANY, CFE_PSP_INVALID_MEM_ADDR),
+        (RAM, 4, MEM_EEPROM, CFE_PSP_INVALID_MEM_ADDR),
         (RAM, 4, MEM_INVALID, CFE_PSP_INVALID_MEM_TYPE),
     ],
 )
@@ -167,7 +167,7 @@ def test_words_must_be_aligned(memory: EepromSpace) -> None:
 def test_eeprom_survives_a_power_on_reset() -> None:
     retained = Retained(eeprom_bytes=64)
     for written in (0, 99):
-        board = Board(retained)
+        board = Board(retained, BoardProfile("test"))
         with board.kernel:
             board.psp.boot(2)
             eeprom = board.psp.mem_range_get(1)
@@ -241,4 +241,58 @@ def test_access_must_be_valid_in_one_of_overlapping_ranges() -> None:
     space.mem_range_set(1, MEM_EEPROM, 0x1000, 0x100, 4, MEM_ATTR_READWRITE)
     for kind in (MEM_RAM, MEM_EEPROM, MEM_ANY):
         space.mem_validate_range(0x1080, 4, kind)
-    assert _status(lambda: space.mem_validate_range(0x1080, 0x100, MEM_EEPROM)) == CFE_PSP_INVALID_MEM_RANGE
+    assert _status(lambda: space.mem_validate_range(0x1080, 0x100, MEM_EEPROM)) == CFE_PSP_INVALID_MEM_ADDR
+
+
+def test_the_last_range_of_the_table_decides_the_error(memory: EepromSpace) -> None:
+    memory.mem_range_set(9, MEM_RAM, RAM, 64, 4, MEM_ATTR_READWRITE)
+    assert _status(lambda: memory.mem_validate_range(RAM, 65, MEM_ANY)) == CFE_PSP_INVALID_MEM_RANGE
+    assert _status(lambda: memory.mem_validate_range(RAM, 64, MEM_EEPROM)) == CFE_PSP_INVALID_MEM_TYPE
+    assert _status(lambda: memory.mem_validate_range(EEPROM, 4, MEM_RAM)) == CFE_PSP_INVALID_MEM_ADDR
+
+
+def test_all_of_memory_is_ram_on_linux_and_none_is_read_by_address() -> None:
+    board = Board(profile=BoardProfile("test", memory="linux"))
+    board.psp.boot()
+    psp = board.psp
+    assert psp.mem_range_get(0) == MemRange(MEM_RAM, 0, (1 << 64) - 1, 4, 3)
+    assert psp.mem_range_get(2) == MemRange()
+    for address in (0, 16, 1 << 63, psp.mem_range_get(1).start_addr):
+        psp.mem_validate_range(address, 4, MEM_RAM)
+    for call in (psp.mem_read8, psp.mem_read16, psp.mem_read32):
+        assert _status(lambda call=call: call(1)) == CFE_PSP_ERROR_NOT_IMPLEMENTED  # type: ignore[misc]
+    for write in (psp.mem_write8, psp.mem_write16, psp.mem_write32):
+        assert _status(lambda write=write: write(1, 1)) == CFE_PSP_ERROR_NOT_IMPLEMENTED  # type: ignore[misc]
+
+
+@pytest.mark.parametrize("kind", ["linux", "direct"])
+def test_an_address_without_memory_is_a_fault_on_linux(kind: str) -> None:
+    board = Board(profile=BoardProfile("test", memory=kind))
+    board.psp.boot()
+    psp, eeprom, user = board.psp, AREA_ADDRESSES["eeprom"], AREA_ADDRESSES["user_reserved"]
+    psp.mem_set(eeprom, 7, 4)
+    psp.mem_cpy(user + 8, eeprom + 2, 4)
+    psp.eeprom_write16(user + 1, 0x0506)
+    assert bytes(psp.get_user_reserved_area()[:12]) == bytes([0, 6, 5, 0, 0, 0, 0, 0, 7, 7, 0, 0])
+    for call in (
+        lambda: psp.mem_set(16, 1, 4),
+        lambda: psp.mem_cpy(user, 16, 4),
+        lambda: psp.mem_cpy(16, user, 4),
+        lambda: psp.eeprom_write8(16, 1),
+        lambda: psp.mem_set(eeprom - 1, 1, 2),
+    ):
+        with pytest.raises(BadAddress, match="SIGSEGV"):
+            call()
+
+
+def test_ram_is_read_and_written_by_address_with_ram_direct() -> None:
+    board = Board(profile=BoardProfile("test", memory="direct"))
+    board.psp.boot()
+    psp, user = board.psp, AREA_ADDRESSES["user_reserved"]
+    assert "CFE_PSP: Using DIRECT memory mapped RAM implementation" in board.console.lines
+    psp.mem_write16(user, 0x0102)
+    psp.mem_write8(AREA_ADDRESSES["eeprom"], 3)
+    assert (psp.mem_read32(user), psp.mem_read8(AREA_ADDRESSES["eeprom"])) == (0x0102, 3)
+    assert _status(lambda: psp.mem_read16(user + 1)) == CFE_PSP_ERROR_ADDRESS_MISALIGNED
+    with pytest.raises(BadAddress):
+        psp.mem_read8(0)

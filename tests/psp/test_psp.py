@@ -15,7 +15,7 @@ from cfepy.status import CFE_PSP_ERROR, CfeError, OsalError
 from cfepy.writing.console import Console
 
 MS = 1_000_000
-TEST_BOARD = BoardProfile("test")
+TEST_BOARD = BoardProfile("test", memory="linux")
 BOOT = """\
 CFE_PSP: Default Reset SubType = 1
 CFE_PSP: Default CPU ID = 1

@@ -170,10 +170,8 @@ class Image:
 
     def _address_of(self, symbol: Symbol) -> int:
         if symbol.is_defined:
-            is_of_cpp = symbol.is_weak and symbol.name.startswith(
-                "_Z"
-            )  # each object has it, such as an inline function
-            found = None if is_of_cpp or not symbol.name else self._linker.of_library(symbol.name)
+            is_inline = symbol.is_weak and symbol.name.startswith("_Z")  # each object in C++ has its own
+            found = None if is_inline or not symbol.name else self._linker.of_library(symbol.name)
             if found is None:
                 return self.base + symbol.address
             self.replaced.append(symbol.name)

@@ -62,6 +62,7 @@ class CRuntime:
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
         guard, tables: check blocks and images of tables; None without the guard.
+        tells_code: whether the operating system tells where code is; NASA's Linux does not.
         applications, libraries: loaded images, by the name of the application or the path of the library.
         modules: images that OS_ModuleLoad loaded.
         at_app_end: called when an application has ended.
@@ -128,6 +129,7 @@ class CRuntime:
             state=self._libc,
             errno_at=self.thread_locals.errno,
         )
+        self.tells_code = cfe.psp.all_memory is None
         self.declared = Declarations(self._libc)
         self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
         self.ends = Ends(self.run, self.image_at)

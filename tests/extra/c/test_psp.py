@@ -20,8 +20,9 @@ def program(body: str, before: str = "") -> str:
     return f"{HEADER}{before}\nvoid TEST_Main(void)\n{{\n{body}\n}}\n"
 
 
-def results(folder: Path, body: str, *, before: str = "") -> list[str]:
+def results(folder: Path, body: str, *, before: str = "", memory: str = "linux") -> list[str]:
     """Return the output of a main function's body."""
+    (folder / "mission.yaml").write_text(f"memory: {memory}\n", encoding="utf-8")
     return said(fly_c(folder, program(body, before), 2))
 
 
@@ -96,8 +97,8 @@ def test_the_memory_of_compiled_code_is_a_range(tmp_path: Path) -> None:
         DID(CFE_PSP_MemRangeSet(4, 1, at, 4, 4, 3));
         DID(CFE_PSP_MemRangeSet(4, 1, at, 4, 3, 3));
     """
-    assert results(tmp_path, body, before=before) == [
-        *("0", "-22", "-22", "-21", "0", "0", "0", "44 1122 11223344", "-3", "-21", "-21", "-2"),
+    assert results(tmp_path, body, before=before, memory="ranges") == [
+        *("0", "-21", "-22", "-21", "0", "0", "0", "44 1122 11223344", "-3", "-21", "-21", "-2"),
         *("0", "0", "bbcc33aa", "0", "0", "5", "0", "1010101", "-1", "-1", "10", "0", "1", "-2", "-23", "0", "-24"),
     ]
 
@@ -122,12 +123,45 @@ def test_the_eeprom_is_read_by_pointer_and_written_by_function(tmp_path: Path) -
         DID(CFE_PSP_EepromPowerUp(0));
     """
     compile_c(tmp_path, "TEST", program(body))
+    (tmp_path / "mission.yaml").write_text("memory: ranges\n", encoding="utf-8")
     with Mission(write_mission(tmp_path, "TEST"), console=Console(quiet=True)) as mission:
         mission.run_for(2)
         lines = said(console_of(mission))
         mission.finish()
         assert bytes(mission.cfe.psp.retained.eeprom[:8]) == b"\0\7\0\0\x78\x56\x34\x12"
-    assert lines == ["2 80000", "0", "-23", "0", "0", "7 12345678", "-22", "0", "7", "-27", "0"]
+    assert lines == ["2 80000", "0", "-21", "0", "0", "7 12345678", "-22", "0", "7", "-27", "0"]
+
+
+def test_ram_is_read_and_written_by_address_with_ram_direct(tmp_path: Path) -> None:
+    body = """
+        uint64_t at = (uint64_t)&word, user;
+        uint32_t found, size;
+        DID(CFE_PSP_MemWrite16(at + 2, 0xBBCC));
+        DID(CFE_PSP_MemRead32(at, &found));
+        DID(CFE_PSP_MemRead32(at + 1, &found));
+        CFE_PSP_GetUserReservedArea(&user, &size);
+        DID(CFE_PSP_MemWrite8(user, 7));
+        SAY("%x %d", found, *(uint8_t *)user);
+    """
+    before = "static uint32_t word = 0x11223344;"
+    assert results(tmp_path, body, before=before, memory="direct") == ["0", "0", "-3", "0", "bbcc3344 7"]
+
+
+FAULTS = {
+    "CFE_PSP_MemCpy(&word, (void *)16, 4)": "0x13",
+    "CFE_PSP_MemSet((void *)16, 1, 4)": "0x10",
+    "CFE_PSP_EepromWrite8(16, 1)": "0x10",
+    "CFE_PSP_MemRead8(16, (uint8_t *)&word)": "0x10",
+    "CFE_PSP_MemWrite32(16, 1)": "0x10",
+    "CFE_PSP_MemRead8((uint64_t)&word, NULL)": "0x0",
+}
+
+
+@pytest.mark.parametrize(("call", "address"), FAULTS.items(), ids=FAULTS)
+def test_an_address_without_memory_is_a_fault_of_the_caller(tmp_path: Path, call: str, address: str) -> None:
+    text = program(f"{call};\nOS_TaskDelay(9000);", "uint32_t word;")
+    (tmp_path / "mission.yaml").write_text("memory: direct\n", encoding="utf-8")
+    assert f"CFault: bad address {address}, in TEST_Main (TEST.c:6)" in fly_c(tmp_path, text, 2)
 
 
 def test_areas_of_the_board(tmp_path: Path) -> None:

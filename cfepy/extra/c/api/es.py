@@ -115,8 +115,10 @@ def _declare_info(api: Declarations, c: CRuntime) -> None:
         code = (0,) * 8
         if image is not None:
             entry = image.symbols.get(info.entry_point, 0)
-            code = (1, image.base, image.size, image.base, 1, image.base, 1, entry)
-        _, code_address, code_size, data_address, data_size, bss_address, bss_size, start = code
+            code = (0,) * 7 + (entry,)
+            if c.tells_code:
+                code = (1, image.base, image.size, image.base, 1, image.base, 1, entry)
+        is_known, code_address, code_size, data_address, data_size, bss_address, bss_size, start = code
         raw = APP_INFO.pack(
             info.resource_id,
             info.type,
@@ -124,7 +126,7 @@ def _declare_info(api: Declarations, c: CRuntime) -> None:
             chars(info.entry_point, 20),
             chars(info.file_name, 64),
             info.stack_size,
-            int(image is not None),
+            is_known,
             code_address,
             code_size,
             data_address,

@@ -61,7 +61,9 @@ def _declare_modules(api: Declarations, c: CRuntime) -> None:
         module = os.module_info(module_id)
         code = os.module_code(module_id)
         image = code.image_ if isinstance(code, LoadedCode) else None
-        where = (1, 0, image.base, image.size, image.base, 0, image.base, 0) if image is not None else (0,) * 8
+        where = (0,) * 8
+        if image is not None and c.tells_code:
+            where = (1, 0, image.base, image.size, image.base, 0, image.base, 0)
         raw = MODULE_INFO.pack(
             0, 0, chars(module.filename, OS_MAX_PATH_LEN), chars(module.name, OS_MAX_API_NAME), *where
         )

@@ -1,7 +1,8 @@
 """CFE_PSP_Mem*, CFE_PSP_Eeprom*, CFE_PSP_Port* and the areas of the board's memory, for C.
 
-The board's memory table has one more range: the memory of compiled code, as RAM. While there is compiled code, the
-reset area, the user reserved area and the EEPROM also lie in that memory. So C code may use their pointers, and other
+The memory of compiled code belongs to the range of all memory, as on NASA's Linux, where a wrong address is a fault of
+the caller. On a board with `memory: ranges` it is one more range of the table. While there is compiled code, the reset
+area, the user reserved area and the EEPROM also lie in that memory. So C code may use their pointers, and other
 applications see the same bytes. At the end of the processor their contents go to the retained memory.
 """
 
@@ -14,8 +15,14 @@ from cfepy.extra.c.arena import REGION
 from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.guard import alignment_of
 from cfepy.extra.c.memory import CMemory
-from cfepy.psp import Psp
-from cfepy.status import CFE_PSP_ERROR, CFE_PSP_INVALID_MEM_ADDR, CFE_PSP_INVALID_POINTER, OsalError
+from cfepy.psp import AREA_ADDRESSES, Psp
+from cfepy.status import (
+    CFE_PSP_ERROR,
+    CFE_PSP_ERROR_NOT_IMPLEMENTED,
+    CFE_PSP_INVALID_MEM_ADDR,
+    CFE_PSP_INVALID_POINTER,
+    OsalError,
+)
 
 if TYPE_CHECKING:
     from cfepy.extra.c.calls import Declarations
@@ -26,9 +33,24 @@ CODE_RANGE = 3
 _WORDS = 8
 """Minimum alignment of an area in bytes."""
 MEM_RAM, MEM_ATTR_READWRITE, WORD = 1, 3, 4
-AREAS = {"reset_area": 0, "eeprom": 1, "user_reserved": 2}
-"""The retained areas, and the numbers of their ranges."""
 AREA_NAMES = {"reset_area": "the reset area", "eeprom": "the EEPROM", "user_reserved": "the user reserved area"}
+
+
+class RawMemory:
+    """The memory of compiled code as bytes at their addresses; an access to no memory is a fault of the caller.
+
+    Args:
+        memory: of C.
+    """
+
+    def __init__(self, memory: CMemory) -> None:
+        self._memory = memory
+
+    def __getitem__(self, where: slice) -> bytes:
+        return bytes(self._memory.peek(where.start, where.stop - where.start))
+
+    def __setitem__(self, where: slice, data: bytes) -> None:
+        self._memory.poke(where.start, data)
 
 
 class CodeMemory:
@@ -66,7 +88,7 @@ class SharedAreas:
     def __init__(self, c: CRuntime) -> None:
         self._psp: Psp = c.cfe.psp
         self._places: dict[str, tuple[int, int]] = {}
-        for name in AREAS:
+        for name in AREA_NAMES:
             self._psp.move_area(name, partial(self._take, c, name))
         c.at_close.append(self._leave)
 
@@ -79,7 +101,9 @@ class SharedAreas:
         return view
 
     def _leave(self) -> None:
-        for name in AREAS:
+        if self._psp.all_memory is not None:
+            self._psp.all_memory.elsewhere = None
+        for name in AREA_NAMES:
             self._psp.move_area(name, bytearray)
 
     def place(self, name: str) -> tuple[int, int]:
@@ -90,20 +114,23 @@ class SharedAreas:
         """Translate C's pointer to the address in the board's table."""
         for name, (start, size) in self._places.items():
             if start <= pointer < start + size:
-                return self._psp.mem_range_get(AREAS[name]).start_addr + pointer - start
+                return AREA_ADDRESSES[name] + pointer - start
         return pointer
 
-    def pointer(self, number: int, address: int) -> int:
+    def pointer(self, address: int) -> int:
         """Return C's pointer to the start of a range if it is one of the areas; otherwise return `address`."""
         for name, (start, _) in self._places.items():
-            if AREAS[name] == number:
+            if AREA_ADDRESSES[name] == address:
                 return start
         return address
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
     psp, base = c.cfe.psp, c.arena.base
-    psp.mem_range_set(CODE_RANGE, MEM_RAM, base, REGION, WORD, MEM_ATTR_READWRITE, CodeMemory(c.memory, base))
+    if psp.all_memory is not None:
+        psp.all_memory.elsewhere = RawMemory(c.memory)
+    else:
+        psp.mem_range_set(CODE_RANGE, MEM_RAM, base, REGION, WORD, MEM_ATTR_READWRITE, CodeMemory(c.memory, base))
     areas = SharedAreas(c)
     _declare_areas(api, c, areas)
     _declare_ranges(api, c, areas)
@@ -130,7 +157,7 @@ def _declare_ranges(api: Declarations, c: CRuntime, areas: SharedAreas) -> None:
 
     def get(number: int) -> tuple[int, int, int, int, int]:
         found = psp.mem_range_get(number)
-        start = areas.pointer(number, found.start_addr)
+        start = areas.pointer(found.start_addr)
         return found.memory_type, start, found.size, found.word_size, found.attributes
 
     def define(number: int, memory_type: int, start: int, size: int, word_size: int, attributes: int) -> None:
@@ -153,9 +180,16 @@ def _declare_access(api: Declarations, c: CRuntime, areas: SharedAreas) -> None:
     def fill(target: int, value: int, size: int) -> None:
         psp.mem_set(at(target), value, size)
 
-    api.add("CFE_PSP_MemRead8", "Q1", lambda address: psp.mem_read8(at(address)), CFE_PSP_INVALID_POINTER)
-    api.add("CFE_PSP_MemRead16", "Q2", lambda address: psp.mem_read16(at(address)), CFE_PSP_INVALID_POINTER)
-    api.add("CFE_PSP_MemRead32", "Q4", lambda address: psp.mem_read32(at(address)), CFE_PSP_INVALID_POINTER)
+    def to_null(*_: int) -> None:
+        if c.cfe.psp.all_memory is not None:
+            raise CFault("bad address 0x0")
+
+    has_access = c.cfe.psp.has_ram_access
+    null = CFE_PSP_INVALID_POINTER if has_access else CFE_PSP_ERROR_NOT_IMPLEMENTED
+    on_null = to_null if has_access else None
+    api.add("CFE_PSP_MemRead8", "Q1", lambda address: psp.mem_read8(at(address)), null, on_null)
+    api.add("CFE_PSP_MemRead16", "Q2", lambda address: psp.mem_read16(at(address)), null, on_null)
+    api.add("CFE_PSP_MemRead32", "Q4", lambda address: psp.mem_read32(at(address)), null, on_null)
     api.add("CFE_PSP_MemWrite8", "QB", lambda address, value: psp.mem_write8(at(address), value))
     api.add("CFE_PSP_MemWrite16", "QH", lambda address, value: psp.mem_write16(at(address), value))
     api.add("CFE_PSP_MemWrite32", "QI", lambda address, value: psp.mem_write32(at(address), value))
