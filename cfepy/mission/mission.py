@@ -33,7 +33,7 @@ from cfepy.mission.run_pieces import HeldBack, PieceLength, is_to_be_held_back
 from cfepy.mission.spec import MissionSpec
 from cfepy.nodes import Accesses
 from cfepy.osal import FileSystem, Network
-from cfepy.psp import EEPROM_BYTES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
+from cfepy.psp import EEPROM_BYTES, RANGES, BoardProfile, MemoryBudget, PanicError, Retained, load_profile
 from cfepy.rtos import AUTO, Kernel, Policy, StallWatch, Stopwatch, Task, task_kind
 from cfepy.sb import SoftwareBus
 from cfepy.schedules import make_kernel
@@ -382,11 +382,23 @@ class Mission:
         self.record.part(FailedCode).take(task, error, self.kernel.now)
         if task.owner is None or isinstance(error, PanicError):
             return False
-        from cfepy.mission.tracebacks import app_traceback, reason
+        from cfepy.mission.tracebacks import app_traceback, described, reason
 
         self.console.write(f"{task.owner.name}: task {task.name} died of an exception")
         self.console.write(app_traceback(error))
-        return self.cfe.es.take_fault(task, error, reason(error))
+        is_taken = self.cfe.es.take_fault(task, error, reason(error))
+        if getattr(error, "ends_process", False) and self._is_one_process(task):
+            self.kernel.abort(task, described(error))
+        return is_taken
+
+    def _is_one_process(self, task: Task) -> bool:
+        """Return whether a fault of a task ends all flight software, as on Linux, where it is one process.
+
+        A ROS node is a process of its own on a robot. A run with the guard looks for more mistakes.
+        """
+        spec, params = self.spec, getattr(task.owner, "params", None)
+        is_node = params is not None and (params.is_node or task.owner.name in spec.built)
+        return self.board.memory != RANGES and not spec.safe and not spec.compiled.guard and not is_node
 
     def _on_restart(self, reset_type: int, why: str, fault: bool) -> None:
         """Handle a restart of the processor by the PSP: return to the host, which alone can end every task."""

@@ -130,9 +130,10 @@ def _abortion(mission: Mission) -> Iterator[RunProblem]:
     if abortion is not None:
         task, at = abortion.task, instant_text(abortion.at_ns)
         app = "" if task.owner is None else task.owner.name
+        has_raised = any(each.at_ns == abortion.at_ns for each in mission.record.part(FailedCode).died)
         failure = Failure(FailureKind.DIED, app, abortion.text, abortion.at_ns, task=task.name)
         text = f"the flight software aborts at {at}, as NASA's process on Linux does: {abortion.text}"
-        yield RunProblem(text, abortion.at_ns, (failure,))
+        yield RunProblem(text, abortion.at_ns, () if has_raised else (failure,))
 
 
 def _deaths(mission: Mission) -> Iterator[RunProblem]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from cfepy.psp.profile import (
         LIMIT_NAMES,
         MEMORIES,
+        RANGES,
         BoardProfile,
         Limit,
         available_boards,
@@ -47,6 +48,7 @@ __all__ = [
     "EEPROM_BYTES",
     "LIMIT_NAMES",
     "MEMORIES",
+    "RANGES",
     "RST_SUBTYPE_EXCEPTION",
     "RST_SUBTYPE_HW_SPECIAL_COMMAND",
     "RST_SUBTYPE_HW_WATCHDOG",
@@ -92,6 +94,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".profile": (
                 "LIMIT_NAMES",
                 "MEMORIES",
+                "RANGES",
                 "BoardProfile",
                 "Limit",
                 "available_boards",

@@ -72,7 +72,13 @@ class MemoryArea(Protocol):
 
 
 class BadAddress(Exception):
-    """An access to an address without memory, which a processor answers by an exception: on Linux, SIGSEGV."""
+    """An access to an address without memory, which a processor answers by an exception: on Linux, SIGSEGV.
+
+    Attributes:
+        ends_process: SIGSEGV ends NASA's process on Linux.
+    """
+
+    ends_process = True
 
 
 class AllMemory:

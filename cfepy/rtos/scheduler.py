@@ -43,7 +43,7 @@ def whole(time_ns: Any) -> int:
 
 
 class Abortion(NamedTuple):
-    """The end of the whole flight software by abort().
+    """The end of the whole flight software by abort() or a signal.
 
     Attributes:
         task: the task that caused it.
@@ -364,10 +364,20 @@ class Scheduler:
         for mutex in task.held[:]:
             if not mutex.stays_locked or self._is_unwinding:
                 mutex.abandon(task)
-            elif mutex.waits and self.abortion is None:
+            elif mutex.waits:
                 text = f"{task.name} ended while it held mutex {mutex.name}, for which {mutex.waits[0].name} waits"
-                self.abortion = Abortion(task, f"{text} (assertion in pthread_mutex_lock)", self.now)
-                self.stop()
+                self.abort(task, f"{text} (assertion in pthread_mutex_lock)")
+
+    def abort(self, task: Task, text: str) -> None:
+        """End the whole flight software: after this no task runs.
+
+        Args:
+            task: the task that caused it.
+            text: the cause.
+        """
+        if self.abortion is None:
+            self.abortion = Abortion(task, text, self.now)
+            self.stop()
 
     def stop(self) -> None:
         """End the run: `run` returns when the current task reaches its next wait, or at once if the host calls this."""

@@ -92,6 +92,23 @@ def test_eeprom_and_ram_disk_survive_a_processor_reset(tmp_path: Path) -> None:
     ]
 
 
+def test_wrong_address_ends_the_flight_software_as_on_linux(tmp_path: Path) -> None:
+    lines = flight(
+        tmp_path,
+        """
+        def MAIN(cfe):
+            cfe.psp.mem_validate_range(16, 4, 1)
+            try:
+                cfe.psp.mem_set(16, 0, 4)
+            finally:
+                cfe.os.printf("ends")
+        """,
+        20,
+    )
+    assert "cfepy.psp.addresses.BadAddress: SIGSEGV (invalid memory), address 0x10" in "\n".join(lines)
+    assert not any("Restart" in line for line in lines)
+
+
 def test_stored_exception_context_survives_the_reset(tmp_path: Path) -> None:
     console = Console(quiet=True)
     app = """

@@ -14,6 +14,8 @@ class CFault(Exception):
     Attributes:
         called_from: the address to which the last call of that code returns; 0 for none.
         at: the address of the code at fault; 0 when that is not known.
+        ends_process: whether NASA's process on Linux ends here; otherwise it is a finding of cfepy's alone, or SIGFPE,
+            which NASA's PSP handles.
         is_anywhere: the code was stopped from outside, at a place that differs in each run, so its stack is not
             recorded.
         registers: of the code that it came from last, and whether that is in a call; see
@@ -23,6 +25,7 @@ class CFault(Exception):
     __module__ = "builtins"  # so that a report, which has 80 characters, begins with `CFault:`
     called_from = 0
     at = 0
+    ends_process = False
     is_anywhere = False
     registers: tuple[bytes, bool] = (b"", False)
 
@@ -47,6 +50,10 @@ _WORDS = {
     signal_number("SIGILL"): "SIGILL (invalid instruction)",
     signal_number("SIGTRAP"): "SIGTRAP (a trap that the compiler put there)",
 }
+_HANDLED = signal_number("SIGFPE")
+"""The only signal of faults that CFE_PSP_SetDefaultExceptionEnvironment of NASA's Linux handles."""
+_ENDING = re.compile(r"bad address |(abort|exit)\(|(free|realloc)\(\) of .* malloc did not give")
+"""How the text of a fault of a call begins after which NASA's process ends."""
 _NEAR_STACK = 1 << 16
 _BAD_ADDRESS = re.compile("bad address (0x[0-9a-f]+)")
 
@@ -81,6 +88,7 @@ def explained(fault: CFault, place_of: Callable[[int], str], about: Callable[[in
         used = f", address 0x{address:x}" + (f", {block}" if block else "")
     made = CFault(f"{words} in {where}{used}")
     made.at = at
+    made.ends_process = number != _HANDLED
     return made
 
 
@@ -92,4 +100,5 @@ def _of_call(fault: CFault, place_of: Callable[[int], str], about: Callable[[int
     block = about(int(bad[1], 16)) if bad is not None else ""
     made = CFault(", ".join(filter(None, (str(fault), block, f"in {place_of(fault.called_from - 1)}"))))
     made.at = fault.called_from - 1
+    made.ends_process = fault.ends_process or _ENDING.match(str(fault)) is not None
     return made

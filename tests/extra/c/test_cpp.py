@@ -13,6 +13,7 @@ from tests.extra.c.building import (
     console_of,
     digest_of,
     fly,
+    make_safe,
     needs_compiler,
     needs_cpp,
     said,
@@ -107,6 +108,7 @@ def test_uncaught_exception_is_a_fault(tmp_path: Path, link: str) -> None:
         }
     """
     compile_cpp(tmp_path, "TEST", source, *LINKS[link])
+    make_safe(tmp_path)
     mission = fly(write_mission(tmp_path, "TEST"), 12)
     error = str(mission.cfe.es.history["TEST"].last_error)
     assert "terminate called after throwing an instance of 'std::runtime_error'" in error

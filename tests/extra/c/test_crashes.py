@@ -1,4 +1,7 @@
-"""Faults in C code: exceptions of the application, with function, file and line. Other applications continue."""
+"""Faults in C code: exceptions of the application, with function, file and line.
+
+They end NASA's process on Linux, except SIGFPE; in a safe mission and on other boards the other applications continue.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.mission import Mission
+from cfepy.mission import Mission, endless_waits
+from cfepy.pilot import problems_of
 from cfepy.writing.console import Console
-from tests.extra.c.building import compile_c, console_of, fly, fly_c, needs_compiler, said, write_mission
+from tests.extra.c.building import compile_c, console_of, fly, fly_c, make_safe, needs_compiler, said, write_mission
 
 pytestmark = needs_compiler
 
@@ -50,12 +54,12 @@ FAULTS = {
     ),
     "freed": ("free(once); free(once);", "which malloc did not give, or which was freed", "in fail (TEST.c:4)"),
     "abort": ("abort();", "abort()", "in fail (TEST.c:4)"),
-    "nobody": ("NOBODY_HasThis();", "NOBODY_HasThis() was called", "in fail (TEST.c:4)"),
+    "nobody": ("fork();", "fork() was called", "in fail (TEST.c:4)"),
 }
 if not IS_ARM:  # there, an integer divided by zero is 0
     FAULTS["divide"] = ("zero = 5 / zero;", "SIGFPE", "fail (TEST.c:4)")
 
-FAILING = """static volatile int zero; static char *once; void NOBODY_HasThis(void);
+FAILING = """static volatile int zero; static char *once; int fork(void);
 static int deep(int n) { volatile char room[2000]; room[n % 2000] = 1; return n + deep(n + 1) + room[5]; }
 static void fail(void) {
     @
@@ -78,6 +82,7 @@ def test_fault_restarts_the_application_and_others_continue(tmp_path: Path, kind
     code, what, where = FAULTS[kind]
     compile_c(tmp_path, "TEST", FAILING.replace("@", code), "-O0", "-w")
     compile_c(tmp_path, "WITNESS", WITNESS)
+    make_safe(tmp_path)
     mission = fly(write_mission(tmp_path, "TEST", "WITNESS"), 12, tasks)
     console = console_of(mission)
     line = next(line for line in console.splitlines() if "CFE_ES_RunExceptionScan: ExceptionID" in line)
@@ -94,8 +99,41 @@ def test_fault_restarts_the_application_and_others_continue(tmp_path: Path, kind
 
 def test_fault_resets_the_processor_when_the_startup_script_demands_it(tmp_path: Path) -> None:
     compile_c(tmp_path, "TEST", FAILING.replace("@", FAULTS["segv"][0]), "-O0", "-w")
+    make_safe(tmp_path)
     mission = fly(write_mission(tmp_path, "TEST", action=1), 1.5)
     assert "SIGSEGV" in mission.record.resets[0].reason
+
+
+GO_ON = ("divide", "nobody")
+"""Of FAULTS: NASA's PSP handles SIGFPE, and Linux has a function that cfepy does not have."""
+
+
+def lives_on(folder: Path, kind: str, board: str = "linux") -> bool:
+    """Return whether other applications and the run go on after a fault; the run must fail in any case."""
+    compile_c(folder, "TEST", FAILING.replace("@", FAULTS[kind][0]), "-O0", "-w")
+    compile_c(folder, "WITNESS", WITNESS)
+    mission = fly(write_mission(folder, "TEST", "WITNESS"), 4, board=board)
+    told = [each.text for each in problems_of(mission, endless_waits(mission)) if "CFault" in each.text]
+    assert told
+    assert mission.over == (said(console_of(mission))[-1] == "witness 0")
+    assert mission.over == any(each.startswith("the flight software aborts at 0.8") for each in told)
+    return not mission.over
+
+
+@pytest.mark.parametrize("kind", FAULTS)
+def test_fault_ends_all_flight_software_as_on_linux_except_sigfpe(tmp_path: Path, kind: str) -> None:
+    assert lives_on(tmp_path, kind) == (kind in GO_ON)
+
+
+def test_fault_ends_only_its_application_on_another_board(tmp_path: Path) -> None:
+    assert lives_on(tmp_path, "segv", "workstation") is False
+    (tmp_path / "mission.yaml").write_text("memory: ranges\n", encoding="utf-8")
+    assert lives_on(tmp_path, "segv")
+
+
+def test_fault_ends_only_its_application_with_the_guard(tmp_path: Path) -> None:
+    (tmp_path / "mission.yaml").write_text("compiled: {guard: true}\n", encoding="utf-8")
+    assert lives_on(tmp_path, "segv")
 
 
 LOOPING = """static volatile long turns;

@@ -116,15 +116,22 @@ def _declare_unwinding(api: Declarations, c: CRuntime) -> None:
     api.add("dl_iterate_phdr", "pp", iterate)
 
 
+def _ending(text: str) -> CFault:
+    """Return a fault in place of the end of the process."""
+    fault = CFault(text)
+    fault.ends_process = True
+    return fault
+
+
 def _failing(what: str) -> Callable[[], None]:
     def fail() -> None:
-        raise CFault(what)
+        raise _ending(what)
 
     return fail
 
 
 def _failing_with(what: str) -> Callable[[str | None], None]:
     def fail(text: str | None) -> None:
-        raise CFault(f"{what}: {text or ''}")
+        raise _ending(f"{what}: {text or ''}")
 
     return fail

@@ -67,7 +67,7 @@ static void facts(void)
 
 void APITEST_Main(void)
 {
-    void *block = malloc(100);
+    void *block = calloc(1, 100);
     SAY("%u ranges", (unsigned)CFE_PSP_MemRanges());
     for (uint32 number = 0; number < 4; number++)
         range(number);
