@@ -4,8 +4,8 @@ The libraries below NumPy (OpenBLAS, MKL, BLIS) and OpenMP split a product or a 
 process has CPUs. The order of additions, and with it the last digits, follows their number. It differs between
 computers, and also between the kinds of tasks, because the threads of a run are pinned to one CPU.
 
-These libraries read their number of threads from the environment when they are loaded. Those that are loaded already
-are told by their own functions.
+These libraries read their number of threads from the environment when they are loaded. For a library that is loaded
+already, cfepy calls the library's own function.
 """
 
 from __future__ import annotations

@@ -38,7 +38,7 @@ class Spent(NamedTuple):
     def since(self, before: Spent, threads: Set[int]) -> tuple[float, float]:
         """Return the CPU time and the time ready of some threads since an earlier measurement, in s.
 
-        If the system does not report them, the times are those of the whole process.
+        If the system does not report times by thread, this returns the times of the whole process.
         """
         if not self.by_thread:
             return self.used_s - before.used_s, self.ready_s - before.ready_s

@@ -9,7 +9,7 @@ class MessageBuffer(bytearray):
     """A message that is filled in place and then sent or released (CFE_SB_Buffer_t).
 
     `app_id` is the application that loses it when it ends. `block` is its memory in the pool, and `allocated` the size
-    of it. `reach` is the longest message that can be sent from it; compiled code can send what is behind it. `number`
+    of it. `reach` is the longest message that can be sent from it; compiled code can send the memory behind it. `number`
     distinguishes it from others with the same content.
     """
 

@@ -330,7 +330,9 @@ class TableServices(TableAccess):
             self._reports.send(ev.VALIDATION_INF_EID, ev.INFORMATION, text)
             return CFE_SUCCESS
         status = f"0x{result & 0xFFFFFFFF:08X}"
-        told = status if self._config.release.failed_validation_has_status else "0x00000000"  # that of the call
+        told = (
+            status if self._config.release.failed_validation_has_status else "0x00000000"
+        )  # the status of the call itself
         text = f"{caller} validation failed for {table.name} '{which}', Status={told}"
         self._reports.send(ev.VALIDATION_ERR_EID, ev.ERROR, text)
         if result > 0:
