@@ -46,7 +46,7 @@ def shown_names(module: str) -> Mapping[str, str] | None:
 
 @cache
 def _table() -> dict[str, dict[str, str]]:
-    lines = (FOLDER / "names.txt").read_text(encoding="utf-8").splitlines()[1:]
+    lines = Path(__file__).with_name("public_names.txt").read_text(encoding="utf-8").splitlines()[1:]
     rows = (line.partition(": ") for line in lines)
     return {module: {name: home for name, _, home in map(_parts, names.split())} for module, _, names in rows}
 

@@ -9,8 +9,8 @@ class MessageBuffer(bytearray):
     """A message that is filled in place and then sent or released (CFE_SB_Buffer_t).
 
     `app_id` is the application that loses it when it ends. `block` is its memory in the pool, and `allocated` the size
-    of it. `reach` is the longest message that can be sent from it; compiled code can send the memory behind it. `number`
-    distinguishes it from others with the same content.
+    of it. `reach` is the longest message that can be sent from it; compiled code can send the memory behind it.
+    `number` distinguishes it from others with the same content.
     """
 
     __slots__ = ("allocated", "app_id", "block", "number", "reach")

@@ -107,7 +107,7 @@ from geometry_msgs.msg import PointStamped
 from std_msgs.msg import Header, String
 from std_srvs.srv import Empty
 """
-TABLE = Path(__file__).parents[2] / "ros_libraries" / "names.txt"
+TABLE = Path(__file__).parents[2] / "rospy_shim" / "public_names.txt"
 PORT = 11791  # of the master while instances are recorded
 _SKIPPED = ("test", "__main__")
 _PLAIN = (int, float, str, bytes, bool, type(None), tuple, list, dict)

@@ -35,6 +35,7 @@ SHIPPED = [
     "cfepy/share/ros_packages/cfepy_plant/nodes/laser.py",
     "cfepy/share/ros_packages/cfepy_plant/maps/room.pgm",
     "ros_libraries/tf2_ros/__init__.py",
+    "rospy_shim/public_names.txt",
     "rospy_shim/types/msgs/definitions/std_msgs.msgs",
 ]
 
