@@ -330,9 +330,7 @@ class TableServices(TableAccess):
             self._reports.send(ev.VALIDATION_INF_EID, ev.INFORMATION, text)
             return CFE_SUCCESS
         status = f"0x{result & 0xFFFFFFFF:08X}"
-        told = (
-            status if self._config.release.failed_validation_has_status else "0x00000000"
-        )  # the status of the call itself
+        told = status if self._config.release.failed_validation_has_status else "0x00000000"
         text = f"{caller} validation failed for {table.name} '{which}', Status={told}"
         self._reports.send(ev.VALIDATION_ERR_EID, ev.ERROR, text)
         if result > 0:
