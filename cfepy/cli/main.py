@@ -22,11 +22,16 @@ from cfepy.cli.json_output import standard_output
 from cfepy.cli.options import MISSION_HELP, STATUS_HELP
 from cfepy.cli.parser import HELP_OF_SHARED, CommandParser, RootParser, groups_help, parsers_below
 from cfepy.cli.user_notes import NO_ROOM
-from cfepy.interpreter.blas_threads import use_one_blas_thread
 from cfepy.interpreter.early_end import INTERRUPTED as INTERRUPTED
 from cfepy.interpreter.early_end import leave, leave_on_interrupt
 from cfepy.interpreter.garbage import freeze, no_collection
-from cfepy.interpreter.host_system import ending_signals, interrupt_once, leave_dead_terminal, signal_number
+from cfepy.interpreter.host_system import (
+    ask_for_one_blas_thread,
+    ending_signals,
+    interrupt_once,
+    leave_dead_terminal,
+    signal_number,
+)
 from cfepy.plugins import OWN, Plugin, installed, missing, owner_of
 from cfepy.status import StallError, UsageError
 from cfepy.writing.escapes import keep_output_safe, raw, safe_output
@@ -85,7 +90,7 @@ def process() -> int:
     traceback is printed through the same safe output.
     """
     leave_on_interrupt()
-    use_one_blas_thread()
+    ask_for_one_blas_thread()
     _prepare_streams()
     keep_output_safe()
     sys.excepthook, sys.unraisablehook = _print_error, _pass_on_interrupt

@@ -11,19 +11,12 @@ already, cfepy calls the library's own function.
 from __future__ import annotations
 
 import functools
-import os
 import re
 import sys
 
-VARIABLES = (
-    "BLIS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "NUMEXPR_NUM_THREADS",
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-)
-USER = "numpy"
+from cfepy.interpreter.host_system import ask_for_one_blas_thread
+
+NUMPY = "numpy"
 MAPS = "/proc/self/maps"  # on Linux; has the files that are loaded
 _LIBRARIES = re.compile(r"/[^/]*(openblas|mkl_rt|blis|gomp|libomp|libiomp)[^/]*\.so[^/]*$")
 _SETTERS = (
@@ -39,18 +32,16 @@ _SETTERS = (
 
 @functools.cache
 def use_one_blas_thread() -> str:
-    """Let linear algebra in this process use one thread, whatever the environment says.
-
-    Call it before NumPy is imported, or at least before a run. It also holds for NumPy outside of runs.
+    """Let linear algebra in this process use one thread, also if NumPy was imported before.
 
     Returns:
         Why that is not certain; empty if it is.
     """
-    os.environ.update(dict.fromkeys(VARIABLES, "1"))
-    if USER not in sys.modules or _limit_loaded(_loaded_libraries()) or _limit_by_threadpoolctl():
+    ask_for_one_blas_thread()
+    if NUMPY not in sys.modules or _limit_loaded(_loaded_libraries()) or _limit_by_threadpoolctl():
         return ""
     return (
-        f"{USER} was imported before the run, and its linear algebra may use several threads; set "
+        f"{NUMPY} was imported before the run, and its linear algebra may use several threads; set "
         "OPENBLAS_NUM_THREADS=1, or install threadpoolctl"
     )
 

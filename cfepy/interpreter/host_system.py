@@ -16,6 +16,22 @@ from typing import NoReturn
 from cfepy.status import UsageError
 
 _LOCKED_BYTE = 1 << 40
+BLAS_VARIABLES = (
+    "BLIS_NUM_THREADS",
+    "MKL_NUM_THREADS",
+    "NUMEXPR_NUM_THREADS",
+    "OMP_NUM_THREADS",
+    "OPENBLAS_NUM_THREADS",
+    "VECLIB_MAXIMUM_THREADS",
+)
+"""The environment variables from which libraries of linear algebra take their number of threads."""
+
+
+def ask_for_one_blas_thread() -> None:
+    """Let linear algebra that NumPy loads later use one thread, whatever the environment says, so that runs are
+    repeatable. It also holds for NumPy outside of runs.
+    """
+    os.environ.update(dict.fromkeys(BLAS_VARIABLES, "1"))
 
 
 def in_forked_process(call: Callable[[], object]) -> None:

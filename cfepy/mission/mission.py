@@ -20,7 +20,7 @@ from cfepy.app import Cfe
 from cfepy.attachment import Attachment
 from cfepy.config.platform import FAIR
 from cfepy.es import NODE_SYMBOL
-from cfepy.interpreter.blas_threads import use_one_blas_thread
+from cfepy.interpreter.host_system import ask_for_one_blas_thread
 from cfepy.interpreter.own_code import is_own_code
 from cfepy.mission.failed_code import FailedCode
 from cfepy.mission.host_actions import HostActs
@@ -51,6 +51,15 @@ T = TypeVar("T")
 
 SHUTDOWN_NS = 2_000_000_000  # virtual time for the shutdown hooks of nodes at the end of a run
 RESTART_NS = 10 * NS_PER_MS  # from a reset until the board starts; time also passes if every boot fails
+
+
+def _use_one_blas_thread() -> None:
+    """Let linear algebra use one thread; only a process that has NumPy already loads the code for its libraries."""
+    ask_for_one_blas_thread()
+    if "numpy" in sys.modules:
+        from cfepy.interpreter.blas_threads import use_one_blas_thread
+
+        use_one_blas_thread()
 
 
 def _while_there_is_one(method: Callable[P, T], otherwise: T) -> Callable[P, T]:
@@ -119,7 +128,7 @@ class Mission:
         trace: Trace | None = None,
         attachments: Sequence[Attachment] = (),
     ) -> None:
-        use_one_blas_thread()
+        _use_one_blas_thread()
         self.spec = mission if isinstance(mission, MissionSpec) else read_mission(mission)
         self.seed = seed
         self.tasks, self.why_tasks = kind = task_kind(tasks)

@@ -3,10 +3,10 @@
 Names are NASA's in snake case: OS_QueueCreate is `os.queue_create`. A failed call raises OsalError with NASA's OS_*
 code. A timeout or an empty queue is None or False.
 
-This module has two parts. The first is the frame around flight software (osapi-common.h, osapi-bsp.h, osapi-heap.h,
+This module has three parts. The first is the frame around flight software (osapi-common.h, osapi-bsp.h, osapi-heap.h,
 osapi-network.h). A mission creates a ready `Osal`, so OS_API_Init has nothing left to do. The second part has the
 functions with which ES deletes the objects of an application that ends. NASA does that task by task in
-CFE_ES_CleanupTaskResources.
+CFE_ES_CleanupTaskResources. The third makes the objects of cFE itself.
 """
 
 from __future__ import annotations
@@ -31,24 +31,23 @@ from cfepy.ids import (
     OS_TIMECB_BASE,
 )
 from cfepy.osal.core import EventHandler, Ledger, ObjectSizes, OsObject, Setup, check_size
-from cfepy.osal.core_objects import CoreObjectApi
 from cfepy.osal.disks import DiskApi
 from cfepy.osal.files import DirectoryApi
 from cfepy.osal.filesystem import FileSystem
 from cfepy.osal.idmap import IdMapApi
 from cfepy.osal.limits import OS_MAX_PATH_LEN
-from cfepy.osal.locks import CondVarApi, MutexApi, RwLockApi
+from cfepy.osal.locks import CondVarApi, MutexApi, OsMutex, RwLockApi
 from cfepy.osal.modules import ModuleApi
 from cfepy.osal.network import Network
 from cfepy.osal.paths import PathApi
 from cfepy.osal.queues import QueueApi
-from cfepy.osal.semaphores import SemaphoreApi
+from cfepy.osal.semaphores import OsSemaphore, SemaphoreApi
 from cfepy.osal.shell import ShellApi
 from cfepy.osal.sockets import SelectApi
 from cfepy.osal.tasks import OsTask, TaskApi
-from cfepy.osal.timers import TimerApi
+from cfepy.osal.timers import OsTimer, TimerApi
 from cfepy.reading.texts import to_bytes
-from cfepy.rtos import CpuCosts, Kernel, WaitList
+from cfepy.rtos import CpuCosts, Kernel, Mutex, Semaphore, WaitList
 from cfepy.status import OS_ERR_NOT_IMPLEMENTED, OS_ERROR, OS_INVALID_POINTER, OS_SUCCESS, OsalError
 from cfepy.writing.console import Console
 
@@ -64,6 +63,25 @@ CLEANED_UP = (
     OS_MODULE_BASE,
 )
 """The kinds of objects that ES deletes when an application ends, in the order of OS_ForEachObject."""
+
+CORE_MUTEXES = (
+    *(f"DriverMutex-{number:02}" for number in range(1, 8)),
+    "ES_DATA_MUTEX",
+    "ES_PERF_MUTEX",
+    "CDS_MUTEX",
+    "CFE_EVS_DataMutex",
+    "CFE_FS_SharedMutex",
+    "CFE_SB_DataMutex",
+    "TBL_REG_MUT",
+    "TBL_WRK_MUT",
+)
+"""The mutexes of the PSP's drivers and of cFE's services. The next one is the mutex of the table services' pool."""
+
+CORE_SEMAPHORES = ("ES_BG_SEM", "TIME_TONE_SEM", "TIME_ONEHZ_SEM")
+"""The semaphores of the background task and of Time Services."""
+
+ONE_HZ_TIMER = "cFS-1Hz"
+ONE_HZ_US = 1_000_000
 
 
 class Leftover(NamedTuple):
@@ -314,6 +332,30 @@ class ApplicationApi(CleanupApi):
     def bsp_get_resource_type_config(self, resource_type: int) -> int:
         """Return the option of a kind of object, or 0 if none is set (OS_BSP_GetResourceTypeConfig)."""
         return self._resource_type_config.get(resource_type, 0)
+
+
+class CoreObjectApi(SemaphoreApi, MutexApi, TimerApi):
+    """Adds the OSAL objects that cFE and the PSP make for themselves, with NASA's names, in the order of their ids.
+
+    They count against OSAL's limits, take names and ids, and OS_ForEachObject reports them. Nothing in cfepy waits for
+    them: cfepy's services run between two calls of the kernel, so they need no mutexes. They were observed on NASA's
+    cFE 7.0.1 on Linux. The queues of pipes and the modules of applications come later, with their owners. A mission
+    calls this once for each start of a processor.
+    """
+
+    def add_core_objects(self) -> None:
+        """Add the mutexes and semaphores."""
+        for name in CORE_MUTEXES:
+            self._reserve(self._mutexes, OsMutex(name, Mutex(self.kernel, name, stays_locked=not self.config.safe)))
+        for name in CORE_SEMAPHORES:
+            self._reserve(self._bin_sems, OsSemaphore(name, Semaphore(self.kernel, 0, 1, name)))
+
+    def add_one_hz_timer(self, timebase_id: int) -> None:
+        """Add the timer of Time Services to the time base of the PSP. It never expires: TIME keeps its own seconds."""
+        timebase = self._time_base(timebase_id)
+        timer = self._reserve(self._timers, OsTimer(ONE_HZ_TIMER, timebase, lambda _: None, False))
+        timer.interval_us = ONE_HZ_US
+        timebase.timers.append(timer)
 
 
 class Osal(ShellApi, ApplicationApi, CoreObjectApi, DiskApi, IdMapApi):

@@ -1,8 +1,10 @@
-"""Nodes of a run that do nothing: shut down by another node with the same name, or with a synchronizer that never
-calls back.
+"""Nodes and tasks of a run that do nothing.
 
-This is no problem of the run, because ROS does the same. But the report of a run, or a failed test, shows only that
-messages are missing.
+A node may be shut down by another node with the same name, or have a synchronizer that never calls back. A task may be
+ready without running, because an application of higher priority uses the CPU without waiting.
+
+This is no problem of the run, because ROS and NASA's cFE do the same. But the report of a run, or a failed test, shows
+only that messages are missing.
 """
 
 from __future__ import annotations
@@ -12,10 +14,14 @@ from typing import Any
 
 from cfepy.mission import Mission
 from cfepy.reading.suggestions import listed
+from cfepy.rtos import KeptBack, Task
 from cfepy.units import NS_PER_MS, NS_PER_S
 
 MATCHES = "message_filters._match_record"
 """The module that records synchronizers; an original message_filters beside the node has none."""
+LONG_NS = NS_PER_S
+MOST_NAMED = 4
+"""How long a task must be ready without running, in virtual ns, and how many tasks a line names."""
 
 
 def idle_nodes(mission: Mission) -> list[str]:
@@ -74,3 +80,31 @@ def _why_apart(record: Any) -> str:
     if slop is None:
         return f"{differ}, but must be equal; copy the stamp, or use an ApproximateTimeSynchronizer"
     return f"{differ}, but must differ by less than slop={slop / NS_PER_S:g} s; raise slop"
+
+
+def starved_tasks(mission: Mission) -> list[str]:
+    """Return a line for each application that kept tasks ready for a second or more without running."""
+    kernel = mission.kernel
+    kernel.look_at_ready()
+    by_app: dict[str, list[KeptBack]] = {}
+    for each in kernel.kept_back():
+        if each.length_ns >= LONG_NS and each.task.owner is not each.by.owner:
+            by_app.setdefault(_app_of(each.by), []).append(each)
+    return [_starving(mission, app, found) for app, found in by_app.items()]
+
+
+def _starving(mission: Mission, app: str, found: list[KeptBack]) -> str:
+    found.sort(key=lambda each: -each.length_ns)
+    names = [f"{each.task.name} ({each.length_ns / NS_PER_S:.1f} s)" for each in found[:MOST_NAMED]]
+    if len(found) > MOST_NAMED:
+        names.append(f"{len(found) - MOST_NAMED} more")
+    now = max(1, mission.kernel.now)
+    used = sum(task.cpu_ns for task in mission.kernel.tasks if _app_of(task) == app)
+    return (
+        f"{app} used {used / now:.0%} of the CPU, and kept tasks of less urgent priority ready without running: "
+        f"{listed(names, 'and')}; let it wait, lower its priority, or set `scheduling: fair` in the mission file"
+    )
+
+
+def _app_of(task: Task) -> str:
+    return task.name if task.owner is None else str(task.owner.name)

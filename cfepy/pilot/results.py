@@ -394,7 +394,7 @@ def _starved(mission: Mission) -> list[str]:
     """Return the tasks that others kept from running; only a run that used virtual CPU time loads the code for it."""
     if not mission.kernel.kept_back():
         return []
-    from cfepy.pilot.starvation import starved_tasks
+    from cfepy.pilot.idleness import starved_tasks
 
     return starved_tasks(mission)
 

@@ -11,8 +11,6 @@ from dataclasses import dataclass
 
 from cfepy.rtos.task import Task
 
-LOOK_NS = 100_000_000
-
 
 @dataclass(slots=True)
 class KeptBack:
@@ -43,16 +41,13 @@ class ReadyWatch:
         self._since: dict[int, int] = {}
         """By the number of an entry of the ready heap, which is new each time that a task becomes ready."""
 
-    def look(self, now: int, running: Task, ready: Iterable[tuple[int, int, Task]]) -> int:
+    def look(self, now: int, running: Task, ready: Iterable[tuple[int, int, Task]]) -> None:
         """Look at the ready tasks.
 
         Args:
             now: virtual time in ns.
             running: the task that has the CPU.
             ready: the heap of the ready tasks.
-
-        Returns:
-            The time of the next look, in virtual ns.
         """
         since: dict[int, int] = {}
         for _, number, task in ready:
@@ -63,4 +58,3 @@ class ReadyWatch:
             if length and (known is None or known.since_ns == began or known.length_ns < length):
                 self.found[task] = KeptBack(task, began, length, running)
         self._since = since
-        return now + LOOK_NS

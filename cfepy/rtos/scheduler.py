@@ -15,16 +15,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from heapq import heapify, heappop, heappush
 from operator import index
-from typing import Any, NamedTuple, SupportsIndex
+from typing import TYPE_CHECKING, Any, NamedTuple, SupportsIndex
 
 from cfepy import trace as tr
 from cfepy.interpreter.compiled import mypyc_attr
-from cfepy.rtos.kept_back import LOOK_NS, KeptBack, ReadyWatch
 from cfepy.rtos.policy import Policy, Question
 from cfepy.rtos.task import FOREVER, TIMEOUT, Task, TaskExit
 from cfepy.rtos.wait_list import WaitList
 
+if TYPE_CHECKING:
+    from cfepy.rtos.kept_back import KeptBack, ReadyWatch
+
 HOST_PRIORITY = 256
+LOOK_NS = 100_000_000  # virtual time between two looks at the ready tasks
 FAIR_PRIORITY = 100
 SLICE_NS = 20_000  # tasks of equal priority take turns after this much virtual CPU time
 MAX_REFUSALS = 100  # number of kernel calls that a dying task may try before the kernel abandons it
@@ -268,11 +271,14 @@ class Scheduler:
     def look_at_ready(self) -> None:
         """Note which tasks are ready without running (`cfepy.rtos.kept_back`)."""
         if self._ready_watch is None:
+            from cfepy.rtos.kept_back import ReadyWatch
+
             self._ready_watch = ReadyWatch()
         task = self.current
         if task is self.host and self._last is not None:
             task = self._last
-        self._look_at = self._ready_watch.look(self.now, task, self.ready)
+        self._ready_watch.look(self.now, task, self.ready)
+        self._look_at = self.now + LOOK_NS
 
     def kept_back(self) -> list[KeptBack]:
         """Return the tasks that were ready for 100 ms or more without running."""

@@ -20,16 +20,18 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from types import CodeType, FrameType
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.rtos.context import frame_of_thread, insist, raise_in_thread
-from cfepy.rtos.cpu_time import Expenses, Spent
 from cfepy.rtos.kernel import Kernel
 from cfepy.rtos.stall_signals import LastResort, Waker
 from cfepy.rtos.task import Task, TaskExit
 from cfepy.status import StallError
 from cfepy.units import instant_text
 from cfepy.writing.escapes import visible
+
+if TYPE_CHECKING:
+    from cfepy.rtos.cpu_time import Spent
 
 STALL_S = 10.0
 LOOK_S, SOON_S = 0.25, 0.05  # wall time between two checks; the second while the run is being ended
@@ -83,7 +85,7 @@ class StallWatch:
         self.wanted: Callable[[], bool] = lambda: False
         self.on_lost: Callable[[BaseException], object] = self._tell_lost
         self.last_resort: LastResort | None = None
-        self.spent: Callable[[], Spent] = Expenses()
+        self.spent: Callable[[], Spent] = self._measure_first
         self._kernel = kernel
         self._is_own = is_own
         self._tell = tell
@@ -166,6 +168,13 @@ class StallWatch:
             is_busy = used_s + ready_s >= BUSY * wall_s
             self._look(wall_s, is_busy, min(used_s, wall_s))
             self._before = self.spent()
+
+    def _measure_first(self) -> Spent:
+        """Measure, after loading the code for it, which a short run never needs."""
+        from cfepy.rtos.cpu_time import Expenses
+
+        self.spent = Expenses()
+        return self.spent()
 
     def _threads(self) -> set[int]:
         """Return the native numbers of the threads of the run."""

@@ -6,6 +6,8 @@ The memory they would take is counted, once for a message in several pipes, and 
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from cfepy.config.platform import SB_LARGEST_BLOCK_MORE, SB_MEM_BLOCK_SIZES, PlatformConfig
 from cfepy.interpreter.compiled import mypyc_attr
 from cfepy.msg import PRIMARY_HEADER_SIZE, Packet, get_size, set_msg_time
@@ -14,9 +16,11 @@ from cfepy.ports import Block, Ports
 from cfepy.rtos import CpuCosts, Kernel
 from cfepy.sb import events as ev
 from cfepy.sb.core import BusCore
-from cfepy.sb.message_buffer import MessageBuffer
 from cfepy.sb.routing import Destination, Route
 from cfepy.status import CFE_SB_BAD_ARGUMENT, CFE_SB_BUF_ALOC_ERR, CFE_SB_BUFFER_INVALID, CFE_SB_MSG_TOO_BIG, CfeError
+
+if TYPE_CHECKING:
+    from cfepy.sb.message_buffer import MessageBuffer
 
 BUFFER_BYTES = 64  # size of the descriptor in front of each message (CFE_SB_BufferD_t)
 DESTINATION_BYTES = 32  # CFE_SB_DestinationD_t
@@ -81,6 +85,8 @@ class BufferServices(BusCore):
             raise CfeError(CFE_SB_MSG_TOO_BIG, text)
         if owner is NOBODY:
             raise CfeError(CFE_SB_BUF_ALOC_ERR, "a buffer belongs to an application, and the caller does not")
+        from cfepy.sb.message_buffer import MessageBuffer  # most applications send packets, and never load it
+
         buffer = MessageBuffer(size)
         buffer.allocated = buffer.reach = size
         buffer.app_id = getattr(owner, "app_id", 0)

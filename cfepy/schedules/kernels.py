@@ -9,7 +9,6 @@ from collections.abc import Callable
 from typing import Any
 
 from cfepy.rtos import Kernel, Policy
-from cfepy.schedules.preemption_points import CALLS, Points
 from cfepy.trace import Trace
 
 
@@ -32,6 +31,7 @@ def make_kernel(
     if policy is None:
         return derived(Kernel)(context, trace, tick_ns, switch_cost_ns, seed)
     from cfepy.schedules.exploring import CallPointKernel, ExploringKernel
+    from cfepy.schedules.preemption_points import CALLS, Points
 
     kind: Any = derived(CallPointKernel if Points.parse(policy.points).kind == CALLS else ExploringKernel)
     made: Kernel = kind(context, trace, policy, tick_ns, switch_cost_ns, seed)

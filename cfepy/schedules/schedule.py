@@ -26,7 +26,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from cfepy.reading.suggestions import expected
-from cfepy.schedules.preemption_points import Points
 from cfepy.status import UsageError
 from cfepy.units import TIME_UNITS, time_word
 
@@ -222,6 +221,8 @@ def _option(field: str) -> dict[str, Any] | None:
             )
         return {"fair": int(time)}
     if name == "points":
+        from cfepy.schedules.preemption_points import Points  # only schedules with such points load it
+
         return {"points": Points.parse(time, "--schedule").text()}
     if name not in ("hold", "connect", "from"):
         return None

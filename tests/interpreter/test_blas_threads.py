@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.interpreter import blas_threads
-from cfepy.interpreter.blas_threads import VARIABLES, use_one_blas_thread
+from cfepy.interpreter.blas_threads import use_one_blas_thread
+from cfepy.interpreter.host_system import BLAS_VARIABLES as VARIABLES
 from tests.rospy_shim.missions import run_nodes
 
 limit = use_one_blas_thread.__wrapped__

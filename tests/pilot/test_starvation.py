@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from cfepy.mission import Mission
-from cfepy.pilot.starvation import starved_tasks
+from cfepy.pilot.idleness import starved_tasks
 from cfepy.writing.console import Console
 from tests.mission.flights import write_mission
 

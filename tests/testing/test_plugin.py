@@ -17,7 +17,7 @@ from cfepy.extra.exploration import in_tests as exploration
 from cfepy.ground.parameters import is_source_of_files
 from cfepy.journal import read_journal, replay
 from cfepy.rtos import watchdog
-from cfepy.rtos.watchdog import Spent
+from cfepy.rtos.cpu_time import Spent
 from cfepy.testing import plugin
 from tests.own_paths import own_files
 from tests.testing.conftest import ROOT, Suite, given_verbatim, told_command, write_mission

@@ -16,7 +16,7 @@ from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.extra.exploration.workers import PROCESS_DIED, Processes
 from cfepy.pilot.plan import RunPlan
-from cfepy.rtos.watchdog import Expenses, Spent
+from cfepy.rtos.cpu_time import Expenses, Spent
 from cfepy.schedules import Schedule
 from tests.extra.exploration.fake_trials import Seeds
 
