@@ -112,6 +112,8 @@ def test_tasks_that_keep_each_other_running_are_a_stall(kernel: Kernel) -> None:
 class SlowToLeave:
     """A mutex that the kernel takes from a task which has ended, for longer than a watch waits between two blows."""
 
+    stays_locked = False
+
     def abandon(self, task: Task) -> None:
         until = time.monotonic() + 3 * UNWIND_S
         while time.monotonic() < until:
