@@ -19,7 +19,8 @@ from tf2_py._exceptions import (
     TimeoutException,
     TransformException,
 )
-from tf2_py._messages import message_of, rigid_of, time_of, to_ns
+from tf2_py._messages import duration_to_ns, message_of, rigid_of, time_of, to_ns
+from tf2_py._process_end import part_of, text_of
 from tf2_py._rotation import IDENTITY, Rigid, compose, inverse, product
 from tf2_py._tree import Tree
 
@@ -44,37 +45,49 @@ class BufferCore:
     """
 
     def __init__(self, cache_time: Any = None) -> None:
-        self.__keep_ns = _CACHE_TIME_NS if cache_time is None else to_ns(cache_time)
+        self.__keep_ns = _CACHE_TIME_NS if cache_time is None else duration_to_ns(cache_time)
         self.__tree = Tree()
         self.__authorities: dict[str, str] = {}
 
     # -- filling -----------------------------------------------------------------------------------------------------
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Add a transform at its stamp. An invalid one is reported and left out.
+        """Add a transform at its stamp. An invalid one is reported and left out, and something else ends the process.
 
         Args:
             transform: a geometry_msgs/TransformStamped.
             authority: name of the sender.
 
         Raises:
-            TypeError: `transform` lacks a part.
+            TypeError: the stamp, the translation or the rotation lacks a part.
+            SystemError: a part of the rotation is no number; -1 stands for it.
         """
-        self.__set(transform, authority, TimeCache(self.__keep_ns))
+        self.__set("set_transform", transform, authority, TimeCache(self.__keep_ns))
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
         """Add a transform that is valid at all times. The arguments are those of `set_transform`."""
-        self.__set(transform, authority, StaticCache())
+        self.__set("set_transform_static", transform, authority, StaticCache())
 
-    def __set(self, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
+    def __set(self, method: str, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
         _check_texts((2, authority))
-        child, parent = message.child_frame_id.removeprefix("/"), message.header.frame_id.removeprefix("/")
-        stamp, rigid = to_ns(message.header.stamp), rigid_of(message.transform)
+        header, child = part_of(message, "header"), text_of(part_of(message, "child_frame_id")).removeprefix("/")
+        parent = text_of(part_of(header, "frame_id")).removeprefix("/")
+        stamp = to_ns(getattr(header, "stamp", None))
+        rigid, is_spoilt = rigid_of(part_of(message, "transform"))
         problems = problems_of(child, parent, rigid, authority)
         for text in problems:
             _report("Error:  ", text)
-        if problems:
-            return
+        if not problems:
+            self.__insert(child, parent, stamp, rigid, cache, authority)
+        if is_spoilt:
+            raise SystemError(
+                f"<method '{method}' of '_tf2.BufferCore' objects> returned a result with an exception set"
+            )
+
+    def __insert(
+        self, child: str, parent: str, stamp: int, rigid: Rigid, cache: TimeCache | StaticCache, authority: str
+    ) -> None:
+        """Add a sample, to the known cache of its frame or to a new one."""
         caches = self.__tree.caches
         known = caches.get(child)
         if known is None:
