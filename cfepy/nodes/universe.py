@@ -21,6 +21,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 
 from cfepy.interpreter.host_system import check_own_builtins
+from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.busy_waits import HOOK, turn_hook
 from cfepy.nodes.files import OpenFiles
 from cfepy.nodes.importer import Factory, Importer, ShownNames
@@ -31,7 +32,6 @@ from cfepy.nodes.stdlib import os_module, signal_module, sys_module, time_module
 from cfepy.nodes.stdlib.descriptors import SocketTable
 from cfepy.nodes.stdlib.locks import make_lock_types
 from cfepy.nodes.stdlib.replacements import for_nodes
-from cfepy.nodes.stdlib.signal_module import NodeInterrupt
 from cfepy.nodes.stdlib.streams import ConsoleStream, NoInput, TypedInput
 from cfepy.rtos import Task, TaskExit
 
@@ -294,7 +294,7 @@ class Universe:
                 function(*args, **options)
             except SystemExit:
                 pass
-            except Exception as error:
+            except (Exception, NodeInterrupt) as error:
                 self.print_error(f"Exception ignored in atexit callback {function!r}:\n{traceback_text(error)}")
 
     def deliver_signal(self, number: int) -> None:

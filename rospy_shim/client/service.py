@@ -14,11 +14,11 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from cfepy.nodes.node_tracebacks import traceback_parts
+from cfepy.nodes.node_tracebacks import traceback_parts, traceback_text
 from cfepy.rtos import TIMEOUT, WaitList
 from cfepy.status import CfeError
 from rospy_shim.client.message import packer, unpacker
-from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, NO_PIPE
+from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, ENDS_OF_THREAD, NO_PIPE
 from rospy_shim.types.exceptions import ServiceException
 from rospy_shim.types.genpy import Message
 from rospy_shim.types.transport import FIRST, LAST, MIDDLE, WHOLE
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
     from cfepy.sb import Pipe
     from rospy_shim.client.node import Node
-    from rospy_shim.graph.graph import ServiceEntry
+    from rospy_shim.graph.graph import Graph, ServiceEntry
     from rospy_shim.types.msgs import MessageClass, ServiceClass
 
 REQUEST_LEAD = 8 + 4  # command header (function code 0), call number
@@ -45,6 +45,10 @@ PATIENCE = 100  # looks
 WINDOW = 4  # packets of long requests and answers that may wait
 NO_CALL = -1  # the ground can send a packet of any length on the MsgId of a service
 MOST_BEGUN = 1000  # incomplete long requests or answers
+_NOTE = (
+    "cfepy: the handler of {service} raised {why}. As on ROS, the caller gets no answer, and waits until another"
+    " caller connects to the node.\n"
+)
 
 
 def request_packets(msg_id: int, number: int, body: bytes, most: int) -> Iterator[bytes]:
@@ -333,15 +337,20 @@ class Service:
             self.__busy += 1
             try:
                 self.__attend_waiting()
-                good, body = self.__result(number, request)
+                result = self.__result(number, request)
             finally:
                 self.__busy -= 1
-            self.__answer(number, good, body)
+            if result is not None:
+                self.__answer(number, *result)
         finally:
             self.__entry.serving.pop(number, None)  # the ground may have sent a second request of that number
 
-    def __result(self, number: int, data: bytes) -> tuple[bool, bytes]:
-        """Call the handler. Returns True and the serialised response, or False and the error's text."""
+    def __result(self, number: int, data: bytes) -> tuple[bool, bytes] | None:
+        """Call the handler.
+
+        Returns:
+            True and the serialised response; False and the error's text; None if the caller gets no answer.
+        """
         try:
             request = self.__unpack(data, 0)
         except Exception as error:  # an external caller may send any bytes, and the type's code may raise any error
@@ -359,6 +368,40 @@ class Service:
         except Exception as error:
             self.error_handler(error, *sys.exc_info())
             return False, f"error processing request: {error}".encode()
+        except ENDS_OF_THREAD as error:
+            if not isinstance(error, SystemExit):  # as Python's threads end
+                self.__node__.universe.print_error(f"Exception in thread:\n{traceback_text(error)}")
+            if call is None or call.pipe == NO_PIPE:  # callers outside of the mission must not take its resources
+                return False, f"error processing request: {type(error).__name__}".encode()
+            self.__leave(number, type(error).__name__)
+            return None
+
+    def __leave(self, number: int, why: str) -> None:
+        """Leave a call without an answer, because rospy's thread of the connection ends."""
+        self.__node__.universe.print_error(_NOTE.format(service=self.resolved_name, why=why))
+        self.__entry.unanswered.add(number)
+        self.__wake(number)
+
+    def __wake(self, number: int) -> None:
+        """Let the caller of an unanswered call look whether its connection is still open."""
+        call = self.__entry.calls.get(number)
+        pipe = self.__node__.cfe.sb.find_pipe(call.pipe) if call is not None else None
+        if pipe is not None:
+            self.__node__.kernel.wake_all(pipe.waits, TIMEOUT)
+
+    @staticmethod
+    def __accept__(graph: Graph, entry: ServiceEntry, connection: object) -> None:
+        """Note a new connection to the node of a service.
+
+        A thread of rospy that ended leaves its socket open as long as the node's server refers to it: until the next
+        connection. Its caller waits until then.
+        """
+        server = entry.service.__node__.names.name
+        graph.accepted[server] = connection
+        for each in graph.services.values():
+            if each.unanswered and isinstance(each.service, Service) and each.service.__node__.names.name == server:
+                for number in sorted(each.unanswered):
+                    each.service.__wake(number)
 
     def __answer(self, number: int, good: bool, body: bytes) -> None:
         bus, answer_id = self.__node__.cfe.sb, self.__entry.answer_id

@@ -12,9 +12,9 @@ from cfepy.rtos import FOREVER, WaitList
 from cfepy.status import CfeError
 from rospy_shim.client.message import args_kwds_to_message, packer, unpacker
 from rospy_shim.client.rostime import limit_of
-from rospy_shim.client.service import ANSWER_LEAD, Pieces, call_of_answer, request_packets
+from rospy_shim.client.service import ANSWER_LEAD, Pieces, Service, call_of_answer, request_packets
 from rospy_shim.graph.graph import ServiceCall
-from rospy_shim.types.exceptions import ROSException, ROSInterruptException, ServiceException
+from rospy_shim.types.exceptions import ROSException, ROSInterruptException, ServiceException, TransportTerminated
 from rospy_shim.types.genpy import DeserializationError
 
 if TYPE_CHECKING:
@@ -33,6 +33,11 @@ _NOTE = (
 )
 
 
+_NO_DATA = (
+    "transport error completing service call: unable to receive data from sender, check sender's logs for details"
+)
+
+
 class PersistentConnection(IntEnum):
     """State of the connection of a persistent proxy, as in rospy."""
 
@@ -40,7 +45,11 @@ class PersistentConnection(IntEnum):
     OPEN = 1
     HALF_A_RESPONSE = 2
     HALF_A_REQUEST = 3
-    CLOSED = 4
+    BROKEN = 4
+    """The service's side has closed it; sending the next request works."""
+    RESET = 5
+    """The service's side has refused a request since."""
+    CLOSED = 6
 
 
 class AnswerPipes:
@@ -121,6 +130,7 @@ class ServiceProxy:
         self.__pack = packer(self.request_class)
         self.__unpack = unpacker(self.response_class)
         self.__connection = PersistentConnection.NONE  # of a persistent proxy
+        self.__is_accepted = False
 
     def __call__(self, *args: Any, **kwds: Any) -> Any:
         """Call the service; see `call`."""
@@ -142,6 +152,8 @@ class ServiceProxy:
             raise AttributeError("'NoneType' object has no attribute 'tell'")
         if self.__connection is PersistentConnection.HALF_A_REQUEST:
             self.__wait_in_vain()
+        if self.__connection in (PersistentConnection.BROKEN, PersistentConnection.RESET):
+            raise self.__send_in_vain()
         entry = node.graph.services.get(self.resolved_name)
         if entry is None:
             raise ServiceException(f"service [{self.resolved_name}] unavailable")
@@ -208,6 +220,14 @@ class ServiceProxy:
             life.wait(waits, FOREVER)
         raise ROSInterruptException("node shutdown interrupted service call")
 
+    def __send_in_vain(self) -> Exception:
+        """Return the error of a call over a connection that the service's side has closed."""
+        if self.__connection is PersistentConnection.BROKEN:
+            self.__connection = PersistentConnection.RESET
+            return ServiceException(_NO_DATA)
+        self.__connection = PersistentConnection.CLOSED
+        return TransportTerminated("32Broken pipe")
+
     def __read_half(self) -> None:
         """Read a response that follows half of another one, as an empty message.
 
@@ -236,7 +256,12 @@ class ServiceProxy:
         node = self.__node__
         pipes, answer_id = node.answer_pipes, entry.answer_id
         pipe = pipes.open(answer_id)
-        number = entry.begin(ServiceCall(pipe, {**self.__header, "callerid": node.names.name}))
+        is_open = self.persistent and self.__is_accepted
+        connection = self if self.persistent else object()
+        if not is_open:
+            Service.__accept__(node.graph, entry, connection)
+            self.__is_accepted = True
+        number = entry.begin(ServiceCall(pipe, {**self.__header, "callerid": node.names.name}, connection))
         task = node.kernel.current
         before, task.awaits = task.awaits, (waits := WaitList(f"an answer of service {self.resolved_name}"))
         waits.holders = lambda: entry.serving.get(number, ())
@@ -249,6 +274,7 @@ class ServiceProxy:
             task.awaits = before
             entry.calls.pop(number, None)
             entry.half_answered.discard(number)
+            entry.unanswered.discard(number)
             pipes.close(answer_id, pipe)
 
     def __send(self, entry: ServiceEntry, number: int, body: bytes) -> None:
@@ -284,9 +310,21 @@ class ServiceProxy:
         """Return the error of a call if a node or the service has ended; a service answers the calls it works on."""
         if self.__node__.life.over:
             return ROSInterruptException("node shutdown interrupted service call")
+        if number in entry.unanswered:
+            return self.__end_of_unanswered(entry, number)
         if self.__node__.graph.services.get(self.resolved_name) is entry or number in entry.serving:
             return None
         return ServiceException("transport error completing service call: the service has ended")
+
+    def __end_of_unanswered(self, entry: ServiceEntry, number: int) -> ServiceException | None:
+        """Return the error of a call without an answer; None as long as its connection is open on the other side."""
+        graph, server = self.__node__.graph, entry.service.__node__
+        is_newest = graph.accepted.get(server.names.name) is entry.calls[number].connection
+        if is_newest and graph.nodes.get(server.names.name) is server:
+            return None
+        if self.persistent:
+            self.__connection = PersistentConnection.BROKEN
+        return ServiceException(_NO_DATA)
 
     def close(self) -> None:
         """End a persistent connection; on ROS, calls fail then."""
@@ -319,7 +357,9 @@ def wait_for_service(node: Node, service: str, timeout: Any = None) -> None:
     deadline = None if limit is None else kernel.now + limit
     # After the last look it sleeps once more, without another look.
     while not node.life.is_shutdown() and (deadline is None or kernel.now < deadline):
-        if name in node.graph.services:
+        entry = node.graph.services.get(name)
+        if entry is not None:
+            Service.__accept__(node.graph, entry, None)
             return
         kernel.delay(POLL_NS)
     if node.life.is_shutdown():

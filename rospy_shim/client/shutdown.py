@@ -10,6 +10,7 @@ import signal
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.rtos import WaitList
 
@@ -126,7 +127,7 @@ class Life:
         """Run one hook. Its exception is shown, and the next one runs all the same."""
         try:
             hook(*args)
-        except Exception as error:
+        except (Exception, NodeInterrupt) as error:
             self._node.universe.print_error(traceback_text(error))
 
     def spin(self) -> None:

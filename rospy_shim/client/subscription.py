@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, Any
 
+from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.status import CfeError
 from rospy_shim.client import connection_setup as connecting
@@ -34,6 +35,8 @@ WHOLE = 0xC0
 NO_PIPE = -1
 NO_LIMIT = 0xFFFF
 POLL = 0
+ENDS_OF_THREAD = (SystemExit, NodeInterrupt, GeneratorExit)
+"""Exceptions of a callback or handler that rospy's `except Exception` does not catch."""
 MOST_TOLD = 16  # messages that could not be read, each of which is logged
 _ADDRESS = re.compile(r"0x[0-9a-f]+")
 
@@ -448,7 +451,7 @@ class Subscription(TopicSide):
                         callback(message, argument)
                 except Exception as error:
                     self._bad_callback(callback, error)
-                except SystemExit:
+                except ENDS_OF_THREAD:
                     break  # it ends only this message; rospy's connection catches it, and is made anew
 
     def _attend(self) -> bool:
@@ -482,7 +485,10 @@ class Subscription(TopicSide):
         if header.get("latching") == "1":
             self.latest = message
         for callback, argument in self._calls:
-            self._call(callback, argument, message)
+            try:
+                self._call(callback, argument, message)
+            except ENDS_OF_THREAD:
+                break
 
     def _tell_unreadable(self, error: Exception) -> None:
         """Log a message that cannot be read: each of the first ones, and ever fewer of the others."""

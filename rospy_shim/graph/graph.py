@@ -210,10 +210,14 @@ class TopicEntry:
 
 
 class ServiceCall(NamedTuple):
-    """A pending service call: the caller's pipe for the answer, and the request's connection header."""
+    """A pending service call: the caller's pipe for the answer, and the request's connection header.
+
+    `connection` tells connections apart: of a persistent proxy, all calls have the same.
+    """
 
     pipe: int
     header: Header
+    connection: object = None
 
 
 class ServiceEntry:
@@ -229,6 +233,7 @@ class ServiceEntry:
         self.calls: dict[int, ServiceCall] = {}  # by number
         self.half_answered: set[int] = set()  # calls whose response could not be serialized
         self.serving: dict[int, tuple[Task, ...]] = {}  # the task that works on a call, by its number
+        self.unanswered: set[int] = set()  # calls whose handler ended its thread
         self._ids = ids
         self._count = 0
 
@@ -264,6 +269,7 @@ class Graph:
         self.nodes: dict[str, Node] = {}
         self.compiled: dict[str, CompiledNode] = {}
         self.services: dict[str, ServiceEntry] = {}
+        self.accepted: dict[str, object] = {}  # the newest connection for a service to each node, by its name
         self.displaced: list[tuple[str, str, str]] = []
         self.traps: list[object] = []  # for the report of the run
         """Nodes that gave way to another one: name, the former application, the new one."""

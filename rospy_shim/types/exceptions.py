@@ -5,6 +5,8 @@ All nodes share them: they hold no state.
 
 from __future__ import annotations
 
+from cfepy.interpreter.node_interrupt import NodeInterrupt
+
 
 class ROSException(Exception):  # rospy's name
     """Base of ROS errors."""
@@ -24,7 +26,7 @@ class ROSInitException(ROSException):
     __module__ = "rospy.exceptions"
 
 
-class ROSInterruptException(ROSException, KeyboardInterrupt):
+class ROSInterruptException(ROSException, NodeInterrupt):
     """A wait was cut short by the node's shutdown."""
 
     __module__ = "rospy.exceptions"

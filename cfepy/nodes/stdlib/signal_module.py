@@ -9,6 +9,7 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.made_modules import made, proxy
 from cfepy.nodes.refused_modules import SIGNALS, refusal
 
@@ -18,16 +19,6 @@ if TYPE_CHECKING:
 _REFUSED = ("alarm", "setitimer", "sigwait", "sigwaitinfo", "sigtimedwait")
 _NO_EFFECT = ("siginterrupt", "pthread_sigmask", "pthread_kill")
 _HARMLESS = frozenset({"SIGCHLD", "SIGCONT", "SIGURG", "SIGWINCH"})
-
-
-class NodeInterrupt(KeyboardInterrupt):
-    """KeyboardInterrupt of a node that was sent SIGINT, to distinguish it from a Ctrl-C of the host's user.
-
-    A traceback in the node shows it as `KeyboardInterrupt`.
-    """
-
-    __module__ = "builtins"
-    __qualname__ = "KeyboardInterrupt"
 
 
 class SignalTable:

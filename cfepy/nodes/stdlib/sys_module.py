@@ -11,6 +11,7 @@ from importlib.machinery import ModuleSpec
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
+from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.made_modules import proxy
 from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.nodes.ordered_sets import SET_NAME, OrderedSet
@@ -92,6 +93,7 @@ def builtins_module(universe: Universe, ordered_sets: bool) -> Builtins:
     module = Builtins()
     vars(module).update(vars(builtins))
     vars(module).update(
+        KeyboardInterrupt=NodeInterrupt,
         __import__=universe.importer.import_name,
         exit=leave,
         input=read_line,

@@ -15,12 +15,12 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any, NoReturn
 from weakref import ref
 
+from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.interpreter.own_code import called_as
 from cfepy.nodes.made_modules import made
 from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.nodes.stdlib.futures import hash_by_serial
 from cfepy.nodes.stdlib.locks import END, INNER, MAX_WAIT_S, as_waiter
-from cfepy.nodes.stdlib.signal_module import NodeInterrupt
 from cfepy.rtos import TaskExit
 from cfepy.schedules import ExploringKernel
 

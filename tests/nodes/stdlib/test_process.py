@@ -69,19 +69,20 @@ def test_working_directory_is_virtual(run, tmp_path):
         ("os._exit(5)", 5, ""),
         ("threading.Thread(target=os._exit, args=(6,)).start(); time.sleep(9)", 6, ""),
         ("os.kill(os.getpid(), signal.SIGTERM)", 143, ""),
-        ("raise KeyboardInterrupt", None, None),
     ],
 )
 def test_exit_status(start, body, status, shown):
     program = start(f"import os, signal, sys, threading, time\n{body}\n")
-    if status is None:
-        with pytest.raises(KeyboardInterrupt):
-            program.kernel.run()
-        return
     program.kernel.run()
     assert program.universe.exit_status == status
     assert program.text == shown
     assert program.universe.tasks == ()
+
+
+def test_keyboard_interrupt_that_the_program_raises_ends_it_alone(run):
+    program = run("import atexit\natexit.register(print, 'hook')\nraise KeyboardInterrupt('why')\n")
+    assert program.universe.exit_status == 130
+    assert program.text.splitlines()[2:] == ["    raise KeyboardInterrupt('why')", "KeyboardInterrupt: why", "hook"]
 
 
 def test_uncaught_error_shows_the_nodes_lines_only(run):

@@ -268,3 +268,118 @@ for number in range(3):
 print(rospy.is_shutdown())
 """
     assert answers(tmp_path, body) == ["took 0", "took 1", "took 2", "False"]
+
+
+ENDED_THREAD = """
+import sys, threading
+import roscpp.srv
+def answer(request):
+    if is_bad:
+        raise error
+    return roscpp.srv.EmptyResponse()
+def call(name, times=1, **options):
+    def calls():
+        proxy = rospy.ServiceProxy("end", roscpp.srv.Empty, **options)
+        for _ in range(times):
+            try:
+                proxy()
+                print(name, "answered")
+            except Exception as error:
+                print(name, type(error).__name__, error)
+    thread = threading.Thread(target=calls)
+    thread.start()
+    thread.join(1)
+    print(name, "waits" if thread.is_alive() else "ended")
+    return thread
+rospy.Service("end", roscpp.srv.Empty, answer)
+"""
+NO_DATA = "ServiceException transport error completing service call: unable to receive data from sender, check sender's"
+
+
+def test_call_whose_handler_ends_its_thread_waits_for_the_next_connection(tmp_path: Path) -> None:
+    body = """
+for number, error in enumerate((SystemExit(3), KeyboardInterrupt(), GeneratorExit())):
+    is_bad = True
+    first = call(f"{number}a")
+    is_bad = False
+    call(f"{number}b")
+    first.join(1)
+is_bad = True
+last = call("c")
+rospy.wait_for_service("end")
+last.join(1)
+call("d")
+rospy.signal_shutdown("")
+"""
+    lines = answers(tmp_path, ENDED_THREAD + body, seconds=20.0)
+    for name in "012":
+        said = [line[len(name) + 2 :][: len(NO_DATA)] for line in lines if line.startswith(f"{name}a ")]
+        assert said == ["waits", NO_DATA]
+        assert [line for line in lines if line.startswith(f"{name}b ")] == [f"{name}b answered", f"{name}b ended"]
+    assert [line[2:][: len(NO_DATA)] for line in lines if line.startswith("c ")] == ["waits", NO_DATA]
+    assert next(line for line in lines if line.startswith("d ")) == "d waits"
+    note = "cfepy: the handler of /end raised {}. As on ROS, the caller gets no answer, and waits until another caller"
+    for kind, count in (("SystemExit", 1), ("KeyboardInterrupt", 1), ("GeneratorExit", 3)):
+        assert sum(line.startswith(note.format(kind)) for line in lines) == count
+
+
+def test_persistent_connection_is_lost_with_the_thread_of_its_handler(tmp_path: Path) -> None:
+    body = """
+error, is_bad = SystemExit(), True
+calls = call("p", 4, persistent=True)
+is_bad = False
+call("q")
+calls.join(1)
+"""
+    lines = [line[:70] for line in answers(tmp_path, ENDED_THREAD + body) if line[:2] in ("p ", "q ")]
+    assert [line for line in lines if line.startswith("p ")] == [
+        "p waits",
+        f"p {NO_DATA}"[:70],
+        f"p {NO_DATA}"[:70],
+        "p TransportTerminated 32Broken pipe",
+        "p AttributeError 'NoneType' object has no attribute 'tell'",
+    ]
+    assert [line for line in lines if line.startswith("q ")] == ["q answered", "q ended"]
+
+
+def test_keyboard_interrupt_of_a_node_ends_its_message_its_thread_or_the_node(tmp_path: Path) -> None:
+    body = """
+import atexit
+def take(message):
+    print("took", message.data)
+    if message.data == 1:
+        raise KeyboardInterrupt
+    if message.data == 2:
+        raise GeneratorExit
+rospy.Subscriber("numbers", Int32, take)
+rospy.Subscriber("numbers", Int32, lambda message: print("also", message.data))
+numbers = rospy.Publisher("numbers", Int32, queue_size=1)
+def tick(event):
+    print("tick")
+    raise KeyboardInterrupt
+rospy.sleep(0.5)
+rospy.Timer(rospy.Duration(0.1), tick)
+rospy.sleep(0.5)
+for number in range(4):
+    numbers.publish(number)
+    rospy.sleep(0.3)
+def hook():
+    raise KeyboardInterrupt("hook")
+for place in (rospy.on_shutdown, atexit.register):
+    place(hook)
+print(repr(KeyboardInterrupt), issubclass(rospy.ROSInterruptException, KeyboardInterrupt))
+rospy.signal_shutdown("")
+raise KeyboardInterrupt("main")
+"""
+    lines = [line for line in answers(tmp_path, body) if not line.startswith((" ", "Trace"))]
+    assert lines == [
+        "tick",
+        "Exception in thread Thread-1:",
+        "KeyboardInterrupt",
+        *("took 0", "also 0", "took 1", "took 2", "took 3", "also 3"),
+        "<class 'KeyboardInterrupt'> True",
+        "KeyboardInterrupt: hook",
+        "KeyboardInterrupt: main",
+        *(line for line in lines if line.startswith("Exception ignored in atexit callback")),
+        "KeyboardInterrupt: hook",
+    ]
