@@ -50,16 +50,23 @@ def entries(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: 
         yield entry
 
 
-def message_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[str, str]]]:
-    """Return a message's bytes, and a function that makes its connection header."""
+Parts = tuple[Callable[[], bytes], Callable[[], dict[str, str]]]
+
+
+def message_parts(topic: str, message: Any) -> Parts:
+    """Return functions that make a message's bytes and its connection header."""
     kind = message.__class__
     type_name = kind._type  # before the message is serialized, as in ROS
-    buffer = io.BytesIO()
-    message.serialize(buffer)
-    return buffer.getvalue(), lambda: _header(topic, type_name, kind._md5sum, message._full_text)
+
+    def data() -> bytes:
+        buffer = io.BytesIO()
+        message.serialize(buffer)
+        return buffer.getvalue()
+
+    return data, lambda: _header(topic, type_name, kind._md5sum, message._full_text)
 
 
-def raw_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[str, str]]]:
+def raw_parts(topic: str, message: Any) -> Parts:
     """Return the same for a raw message.
 
     Raises:
@@ -78,7 +85,7 @@ def raw_parts(topic: str, message: Any) -> tuple[bytes, Callable[[], dict[str, s
             print(text, file=sys.stderr)
         return _header(topic, type_name, md5sum, found._full_text)
 
-    return data, header
+    return lambda: data, header
 
 
 def _known(type_name: str) -> Any:

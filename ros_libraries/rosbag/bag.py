@@ -7,6 +7,7 @@ underscore.
 from __future__ import annotations
 
 import io
+import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -48,6 +49,10 @@ AES_CBC = "rosbag/AesCbcEncryptor"
 
 _FILE_HEADER_LENGTH = records.FILE_HEADER_LENGTH
 _OP_CODES = records.OP_CODES
+_ENTERED = (
+    "cfepy: a message on {topic} could not be serialized. As on ROS, the index of the bag counts it nevertheless: it is"
+    " read as a copy of the next message in the file, or ends the reading if there is none."
+)
 _OP_FILE_HEADER = records.OP_FILE_HEADER
 _pack_uint8, _pack_uint32, _pack_uint64 = records.pack_uint8, records.pack_uint32, records.pack_uint64
 _read_header, _read_record_data, _read_sized = records.read_header, records.read_record_data, records.read_sized
@@ -295,6 +300,8 @@ class Bag(Indexed):
             ValueError: no topic, no message, or the bag is closed.
             io.UnsupportedOperation: the bag was opened to read.
             ROSBagException: the class of a raw message is unknown.
+            SerializationError: a field has a value that its type cannot carry. As in ROS, the index then has an entry
+                for the message, which leads to the next one in the file.
         """
         self.__opened__()
         if not topic:
@@ -313,7 +320,14 @@ class Bag(Indexed):
             made = connection_header if connection_header is not None else header()
             connection = self.__storage__.connect(topic, made, self._compression)
             self._topic_connections[topic] = connection
-        size = self.__storage__.write(connection, t.secs * 1_000_000_000 + t.nsecs, data, self._compression)
+        stamp = t.secs * 1_000_000_000 + t.nsecs
+        try:
+            content = data()
+        except Exception:
+            self.__storage__.enter(connection, stamp, self._compression)
+            print(_ENTERED.format(topic=topic), file=sys.stderr)
+            raise
+        size = self.__storage__.write(connection, stamp, content, self._compression)
         if size > self._chunk_threshold:
             self.flush()
 

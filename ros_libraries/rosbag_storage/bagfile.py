@@ -205,6 +205,13 @@ class BagFile:
         self._read_end = 0
         return self._chunk(kind).write_message(connection, time, data)
 
+    def enter(self, connection: Connection, time: int, kind: str = compression.NONE) -> None:
+        """Add an entry to the index alone, for a message that could not be serialized. The arguments are those of
+        `write`.
+        """
+        self._read_end = 0
+        self._chunk(kind).enter(connection, time)
+
     def _chunk(self, kind: str) -> OpenChunk:
         if self._open is None:
             self._open = OpenChunk(kind)
@@ -274,13 +281,7 @@ class OpenChunk:
 
     def write_message(self, connection: Connection, time: int, data: bytes) -> int:
         """Write a message; returns the size of the chunk."""
-        if self.chunk is None:
-            self.chunk = Chunk(-1, time, time)
-        self.chunk.add(connection.id, time)
-        found = self.entries.setdefault(connection.id, [])
-        found.append((time, self.data.tell()))
-        if len(found) > 1 and found[-2][0] > time:
-            found.sort(key=lambda each: each[0])
+        self.enter(connection, time)
         fields = {
             "op": records.pack_uint8(records.OP_MSG_DATA),
             "conn": records.pack_uint32(connection.id),
@@ -288,6 +289,16 @@ class OpenChunk:
         }
         records.write_record(self.data, fields, data)
         return self.data.tell()
+
+    def enter(self, connection: Connection, time: int) -> None:
+        """Add an entry that leads to the next record."""
+        if self.chunk is None:
+            self.chunk = Chunk(-1, time, time)
+        self.chunk.add(connection.id, time)
+        found = self.entries.setdefault(connection.id, [])
+        found.append((time, self.data.tell()))
+        if len(found) > 1 and found[-2][0] > time:
+            found.sort(key=lambda each: each[0])
 
     def write_to(self, file: BinaryIO) -> None:
         """Write the chunk's record."""
