@@ -40,9 +40,12 @@ TERMINAL_STATES = frozenset(value for name, value in vars(TerminalState).items()
 
 
 def get_name_of_constant(C: type, n: int) -> str:
-    """Return the name of the constant of a class that has a value, e.g. "ACTIVE"."""
+    """Return the name of a class's first attribute with a value, e.g. "ACTIVE".
+
+    Of the class GoalStatus, 0 gives "_has_header", which is False, as on ROS.
+    """
     for name, constant in vars(C).items():
-        if name.isupper() and constant == n:
+        if isinstance(constant, int) and constant == n:
             return name
     return f"NO_SUCH_STATE_{n}"
 

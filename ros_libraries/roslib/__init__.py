@@ -12,19 +12,14 @@ _is_interactive = False
 def load_manifest(package_name: str, bootstrap_version: str = "0.7") -> None:
     """Make the code of a package and of its dependencies importable; see `roslib.launcher`.
 
-    Programs begin with it and name their own package. A package without a manifest is not an error: the modules beside
-    a program can be imported in any case.
-
     Args:
-        package_name: the package.
+        package_name: the package; old programs name their own.
         bootstrap_version: accepted.
-    """
-    import rospkg
 
-    try:
-        launcher.load_manifest(package_name, bootstrap_version)
-    except rospkg.ResourceNotFound:
-        pass
+    Raises:
+        rospkg.ResourceNotFound: there is no such package.
+    """
+    launcher.load_manifest(package_name, bootstrap_version)
 
 
 def set_interactive(interactive: bool) -> None:

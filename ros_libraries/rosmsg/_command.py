@@ -117,11 +117,15 @@ def _md5(mode: str, args: list[str]) -> int:
     _, (name,) = _parse(mode, "md5 <type>", args)
     found = _named(mode, name)
     for each in found:
-        md5sum = rosmsg.rosmsg_md5(mode, each)
+        try:
+            md5sum = rosmsg.rosmsg_md5(mode, each)
+        except rosmsg.ROSMsgException as error:
+            print(error, file=sys.stderr)
+            return 0  # also without a type of that name, as on ROS
         print(md5sum if "/" in name else f"[{each}]: {md5sum}")
     if not found:
         print(f"No messages matching the name [{name}]", file=sys.stderr)
-    return 0 if found else 1
+    return 0
 
 
 def _package(mode: str, args: list[str]) -> int:

@@ -56,13 +56,14 @@ def _ping(args: list[str]) -> int:
     parser.add_option("-c", dest="count", default=None, type="int", metavar="COUNT", help="number of pings to send")
     options, names = parser.parse_args(args)
     if options.ping_all:
-        _, silent = rosnode.rosnode_ping_all(verbose=True)
-        return 1 if silent else 0
+        rosnode.rosnode_ping_all(verbose=True)
+        return 0  # also if a node is silent, as on ROS
     if len(names) != 1:
         parser.error("Please enter a node to ping" if not names else "you may only specify one input node")
     name = rosgraph.names.script_resolve_name(rosnode.NAME, names[0])
     print(f"rosnode: node is [{name}]")
-    return 0 if rosnode.rosnode_ping(name, max_count=options.count, verbose=True) else 1
+    rosnode.rosnode_ping(name, max_count=options.count, verbose=True)
+    return 0
 
 
 def _list(args: list[str]) -> None:

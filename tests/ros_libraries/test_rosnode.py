@@ -65,7 +65,7 @@ def test_machines_connections_and_commands(tmp_path: Path) -> None:
         master = rosgraph.Master("/tool")
         text = rosnode.get_node_connection_info_description(rospy.get_node_uri(), master)
         print([line for line in text.splitlines() if "words" in line or "talks" in line or "inbound" in line])
-        for command in ("ping -c 2 talks", "machine", "info -q talks", "kill nobody", "what"):
+        for command in ("ping -c 2 talks", "machine", "info -q talks", "kill nobody", "what", "ping -c 1 nobody"):
             try:
                 rosnode.rosnodemain(["rosnode", *command.split()])
             except SystemExit as end:
@@ -84,4 +84,20 @@ def test_machines_connections_and_commands(tmp_path: Path) -> None:
     assert lines[7:10] == ["exit 0", "cfepy", "exit 0"]
     assert lines[10:13] == ["-" * 80, "Node [/talks]", "Publications: "]
     assert [line for line in lines if "Failed to kill" in line or line == " * /nobody"]
-    assert [line for line in lines if line.startswith("exit")] == ["exit 0"] * 3 + ["exit 1", "exit 64", "exit 64"]
+    assert [line for line in lines if line.startswith("exit")] == ["exit 0"] * 3 + [
+        *("exit 1", "exit 64", "exit 0", "exit 64")
+    ]
+
+
+def test_md5_of_a_missing_message_is_reported_with_status_0_as_on_ros(tmp_path: Path) -> None:
+    script = """
+        import sys, rosmsg
+        for name in ("nope/Nope", "std_msgs/Nope", "Nope"):
+            sys.argv = ["rosmsg", "md5", name]
+            try:
+                rosmsg.rosmsgmain()
+            except SystemExit as end:
+                print("exit", end.code)
+    """
+    lines = run_nodes(tmp_path, {"TOOL": script}).printed["TOOL"]
+    assert [line for line in lines if line.startswith("exit")] == ["exit 0"] * 3

@@ -86,14 +86,14 @@ def build_class(spec: Spec, table: TypeTable, restore: Callable[[str], Message] 
     names.globals["_read_again"] = partial(reference_decoder.read, spec, table.spec, table.message_class)
     types = [field.type for field in spec.fields]
     name = spec.full_name.rpartition("/")[2]
-    body: dict[str, Any] = {constant.attribute: constant.value for constant in spec.constants}
-    body |= {
+    body: dict[str, Any] = {
+        "_has_header": spec.has_header,  # before the constants, as in genpy's code: actionlib takes the first attribute
+        **{constant.attribute: constant.value for constant in spec.constants},
         "__module__": module,
         "__slots__": [field.attribute for field in spec.fields],
         "_slot_types": types,
         "_type": spec.full_name,
         "_md5sum": table.md5sum(spec.full_name),
-        "_has_header": spec.has_header,
         "_full_text": table.full_text(spec.full_name),
         "_get_types": lambda self: types,
         "__init__": _constructor(spec, table, names),
