@@ -119,7 +119,7 @@ def _md5(mode: str, args: list[str]) -> int:
     for each in found:
         try:
             md5sum = rosmsg.rosmsg_md5(mode, each)
-        except rosmsg.ROSMsgException as error:
+        except (rosmsg.ROSMsgException, OSError) as error:
             print(error, file=sys.stderr)
             return 0  # also without a type of that name, as on ROS
         print(md5sum if "/" in name else f"[{each}]: {md5sum}")

@@ -257,11 +257,14 @@ class BufferCore:
     def _chain(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> list[str]:
-        at_target, at_source = to_ns(target_time), to_ns(source_time)
-        for name in (source_frame, fixed_frame, target_frame):
-            self.__validate("chain", name)
+        _check_texts((1, target_frame))
+        at_target = to_ns(target_time)
+        _check_texts((3, source_frame))
+        at_source = to_ns(source_time)
+        _check_texts((5, fixed_frame))
         first = self.__tree.chain(fixed_frame, source_frame, at_source)
-        return first[:-1] + self.__tree.chain(target_frame, fixed_frame, at_target)
+        second = self.__tree.chain(target_frame, fixed_frame, at_target)
+        return (first[:-1] if second else first) + second
 
     def _frameExists(self, frame_id: str) -> bool:
         return frame_id in self.__tree.caches

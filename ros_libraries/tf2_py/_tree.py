@@ -127,17 +127,25 @@ class Tree:
         return found
 
     def chain(self, target: str, source: str, time: int) -> list[str]:
-        """Return the frames on the way from source to target.
+        """Return the frames on the way from source to target; none if they are equal.
 
         Raises:
-            ConnectivityException, ExtrapolationException, LookupException: as `path`.
+            ConnectivityException: there is no path, or one frame is unknown.
+            ExtrapolationException, LookupException: as `path`.
         """
+        target, source = (name if name in self.caches else "NO_PARENT" for name in (target, source))
+        if target == source:
+            return []
+        if "NO_PARENT" in (target, source):
+            raise ConnectivityException(_no_connection(target, source))
         path = self.path(target, source, time)
         up = [source, *(sample[0] for sample in path.up)]
         down = [target, *(sample[0] for sample in path.down)]
+        whole = up[:]
         while len(up) > 1 and len(down) > 1 and up[-2] == down[-2]:
             del up[-1], down[-1]  # they met before
-        return up + down[-2::-1]
+        # As in tf2, which does not shorten the way up of a frame directly below the one where they meet.
+        return (whole if len(up) == 2 else up) + down[-2::-1]
 
     def loop_text(self) -> str:
         """Return the text of the error about a loop."""

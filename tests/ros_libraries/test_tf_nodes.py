@@ -123,3 +123,31 @@ def test_transforms_are_requested_from_the_buffer_of_another_node(tmp_path: Path
         '"moon" passed to lookupTransform argument source_frame does not exist.  True',
         "True True",
     ]
+
+
+def test_chain_has_the_frames_that_tf2_lists(tmp_path: Path) -> None:
+    script = """
+        import rospy, tf
+        from geometry_msgs.msg import TransformStamped
+        rospy.init_node("N")
+        transformer, at = tf.Transformer(), rospy.Time(1)
+        for parent, child in ("ra", "ab", "ac", "bd", "bg", "de", "xy"):
+            made = TransformStamped(child_frame_id=child)
+            made.header.frame_id, made.header.stamp, made.transform.rotation.w = parent, at, 1
+            transformer.setTransform(made)
+        for target, source, fixed in ("ccc", "ecr", "ceb", "cbb", "geg", "yca", "?ca", "c?a", "ca?", "???", "rec"):
+            try:
+                print("".join(transformer.chain(target, at, source, at, fixed)))
+            except tf.ConnectivityException as error:
+                print(str(error).partition("because")[0])
+        try:
+            transformer.chain(None, at, "c", at, "a")
+        except TypeError as error:
+            print(error)
+    """
+    lost = "Could not find a connection between '{}' and '{}' "
+    assert run_nodes(tmp_path, {"N": script}).printed["N"] == [
+        *("", "carabde", "edbarc", "barc", "edbg"),
+        *(lost.format(*names) for names in ("ya", ("NO_PARENT", "a"), ("a", "NO_PARENT"), ("NO_PARENT", "a"))),
+        *("", "edbacar", "argument 1 must be str, not None"),
+    ]
