@@ -155,11 +155,17 @@ def initial_config(msg: Any, description: Mapping[str, Any] | None = None) -> Co
 
 
 def decode_config(msg: Any, description: Mapping[str, Any] | None = None) -> Config:
-    """Return values by name from a Config message. With a description, include the tree of groups with their values."""
+    """Return values by name from a Config message. With a description, include the tree of groups with their values.
+
+    Raises:
+        AttributeError: the message has inner groups, and the description is that of a server, as on ROS.
+    """
     config = _values(msg)
     if msg.groups and description is not None:
         config["groups"] = get_tree(msg)
         for group, described in _pairs(config["groups"], description):
+            if group["groups"] and not isinstance(described["groups"], Mapping):
+                raise AttributeError(f"'{type(described['groups']).__name__}' object has no attribute 'items'")
             names = [each["name"] for each in described["parameters"]]
             group.update((name, config[name]) for name in names if name in config)
     return config

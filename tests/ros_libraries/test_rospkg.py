@@ -171,11 +171,10 @@ def test_files_of_packages(tmp_path: Path) -> None:
         roslib.load_manifest("old")
         import oldcode
         print(oldcode.value)
-        roslib.load_manifest("a_package_that_is_not_there")
         roslib.launcher.load_manifest("std_msgs")
         roslib.launcher.load_manifest("tf")
         try:
-            roslib.launcher.load_manifest("a_package_that_is_not_there")
+            roslib.load_manifest("a_package_that_is_not_there")
         except rospkg.ResourceNotFound as error:
             print(error.args)
         print(roslib.is_interactive(), roslib.rosenv.get_master_uri())
