@@ -14,6 +14,7 @@ import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.node_tracebacks import traceback_parts, traceback_text
 from cfepy.rtos import TIMEOUT, WaitList
 from cfepy.status import CfeError
@@ -273,7 +274,7 @@ class Service:
         try:
             while not self.__node__.life.is_shutdown() and not self.__done:
                 self.__node__.life.wait(waits, SERVE_TIMEOUT_NS)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, NodeInterrupt):
             self.__node__.life.signal_shutdown("keyboard interrupt")
 
     # -- in its tasks ------------------------------------------------------------------------------------------------

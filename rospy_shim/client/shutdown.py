@@ -140,7 +140,7 @@ class Life:
         try:
             while not self.is_shutdown():
                 self.wait(WaitList(f"shutdown of node {self._node.names.name}"), SPIN_NS)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, NodeInterrupt):
             self.signal_shutdown("keyboard interrupt")
 
     def wait(self, waits: WaitList, timeout_ns: int) -> None:
