@@ -250,9 +250,19 @@ class StallWatch:
         looks = [_places(frame_of_thread(ident))]
         while len(looks) < LOOKS and not stand.is_idle:
             time.sleep(LOOK_AGAIN_S)
-            stand.names[self._kernel.current.name] = None
+            self._note_names(stand)
             looks.append(_places(frame_of_thread(ident)))
         return looks
+
+    def _note_names(self, stand: _Stand) -> None:
+        """Note the task that has the CPU, and the ready tasks of its priority: they get the CPU when it yields.
+
+        Which task a look meets depends on the host's scheduler, so the running task alone may always be the same.
+        """
+        kernel = self._kernel
+        task = kernel.current
+        stand.names[task.name] = None
+        stand.names.update((each.name, None) for *_, each in list(kernel.ready) if each.priority == task.priority)
 
     def _hold_against_limit(self, stand: _Stand) -> None:
         if stand.still_s >= self.limit_s or (stand.standing_s >= self.limit_s and stand.is_turning):
@@ -419,7 +429,7 @@ class _Stand:
         still_s: CPU time in which this task made no such call.
         idle_s: wall time in which it made no such call and used no CPU.
         is_told: whether the wait was reported.
-        names: names of the tasks seen.
+        names: names of the tasks seen with the CPU, or ready for it at the same priority.
     """
 
     now_ns: int
