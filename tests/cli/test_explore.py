@@ -67,7 +67,7 @@ def test_a_search_of_orders_says_how_far_it_came_with_a_failure_too(capsys: pyte
     assert explore(*words) == FOUND_PROBLEMS
     out = capsys.readouterr().out
     assert "6 schedules, 2 failed: 1 distinct failure\n" in out
-    assert "  6 different orders, 6 of them in what tasks touch; no others were found\n" in out
+    assert "  6 different orders of accesses, with 4 different traces; no others were found\n" in out
 
 
 def test_a_failure_of_the_default_schedule_is_told_as_such(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -121,10 +121,10 @@ class Breadth:
 
     def lines(self) -> list[str]:
         """Return a few lines of text."""
-        found = ["1 order" if len(self.orders) == 1 else f"{len(self.orders)} different orders"]
-        if self.seen is not None:
-            first, *others = self.seen.lines()
-            found = [f"{found[0]}, {first}", *others]
+        if self.seen is None:
+            found = ["1 order" if len(self.orders) == 1 else f"{len(self.orders)} different orders"]
+        else:
+            found = self.seen.lines(len(self.orders))
         kinds = sorted(self.points.items(), key=lambda each: -each[1])
         if kinds:
             listed = ", ".join(f"{count} at {kind}" for kind, count in kinds)

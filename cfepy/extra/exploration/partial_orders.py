@@ -387,14 +387,19 @@ class OrdersSeen(NamedTuple):
     timed: int = 0
     has_ends: bool = False
 
-    def lines(self) -> list[str]:
-        """Return a few lines of text. The first one is part of a sentence."""
-        told = f"{self.orders} of them in what tasks touch"
+    def lines(self, traces: int) -> list[str]:
+        """Return a few lines of text.
+
+        Args:
+            traces: number of different traces of the runs; orders that no message or event shows have one trace.
+        """
+        orders = "1 order" if self.orders == 1 else f"{self.orders} different orders"
+        text = f"{orders} of accesses, with {'1 trace' if traces == 1 else f'{traces} different traces'}"
         if self.is_complete:
-            told += (
+            text += (
                 "; no others were found" if self.depth is None else f"; all orders up to {self.depth} steps were seen"
             )
-        found = [told]
+        found = [text]
         if self.astray:
             found.append(f"{self.astray} schedules could not be followed, because of a time or a priority")
         if self.timed:
