@@ -62,7 +62,7 @@ def test_a_mailbox_is_a_queue_with_a_limit(steps: list[int | None]) -> None:
 
 @given(st.lists(st.tuples(st.sampled_from(HOSTS), st.integers(1, 3), st.booleans()), max_size=25))
 def test_place_has_one_owner(steps: list[tuple[str, int, bool]]) -> None:
-    ports: BoundEndpoints[Mailbox] = BoundEndpoints()
+    ports: BoundEndpoints[Mailbox] = BoundEndpoints(shares=False)
     owners: dict[Place, Mailbox] = {}
     for host, port, binds in steps:
         place = Place(host, port)

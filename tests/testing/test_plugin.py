@@ -16,7 +16,7 @@ from cfepy.cli.main import main
 from cfepy.extra.exploration import in_tests as exploration
 from cfepy.ground.parameters import is_source_of_files
 from cfepy.journal import read_journal, replay
-from cfepy.rtos import watchdog
+from cfepy.rtos import cpu_time
 from cfepy.rtos.cpu_time import Spent
 from cfepy.testing import plugin
 from tests.own_paths import own_files
@@ -92,7 +92,7 @@ turns = 0
 def test_task_that_does_not_give_up_the_cpu_fails_its_own_test_only(
     suite: Suite, tasks: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(watchdog.Expenses, "__call__", lambda self: Spent(turns / 1e5, turns / 1e5, 0.0))
+    monkeypatch.setattr(cpu_time.Expenses, "__call__", lambda self: Spent(turns / 1e5, turns / 1e5, 0.0))
     result = suite(
         """
         from pathlib import Path

@@ -114,7 +114,7 @@ class _Busy(Expenses):
 def test_forked_process_that_waits_for_schedules_is_not_a_stall(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("cfepy.rtos.watchdog.Expenses", _Busy)
+    monkeypatch.setattr("cfepy.rtos.cpu_time.Expenses", _Busy)
     trial = Trial(RunPlan(("capture",), seconds=0.605, tasks="greenlet", stall=0.2))
     schedule = Schedule.parse("random:1:from=600ms")
     with closing(ForkingJudge(trial)) as pilot:
