@@ -128,8 +128,8 @@ def _add_guard(parser: Options) -> None:
     parser.add_argument(
         "--guard",
         action="store_true",
-        help="report writes of compiled applications past a buffer, uses of freed buffers, and what applications do "
-        "not give back",
+        help="report writes of compiled applications past a buffer, uses of freed buffers, and resources that "
+        "applications do not give back",
     )
 
 

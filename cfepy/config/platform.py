@@ -85,8 +85,8 @@ class PlatformConfig:
 
     Attributes:
         cfe_version: the release of cFE that it runs, a key of `RELEASES`; a mission file has a field of its own for it.
-        safe: whether OSAL and ES prevent what hangs, leaks or ends the process on NASA's Linux; a mission file has a
-            field of its own for it.
+        safe: whether OSAL and ES prevent hangs, leaks and ends of the process that NASA's Linux has; a mission file has
+            a field of its own for it.
         scheduling: one of `SCHEDULINGS`; a mission file has a field of its own for it.
         given: the keys of `IDENTITIES` that the command line of the flight software set.
     """

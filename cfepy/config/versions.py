@@ -66,7 +66,7 @@ class Release:
         early_inits: the calls before the core applications, as the system log names them; each has CFE_MODULE.
         early_init_failed: the line of one that fails, with its name and its status.
         core_apps: the core applications, without CFE_, in the order of their AppIDs.
-        cleanup: the services in the order in which they release what an ended application has.
+        cleanup: the services in the order in which they release the resources of an ended application.
         load_reserves_buffer: LOAD reserves a working buffer; otherwise it finds none, and is refused.
         load_of_recovered_table_stays: the load of a recovered critical table stays in progress.
         sizes_of_32_bits: offset and size of a table file are added in 32 bits.

@@ -28,8 +28,8 @@ BLAS_VARIABLES = (
 
 
 def ask_for_one_blas_thread() -> None:
-    """Let linear algebra that NumPy loads later use one thread, whatever the environment says, so that runs are
-    repeatable. It also holds for NumPy outside of runs.
+    """Let linear algebra that NumPy loads later use one thread, in spite of the environment's variables, so that runs
+    are repeatable. It also holds for NumPy outside of runs.
     """
     os.environ.update(dict.fromkeys(BLAS_VARIABLES, "1"))
 

@@ -1,6 +1,6 @@
 """The KeyboardInterrupt of a simulated process, to distinguish it from a Ctrl-C of the host's user.
 
-The code of a node finds it as `KeyboardInterrupt` among its builtins: SIGINT raises it, and what the node raises itself
+The code of a node finds it as `KeyboardInterrupt` among its builtins: SIGINT raises it. If the node raises it, it
 ends a callback, a thread or the node, as in a process of its own, but not the run. It is no kind of Python's own
 KeyboardInterrupt, so its bases are the same as those that a node sees on a robot.
 """

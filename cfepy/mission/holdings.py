@@ -1,9 +1,9 @@
-"""Holdings: what applications take from cFE and have to give back, with the line that took it.
+"""Holdings: resources that applications take from cFE and have to give back, with the line that took each.
 
 It is the ledger of the guard (`--guard`). The handle for applications gets a layer that writes down each address of a
 table, message buffer, block of a memory pool, open file, folder or socket, lock, and each object of OSAL that
 CFE_ES_CleanUpApp leaves behind. The services themselves know whether it is still held, so nothing is counted twice.
-Without the guard the handle has no such layer, and a call costs what it always costs.
+Without the guard the handle has no such layer, and a call costs no more.
 """
 
 from __future__ import annotations
@@ -48,25 +48,25 @@ class Holding:
 
     Attributes:
         app: the application.
-        what: what it is: `the address of table ARM.Limits`.
+        resource: its description: `the address of table ARM.Limits`.
         place: the line that took it: `arm.c:12`; empty for code without debug data.
         at_ns: virtual time of the call in ns.
         is_held: returns whether it was not given back since.
     """
 
     app: Any
-    what: str
+    resource: str
     place: str
     at_ns: int
     is_held: Callable[[], bool]
 
     def __str__(self) -> str:
-        """Return what it is and the line."""
-        return f"{self.what}, taken at {self.place}" if self.place else self.what
+        """Return the description and the line."""
+        return f"{self.resource}, taken at {self.place}" if self.place else self.resource
 
 
 class HeldRow(NamedTuple):
-    """What an application holds from one line: how many of it, and the virtual time in ns of the oldest."""
+    """Resources that an application holds from one line: their number, and the virtual time in ns of the oldest."""
 
     app: str
     text: str
@@ -93,12 +93,12 @@ class Holdings:
         self._sweep_at = _FIRST_SWEEP
         self._ending: list[Holding] | None = None
 
-    def take(self, key: Key, what: str, is_held: Callable[[], bool]) -> None:
+    def take(self, key: Key, resource: str, is_held: Callable[[], bool]) -> None:
         """Write down that the calling application took something; other callers are left out.
 
         Args:
             key: its identity; a later one with the same key replaces it.
-            what: what it is, for reports.
+            resource: its description, for reports.
             is_held: returns whether it was not given back since.
         """
         app = application_of(self._kernel.current.owner)
@@ -107,7 +107,7 @@ class Holdings:
         if len(self._all) >= self._sweep_at:
             self._all = {key: each for key, each in self._all.items() if each.is_held()}
             self._sweep_at = max(2 * len(self._all), _FIRST_SWEEP)
-        self._all[key] = Holding(app, what, _place(sys._getframe(1)), self._kernel.now, is_held)
+        self._all[key] = Holding(app, resource, _place(sys._getframe(1)), self._kernel.now, is_held)
 
     def place_of_address(self, handle: int) -> str:
         """Return the line that took the address of a table, given the handle; empty if it is not known."""
@@ -127,9 +127,9 @@ class Holdings:
 
     @contextmanager
     def ending(self, app: AppRecord) -> Iterator[None]:
-        """Clean up an application, and report afterwards what it held.
+        """Clean up an application, and report afterwards its holdings.
 
-        An application that an exception ended is left out: what it held follows from the exception.
+        An application that an exception ended is left out: its holdings follow from the exception.
         """
         self._ending = [each for each in self._all.values() if each.app is app and each.is_held()]
         try:
@@ -142,7 +142,7 @@ class Holdings:
                     self._on_leak(row.app, str(row))
 
     def rows(self) -> list[HeldRow]:
-        """Return what applications hold now, by application and line."""
+        """Return the present holdings of applications, by application and line."""
         return _rows(each for each in self._all.values() if each.is_held())
 
 
@@ -275,8 +275,8 @@ def _of_tables(core: Cfe, holdings: Holdings) -> dict[str, After]:
 
 def _of_messages(core: Cfe, holdings: Holdings) -> dict[str, After]:
     def got(args: tuple[Any, ...], buffer: Any) -> None:
-        what = f"a message buffer of {args[0]} bytes"
-        holdings.take(("buffer", buffer.number), what, lambda: core.sb.is_held(buffer))
+        resource = f"a message buffer of {args[0]} bytes"
+        holdings.take(("buffer", buffer.number), resource, lambda: core.sb.is_held(buffer))
 
     return {"allocate_message_buffer": got}
 
@@ -303,8 +303,8 @@ def _of_counters(core: Cfe, holdings: Holdings) -> dict[str, After]:
     counters = core.es.counters
 
     def got(args: tuple[Any, ...], counter_id: int) -> None:
-        what = f"the counter {args[0]}{LEFT_BEHIND}"
-        holdings.take(("counter", counter_id), what, lambda: counters.find(counter_id) is not None)
+        resource = f"the counter {args[0]}{LEFT_BEHIND}"
+        holdings.take(("counter", counter_id), resource, lambda: counters.find(counter_id) is not None)
 
     return {"register_gen_counter": got}
 
@@ -320,12 +320,12 @@ def _of_objects(core: Cfe, holdings: Holdings) -> dict[str, After]:
             return False
         return True
 
-    def got(what: str, object_id: int) -> None:
+    def got(resource: str, object_id: int) -> None:
         name = osal.get_resource_name(object_id)
-        holdings.take(("object", object_id), what.format(name=name), lambda: exists(object_id))
+        holdings.take(("object", object_id), resource.format(name=name), lambda: exists(object_id))
 
-    def of(what: str) -> After:
-        return lambda args, object_id: got(what, object_id)
+    def of(resource: str) -> After:
+        return lambda args, object_id: got(resource, object_id)
 
     def accepted(args: tuple[Any, ...], result: Any) -> None:
         if result is not None:

@@ -126,7 +126,7 @@ class Processor:
         ports, osal, psp, memory, loader, es_task, sb_task: the parts.
         ros: the ROS side, created when the first node starts; None before.
         booted: virtual ns at which it became OPERATIONAL; None before.
-        holdings: what applications took and did not give back; None without the guard.
+        holdings: resources that applications took and did not give back; None without the guard.
     """
 
     def __init__(self, machine: Machine, start_ns: int = 0) -> None:

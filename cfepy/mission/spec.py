@@ -35,7 +35,7 @@ class CompiledConfig:
         omit_deprecated: whether they were built with OMIT_DEPRECATED, which makes CFE_TBL_Handle_t an id instead of an
             int16.
         guard: whether they get guarded, nonzero memory, to find memory errors, and whether all applications are watched
-            for what they do not give back.
+            for resources that they do not give back.
     """
 
     omit_deprecated: bool = False
@@ -96,7 +96,7 @@ class MissionSpec:
         board: its board: a shipped board's name or a path.
         memory: how its applications reach memory by address, one of `cfepy.psp.MEMORIES`; None for the board's way.
         cfe_version: its release of cFE.
-        safe: whether it prevents what hangs, leaks or ends the process on NASA's Linux.
+        safe: whether it prevents hangs, leaks and ends of the process that NASA's Linux has.
         scheduling: how its tasks are scheduled, one of `cfepy.config.platform.SCHEDULINGS`.
         compiled: how its compiled applications were built.
         ros: its ROS nodes, topics and parameters.

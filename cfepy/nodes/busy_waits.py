@@ -122,8 +122,8 @@ class _Turn:
         return True
 
     def _passes_one_of(self, *branches: list[ast.stmt]) -> bool:
-        """Return whether the turn can pass through one of several branches; adds what one that does nothing, or else
-        all of them, do.
+        """Return whether the turn can pass through one of several branches; adds the effects of a branch that does
+        nothing, or else of all branches.
         """
         inside = [(turn, turn._passes(branch)) for turn, branch in ((_Turn(), branch) for branch in branches)]
         passed = [turn for turn, passes in inside if passes]
@@ -144,7 +144,7 @@ class _Turn:
         return self._passes_one_of(*([*handler.body, *node.finalbody] for handler in node.handlers))
 
     def _does(self, node: ast.stmt) -> bool:
-        """Return whether the turn can do a statement and go on without a sleep; adds what it changes."""
+        """Return whether the turn can do a statement and go on without a sleep; adds the names that it changes."""
         if not isinstance(node, ast.Pass | ast.Expr | ast.Assign | ast.AnnAssign | ast.AugAssign | ast.For | ast.While):
             return False
         for each in ast.walk(node):

@@ -1,7 +1,7 @@
 """OSAL's shell (osapi-shell.h): a few commands on the virtual file system, with their output written to a file.
 
-NASA's Linux passes the line to the host's shell; a simulated computer has none. The commands refuse what the host's
-would refuse, such as a copy of a file onto itself.
+NASA's Linux passes the line to the host's shell; a simulated computer has none. The commands refuse the same requests
+as the host's, such as a copy of a file onto itself.
 """
 
 from __future__ import annotations

@@ -267,11 +267,11 @@ def _of_compiled_code(mission: Mission) -> Iterator[RunProblem]:
         yield RunProblem(f"overwritten memory: {each}", each.at_ns, (failure,))
 
 
-# -- what applications hold --------------------------------------------------------------------------------------------
+# -- resources that applications hold ----------------------------------------------------------------------------------
 
 
 def _leaks(mission: Mission) -> Iterator[RunProblem]:
-    """Yield what applications held when they ended, which the guard writes down."""
+    """Yield the resources that applications held when they ended, which the guard writes down."""
     for each in mission.record.leaks:
         failure = Failure(FailureKind.LEAK, each.app, each.text, each.at_ns)
         yield RunProblem(failure.title, each.at_ns, (failure,))

@@ -149,7 +149,7 @@ class InvariantResult:
 
 @dataclass(frozen=True, slots=True)
 class HeldResult:
-    """What an application took from one line and held at the end of the run; the virtual time of the oldest in s."""
+    """Resources that an application took at one line and held at the end of the run; the oldest's virtual time in s."""
 
     app: str
     what: str

@@ -1,4 +1,4 @@
-"""CPU time of the host: what a process and its threads used, and how long other programs kept them from the CPU.
+"""CPU time of the host: the time that a process and its threads used, and that other programs kept them waiting.
 
 The stall watch counts it, so that no verdict of a run depends on the load of the computer. Only Linux reports how long
 threads were ready. Elsewhere a computing thread looks like a waiting one if many programs compute.

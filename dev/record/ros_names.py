@@ -213,7 +213,7 @@ def contents_of(module: types.ModuleType) -> dict[str, Any]:
 
 
 def package_of(name: str, modules: list[str] | None) -> dict[str, Any]:
-    """Return what a package shows after its import, and the contents of its modules.
+    """Return the names that a package shows after its import, and the contents of its modules.
 
     Args:
         name: of the package.

@@ -1,4 +1,4 @@
-"""`python3 -m dev.record.wrong_calls FILE`: records what ROS does with wrong calls of its API.
+"""`python3 -m dev.record.wrong_calls FILE`: records ROS's answers to wrong calls of its API.
 
 The program makes calls with a seed: wrong kinds of arguments, zero, negative, None, too long, twice, in a wrong mode or
 order. `tests/data/calls_in_node.py` executes them in new nodes, each with a master of its own: before `init_node`,

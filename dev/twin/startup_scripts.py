@@ -1,7 +1,7 @@
 """`python -m dev.twin.startup_scripts`: boots random startup scripts on NASA's cFE and on cfepy, and compares the logs.
 
 The scripts have bad lines: missing, extra and too long parts, unknown types, two of one name, numbers in odd bases and
-out of range, and ends that are missing. Compared is what Executive Services say about them in the system log.
+out of range, and ends that are missing. The program compares the lines of Executive Services in the system log.
 CFEPY_REAL_CFE names the folder of NASA's core-cpu1, with the lab applications in its cf.
 """
 
@@ -104,7 +104,7 @@ def play(script: bytes) -> list[str]:
 
 
 def load() -> list[tuple[bytes, list[str]]]:
-    """Return the recorded scripts, with what NASA's cFE said."""
+    """Return the recorded scripts, with the lines of NASA's cFE."""
     rows = json.loads(lzma.decompress(RECORD.read_bytes()))
     return [(text.encode("latin-1"), lines) for text, lines in rows]
 
@@ -114,7 +114,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m dev.twin.startup_scripts", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the first script")
     parser.add_argument("--count", type=int, default=60, help="how many scripts, with seeds that count up")
-    parser.add_argument("--record", action="store_true", help="keep what the real one says for tests without it")
+    parser.add_argument("--record", action="store_true", help="keep the real one's lines for tests without it")
     options = parser.parse_args()
     built = installed()
     if built is None:

@@ -24,7 +24,7 @@ class CommState:
 
 
 class TerminalState:
-    """Final states of a goal. The numbers are those of actionlib_msgs/GoalStatus."""
+    """Final states of a goal. The numbers come from actionlib_msgs/GoalStatus."""
 
     RECALLED = GoalStatus.RECALLED
     REJECTED = GoalStatus.REJECTED

@@ -158,7 +158,7 @@ def decode_config(msg: Any, description: Mapping[str, Any] | None = None) -> Con
     """Return values by name from a Config message. With a description, include the tree of groups with their values.
 
     Raises:
-        AttributeError: the message has inner groups, and the description is that of a server, as on ROS.
+        AttributeError: the message has inner groups, and a server's description, as on ROS.
     """
     config = _values(msg)
     if msg.groups and description is not None:
@@ -196,7 +196,7 @@ def _described_below(described: Mapping[str, Any]) -> Iterator[Mapping[str, Any]
 
 
 def extract_params(group: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Return all parameters of a description: those of the group, then those inside its groups."""
+    """Return all parameters of a description: the group's own, then the parameters of its groups."""
     return [*group["parameters"], *(each for inner in _described_groups(group) for each in extract_params(inner))]
 
 

@@ -9,7 +9,7 @@ from .names import package_resource_name
 
 
 class MsgContext:
-    """Definitions by full name. Those of services are here as request and response."""
+    """Definitions by full name. A service has two, its request and its response."""
 
     def __init__(self) -> None:
         self._specs: dict[tuple[str, str], Any] = {}

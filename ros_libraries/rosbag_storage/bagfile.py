@@ -1,4 +1,4 @@
-"""`BagFile`: one bag that is read or written, or both in turn. Imports what the package has."""
+"""`BagFile`: one bag that is read or written, or both in turn. Imports the rest of the package."""
 
 from __future__ import annotations
 
@@ -206,8 +206,8 @@ class BagFile:
         return self._chunk(kind).write_message(connection, time, data)
 
     def enter(self, connection: Connection, time: int, kind: str = compression.NONE) -> None:
-        """Add an entry to the index alone, for a message that could not be serialized. The arguments are those of
-        `write`.
+        """Add an entry to the index alone, for a message that could not be serialized. The arguments are the same as
+        for `write`.
         """
         self._read_end = 0
         self._chunk(kind).enter(connection, time)

@@ -173,7 +173,7 @@ class Transformer:
         return _numbers(self._buffer.lookup_transform_full(target, target_time, source, source_time, fixed))
 
     def lookupTwist(self, tracking_frame: str, observation_frame: str, time: Any, averaging_interval: Any) -> Any:
-        """Return the velocity of a frame as seen from another. The arguments are those of `lookupTwistFull`."""
+        """Return the velocity of a frame as seen from another. Arguments: see `lookupTwistFull`."""
         return self.lookupTwistFull(
             tracking_frame, observation_frame, observation_frame, (0, 0, 0), tracking_frame, time, averaging_interval
         )

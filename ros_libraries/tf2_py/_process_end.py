@@ -13,14 +13,14 @@ _ABORTED = 128 + 6
 _SEGMENTATION_FAULT = 128 + 11
 
 
-def terminate(kind: str, what: str) -> NoReturn:
+def terminate(kind: str, text: str) -> NoReturn:
     """End the process by an exception of C++ that no code catches.
 
     Args:
         kind: the exception's class.
-        what: its text.
+        text: its `what()`.
     """
-    print(f"terminate called after throwing an instance of '{kind}'\n  what():  {what}", file=sys.stderr)
+    print(f"terminate called after throwing an instance of '{kind}'\n  what():  {text}", file=sys.stderr)
     os._exit(_ABORTED)
 
 

@@ -65,7 +65,7 @@ class BufferCore:
         self.__set("set_transform", transform, authority, TimeCache(self.__keep_ns))
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Add a transform that is valid at all times. The arguments are those of `set_transform`."""
+        """Add a transform that is valid at all times. Arguments: see `set_transform`."""
         self.__set("set_transform_static", transform, authority, StaticCache())
 
     def __set(self, method: str, message: Any, authority: str, cache: TimeCache | StaticCache) -> None:
@@ -274,7 +274,7 @@ class BufferCore:
 
 
 def _check_texts(*arguments: tuple[int, Any]) -> None:
-    """Refuse what is no text, as the arguments of the extension module.
+    """Refuse arguments that are not text, as the extension module does.
 
     Args:
         arguments: position and value of each.

@@ -212,7 +212,7 @@ class TopicEntry:
 class ServiceCall(NamedTuple):
     """A pending service call: the caller's pipe for the answer, and the request's connection header.
 
-    `connection` tells connections apart: of a persistent proxy, all calls have the same.
+    `connection` identifies the connection: all calls of a persistent proxy have the same.
     """
 
     pipe: int

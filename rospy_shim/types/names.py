@@ -116,7 +116,7 @@ class Names:
         self.reload_mappings(argv)
 
     def reload_mappings(self, argv: Sequence[str]) -> None:
-        """Read the remappings of a command line anew. A node that has its name keeps it and what it has resolved."""
+        """Read the remappings of a command line anew. A node that has its name keeps it and its resolved names."""
         self._mappings = load_mappings(argv)
         if self.name != UNNAMED:
             return

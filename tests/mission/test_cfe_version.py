@@ -97,7 +97,7 @@ def test_third_release_is_only_another_file(tmp_path: Path, monkeypatch: pytest.
 
 
 def test_files_of_releases_are_toml() -> None:
-    """They have no escapes and no nested tables, so cfepy's own reader gives what the library gives."""
+    """They have no escapes and no nested tables, so cfepy's own reader gives the library's values."""
     for name, release in versions.RELEASES.items():
         whole = tomllib.loads((versions.FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
         read = vars(release)

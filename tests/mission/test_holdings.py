@@ -1,4 +1,4 @@
-"""What applications took and did not give back: found with the guard, with the line; and loads that wait for it."""
+"""Resources that applications took and did not give back: with their lines; and loads that wait for them."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ TAKEN = {
 
 
 @pytest.mark.parametrize(("call", "what"), TAKEN.values(), ids=TAKEN)
-def test_what_an_application_holds_when_it_ends_is_told_with_its_line(tmp_path: Path, call: str, what: str) -> None:
+def test_holdings_of_an_ended_application_are_reported_with_their_lines(tmp_path: Path, call: str, what: str) -> None:
     assert problems(tmp_path, ["", call]) == [f"not given back: TAKER: {what}, taken at taker.py:{LINE + 1}"]
 
 
@@ -95,17 +95,17 @@ GIVEN = {
 
 
 @pytest.mark.parametrize("body", GIVEN.values(), ids=GIVEN)
-def test_what_was_given_back_is_not_told(tmp_path: Path, body: list[str]) -> None:
+def test_released_resources_are_not_reported(tmp_path: Path, body: list[str]) -> None:
     assert problems(tmp_path, body) == []
 
 
-def test_what_a_finally_block_gives_back_is_not_told(tmp_path: Path) -> None:
+def test_resources_that_a_finally_block_gives_back_are_not_reported(tmp_path: Path) -> None:
     body = ["m = os.mut_sem_create('M')", "os.mut_sem_take(m)", "tbl.get_address(table)", "es.run_loop()", "try:"]
     body += ["    os.task_delay(5000)", "finally:", "    os.mut_sem_give(m)", "    tbl.release_address(table)"]
     assert problems(tmp_path, body) == []
 
 
-def test_what_an_application_holds_when_an_exception_ends_it_is_not_told(tmp_path: Path) -> None:
+def test_holdings_of_an_application_that_an_exception_ends_are_not_reported(tmp_path: Path) -> None:
     told = problems(tmp_path, ["tbl.get_address(table)", "raise ValueError('wrong')"], ends=False)
     assert [each for each in told if "not given back" in each] == []
 
@@ -146,7 +146,7 @@ def test_a_refused_load_of_a_double_buffered_table_is_told(tmp_path: Path) -> No
     assert told.endswith(": TAKER holds the address of table TAKER.Two")
 
 
-def test_what_applications_hold_at_the_end_of_the_run_is_in_its_report(tmp_path: Path, capsys: Any) -> None:
+def test_holdings_at_the_end_of_the_run_are_in_its_report(tmp_path: Path, capsys: Any) -> None:
     problems(tmp_path, ["for _ in range(2):", "    sb.allocate_message_buffer(8)"], 1, ends=False)
     assert main(["run", str(tmp_path), "--for", "2", "--guard", "--json", str(tmp_path / "run.json")]) == 0
     assert "Held at the end\n" in capsys.readouterr().out

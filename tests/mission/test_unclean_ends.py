@@ -105,7 +105,7 @@ def own_lines(mission: Mission) -> list[str]:
 
 
 @pytest.mark.parametrize("case", CASES.values(), ids=CASES)
-def test_restarted_application_leaves_what_nasas_es_leaves(tmp_path: Path, case: Case) -> None:
+def test_restarted_application_leaves_the_same_as_under_nasas_es(tmp_path: Path, case: Case) -> None:
     with flown(tmp_path, case.body) as mission:
         assert log_of(mission) == case.log
         lines = own_lines(mission)

@@ -31,7 +31,7 @@ def flown(folder: Path, startup: str) -> Mission:
     return mission
 
 
-def test_objects_of_a_booted_cfe_are_those_of_nasas(tmp_path: Path) -> None:
+def test_booted_cfe_has_the_same_objects_as_nasas(tmp_path: Path) -> None:
     found: list[str] = []
     with flown(tmp_path, STARTUP) as mission:
         os = mission.cfe.os

@@ -1,6 +1,6 @@
 """Objects and tasks that are deleted while a task uses them, as recorded on NASA's OSAL 7.0.0 on Linux.
 
-What waits forever there waits forever here. A safe mission prevents it; the tests of each kind of object cover that.
+A task that waits forever there waits forever here. A safe mission prevents it; each kind of object has tests of it.
 """
 
 from __future__ import annotations

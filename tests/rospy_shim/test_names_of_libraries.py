@@ -183,7 +183,7 @@ def the_names_here(folder: Path, recorded: dict[str, Any]) -> dict[str, Any]:
 
 
 def comparable(shape: Any, recorded: Any) -> Any:
-    """Return the description of a value without what differs anyway, for a name that ROS described as `recorded`.
+    """Return the description of a value without parts that always differ, for a name that ROS described as `recorded`.
 
     That is the module of a function, the value of the interpreter's version, and arguments of C code.
     """
@@ -201,7 +201,7 @@ OURS = ("actionlib", "bond", "cv_bridge", "d", "gen", "message_filters", "ros", 
 
 
 def contents(module: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the names of a module, and those of each of its classes."""
+    """Yield the names of a module, and the names of each of its classes."""
     yield "", module["names"]
     for name, members in module["classes"].items():
         yield f".{name}", members

@@ -297,7 +297,7 @@ def test_other_threads_of_the_process_do_not_count() -> None:
     assert Spent(1.0, 9.0, 8.0).since(before, {1}) == (9.0, 8.0)
 
 
-def test_threads_of_the_run_are_those_of_its_tasks(kernel: Kernel) -> None:
+def test_watch_counts_the_threads_of_the_runs_tasks(kernel: Kernel) -> None:
     watch = watched(kernel)
     watch.limit_s = 1000
     seen = set[int]()

@@ -243,7 +243,7 @@ def _invariants(results: Results) -> list[Table]:
 
 
 def _held(results: Results) -> list[Table]:
-    """Return a table of what applications held at the end of a run with the guard."""
+    """Return a table of the resources that applications held at the end of a run with the guard."""
     table = Table("Held at the end", ("application", "what", "number", "since, s"), right=(2, 3), least=(1,))
     for each in results.held:
         table.add(each.app, each.what, each.number, f"{each.since_s:.6f}")

@@ -92,7 +92,7 @@ class Image:
         size: its bytes.
         symbols: addresses of its exports.
         thread_locals: offsets of its exported thread-local variables.
-        replaced: its own symbols in place of which it uses those of a library.
+        replaced: its own symbols in place of which it uses a library's symbols.
 
     Raises:
         ElfError: it needs a loader feature that this one does not have.

@@ -95,7 +95,7 @@ def wanted_names(source: SharedObject) -> list[str]:
 def refused_names(source: SharedObject) -> set[str]:
     """Return the names in `wanted_names` that bring in the host, so that a call is a fault.
 
-    What libgcov and a statically linked libstdc++ need of them is provided, and tells nothing about the application.
+    The functions that libgcov and a statically linked libstdc++ need are provided, and do not count as its own.
     It raises the errors of `wanted_names`.
     """
     found = {name for name in wanted_names(source) if name in REASONS}

@@ -62,7 +62,7 @@ class CRuntime:
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
         guard, tables: check blocks and images of tables; None without the guard.
-        tells_code: whether the operating system tells where code is; NASA's Linux does not.
+        tells_code: whether the operating system gives addresses of code; NASA's Linux does not.
         applications, libraries: loaded images, by the name of the application or the path of the library.
         modules: images that OS_ModuleLoad loaded.
         at_app_end: called when an application has ended.

@@ -23,7 +23,7 @@ def in_timer(cfe: Any, which: int, timer: int, given: int) -> int:
         given: an id of any object.
 
     Returns:
-        The status, or what the call answers.
+        The status, or the call's answer.
     """
     os, es, evs, sb = cfe.os, cfe.es, cfe.evs, cfe.sb
 

@@ -27,7 +27,7 @@ def test_handles_of_tables_are_ids_without_deprecated_elements(tmp_path: Path) -
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [each for each in NAMES if each not in ("pools", "unregistered")])
 def test_application_prints_the_same_under_the_guard(tmp_path: Path, name: str) -> None:
-    """Two applications do what the guard forbids: they read before the blocks of a pool, and send the memory behind a
+    """Two applications break the guard's rules: they read before the blocks of a pool, and send the memory behind a
     message buffer.
     """
     assert fly(name, tmp_path, more="compiled: {guard: true}\n") == expected(name)

@@ -1,4 +1,4 @@
-"""Long messages and a slow callback: what waits in the sockets is handled late, as on ROS.
+"""Long messages and a slow callback: messages that wait in the sockets are handled late, as on ROS.
 
 The numbers of the parametrized flights were also printed on ROS Noetic by the same nodes, give or take one message.
 """

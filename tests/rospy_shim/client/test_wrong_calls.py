@@ -1,6 +1,6 @@
 """Wrong calls of ROS's API end as on ROS: with the same result, exception and text, or not at all.
 
-`python3 -m dev.record.wrong_calls` made the calls and recorded what ROS does.
+`python3 -m dev.record.wrong_calls` made the calls and recorded ROS's answers.
 """
 
 from __future__ import annotations

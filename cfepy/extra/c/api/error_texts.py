@@ -19,7 +19,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
     rooms: list[int] = []
 
     def text_of(number: int) -> int:
-        """Return the address of a text; that of an unknown error stays until the next one."""
+        """Return the address of a text; the text of an unknown error stays until the next one."""
         text, is_known = engine().error_text(number)
         if is_known:
             return c.constants.text(text)
