@@ -54,10 +54,10 @@ no_collection = _NoCollection()
 
 CAN_FREEZE = hasattr(gc, "freeze")  # PyPy cannot: it has its own generations
 MOST_OBJECTS = 20_000  # freeze more objects than this: a collection over them takes milliseconds
-LOOKS = 64  # one of this many collections at the end of a run goes through all objects,
-OBJECTS = 100_000  # or one of several times as many, if there are several times this many objects
+MOST_GROWTH = 60_000  # so many more objects, frozen or not, can be garbage: a collection then goes through all of them
 _every = 1  # `collect_leftovers` collects at the end of each so-many-th run
 _runs = 0
+_kept = 0  # number of objects that the last collection over all objects has left, or at first that were there
 
 
 def freeze() -> None:
@@ -70,9 +70,15 @@ def freeze_many() -> None:
     """Freeze all objects if there are so many that a collection takes long.
 
     They stay frozen, because counting many objects at each run takes just as long. Garbage that `collect_leftovers` has
-    not looked for yet must not be frozen, because no collection would find it.
+    not looked for yet must not be frozen, because no collection would find it. The simulation that runs now is frozen
+    too, and becomes garbage later; `collect_leftovers` notices it by the growth of the number of objects.
     """
-    if _runs % _every == 0 and CAN_FREEZE and len(gc.get_objects()) > MOST_OBJECTS:
+    global _kept
+    if _runs % _every or not CAN_FREEZE or len(gc.get_objects()) <= MOST_OBJECTS:
+        return
+    present = len(gc.get_objects()) + gc.get_freeze_count()
+    _kept = _kept or present
+    if present <= _kept + MOST_GROWTH:
         gc.freeze()
 
 
@@ -87,18 +93,20 @@ def collect_every(runs: int) -> None:
 
 
 def collect_leftovers() -> None:
-    """Collect garbage among the objects that are not frozen, and from time to time among all objects.
+    """Collect garbage among the objects that are not frozen, and among all objects once their number has grown.
 
     A run leaves classes in reference cycles. The simulation itself is still referenced, and the next collection finds
     it. The objects that existed before the first run stay frozen, because going through them takes longer than all the
     rest.
     """
-    global _runs
+    global _runs, _kept
     _runs += 1
     if _runs % _every:
         return
-    looks = gc.get_stats()[-1]["collections"] + 1 if CAN_FREEZE else 1
-    if looks % LOOKS == 0 and looks // LOOKS % max(1, gc.get_freeze_count() // OBJECTS) == 0:
-        gc.unfreeze()
     gc.collect()
-    freeze_many()
+    if CAN_FREEZE and len(gc.get_objects()) > MOST_OBJECTS:
+        if _kept and len(gc.get_objects()) + gc.get_freeze_count() > _kept + MOST_GROWTH:
+            gc.unfreeze()
+            gc.collect()
+            _kept = len(gc.get_objects())
+        freeze_many()

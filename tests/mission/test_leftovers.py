@@ -95,6 +95,20 @@ def test_uncollected_garbage_is_not_frozen(monkeypatch: pytest.MonkeyPatch) -> N
     assert gc.get_freeze_count() <= before
 
 
+def test_frozen_missions_do_not_accumulate(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that has more than MOST_OBJECTS freezes its own objects, which are garbage after it."""
+    gc.unfreeze()
+    gc.collect()
+    others = sum(isinstance(each, Kernel) for each in gc.get_objects())
+    monkeypatch.setattr(garbage, "MOST_OBJECTS", 100)
+    monkeypatch.setattr(garbage, "MOST_GROWTH", 2_000)
+    monkeypatch.setattr(garbage, "_kept", 0)
+    for _ in range(12):
+        fly(0.1)
+    gc.unfreeze()
+    assert sum(isinstance(each, Kernel) for each in gc.get_objects()) - others <= 5
+
+
 @pytest.mark.slow
 def test_observed_missions_do_not_accumulate() -> None:
     """Their kernels and buses have classes of their own."""
