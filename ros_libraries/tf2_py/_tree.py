@@ -11,7 +11,7 @@ from tf2_py._rotation import Sample
 
 Cache = TimeCache | StaticCache
 MAX_DEPTH = 1000  # a path as long as this means a loop
-FOREVER = 1 << 63
+NO_FRAME = "NO_PARENT"  # tf2's name of what is no frame
 
 
 class Path:
@@ -78,7 +78,7 @@ class Tree:
         """
         caches = self.caches
         while frame != wanted and frame != top:
-            cache = caches[frame]
+            cache = caches.get(frame)  # none for NO_FRAME, too
             if cache is None:
                 break
             sample = cache.sample(time)
@@ -131,13 +131,14 @@ class Tree:
 
         Raises:
             ConnectivityException: there is no path, or one frame is unknown.
-            ExtrapolationException, LookupException: as `path`.
+            ExtrapolationException: a frame on the path, or above the known frame, has no sample at that time.
+            LookupException: the tree has a loop, or one frame is unknown and the time is 0.
         """
-        target, source = (name if name in self.caches else "NO_PARENT" for name in (target, source))
+        target, source = (name if name in self.caches else NO_FRAME for name in (target, source))
         if target == source:
             return []
-        if "NO_PARENT" in (target, source):
-            raise ConnectivityException(_no_connection(target, source))
+        if NO_FRAME in (target, source) and not time:
+            raise LookupException("")  # tf2 gives no reason
         path = self.path(target, source, time)
         up = [source, *(sample[0] for sample in path.up)]
         down = [target, *(sample[0] for sample in path.down)]
@@ -153,7 +154,7 @@ class Tree:
 
     def as_string(self) -> str:
         """Return a line for each frame that was given a parent."""
-        named = ((name, cache.latest()[1] or "NO_PARENT") for name, cache in self.caches.items() if cache is not None)
+        named = ((name, cache.latest()[1] or NO_FRAME) for name, cache in self.caches.items() if cache is not None)
         return "".join(f"Frame {name} exists with parent {parent}.\n" for name, parent in named)
 
 

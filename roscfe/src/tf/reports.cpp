@@ -24,6 +24,7 @@ void Buffer::describe(const Failure &failure, Text &text) const
     switch (failure.kind)
     {
         case Failure::none:
+        case Failure::undefined: // tf2 gives no reason
             break;
         case Failure::empty_name:
             text << "Invalid argument passed to " << failure.role << " in tf2 frame_ids cannot be empty";
@@ -39,9 +40,6 @@ void Buffer::describe(const Failure &failure, Text &text) const
             text << "The tf tree is invalid because it contains a loop.\n";
             all_as_string(text);
             text << "\n";
-            break;
-        case Failure::undefined:
-            text << "Source or target frame is not yet defined";
             break;
         case Failure::no_connection:
             text << "Could not find a connection between '";

@@ -315,7 +315,8 @@ Failure Buffer::walk_chain(std::int64_t time, FrameId target, FrameId source, st
 {
     Way           way;
     const Failure failure = walk(way, time, target, source);
-    if (failure)
+    count = 0;
+    if (failure || target == source)
     {
         return failure;
     }
@@ -336,7 +337,8 @@ Failure Buffer::walk_chain(std::int64_t time, FrameId target, FrameId source, st
         FrameId *const met = std::find(up, up + up_length, down[turn]);
         if (met != up + up_length)
         {
-            count = static_cast<std::uint32_t>(met - up) + 1;
+            // tf2 does not cut off what follows a meeting directly above the source.
+            count = met == up + 1 ? up_length : static_cast<std::uint32_t>(met - up) + 1;
             std::reverse_copy(down, down + turn, up + count);
             count += turn;
             break;

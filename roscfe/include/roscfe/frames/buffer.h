@@ -195,13 +195,13 @@ template <class Add>
 Failure Buffer::chain(std::string_view target, std::int64_t target_time, std::string_view source,
                       std::int64_t source_time, std::string_view fixed, const Add &add) const
 {
-    FrameId       target_id = 0, source_id = 0, fixed_id = 0;
-    std::uint32_t count = 0;
-    Failure       failure = validate("chain", source, source_id);
-    failure = failure ? failure : validate("chain", fixed, fixed_id);
-    failure = failure ? failure : validate("chain", target, target_id);
-    failure = failure ? failure : walk_chain(source_time, fixed_id, source_id, count);
-    for (std::uint32_t at = 0; !failure && at + 1 < count; ++at) // the fixed frame comes again
+    // As in tf2, an unknown name is no error by itself: the way that begins or ends there is looked for, and not found.
+    const FrameId target_id = find(target), source_id = find(source), fixed_id = find(fixed);
+    std::uint32_t count     = 0;
+    Failure       failure   = walk_chain(source_time, fixed_id, source_id, count);
+    // The fixed frame comes again as the first one of the second way, unless that way has no length.
+    const std::uint32_t first = count - (target_id != fixed_id && count != 0 ? 1 : 0);
+    for (std::uint32_t at = 0; !failure && at < first; ++at)
     {
         add(name_of(chain_[at]));
     }
