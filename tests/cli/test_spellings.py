@@ -33,8 +33,8 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--guard": (
         None,
         (
-            "report writes of compiled applications past a buffer, uses of freed buffers, and resources that applications "
-            "do not give back"
+            "report writes of compiled applications past a buffer, uses of freed buffers, and resources that "
+            "applications do not give back"
         ),
     ),
     "--jobs": ("N", "processes on this computer"),
