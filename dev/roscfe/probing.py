@@ -39,6 +39,10 @@ REMAPS = {"from": "to", "chatter": "/talk"}
 SECONDS = 30.0
 SIMULATED = ("sim_time",)
 """Probes whose time is that of /clock."""
+HANGING = ("waits",)
+"""Probes that hang at their end on a robot, and have to be ended."""
+HANGING_S = 10.0
+"""How long they run with roscpp, in seconds of wall time."""
 ROS_PYTHON = "/usr/bin/python3"
 """The interpreter that has Debian's rospy (python3-rospy)."""
 LIBRARIES = (
@@ -46,6 +50,7 @@ LIBRARIES = (
     *("-lactionlib", "-lboost_thread"),
 )
 MORE_LIBRARIES = {
+    "queues": ("-lmessage_filters",),
     "clouds": ("-linteractive_markers", "-llaser_geometry", "-ltf", "-ltf2"),
     "shapes": ("-ltopic_tools",),
 }
@@ -148,6 +153,11 @@ def run_with_roscpp(name: str, folder: Path, environ: dict[str, str]) -> list[st
     running = [
         subprocess.Popen(each, env=environ, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) for each in commands
     ]
+    if name in HANGING:
+        time.sleep(HANGING_S)
+        for each in running:
+            assert each.poll() is None, "a probe of HANGING has ended by itself"
+            each.kill()
     said = [each.communicate(timeout=60)[0].decode("utf-8", "replace") for each in running]
     return probe_first(marked("".join(said).splitlines()))
 

@@ -39,47 +39,53 @@ void CallbackQueue::expect(std::size_t count)
     }
 }
 
-void CallbackQueue::addCallback(const CallbackInterfacePtr &callback, std::uint64_t owner_id)
+void CallbackQueue::append(const CallbackInterfacePtr &callback, std::uint64_t owner_id)
 {
-    if (!enabled_)
-    {
-        return;
-    }
     if (count_ == ring_.size())
     {
         grow(std::max<std::size_t>(8, 2 * ring_.size())); // callbacks of the node's own
     }
-    Entry &entry   = ring_[(head_ + count_) % ring_.size()];
+    Entry &entry   = at(count_);
     entry.callback = callback;
     entry.owner_id = owner_id;
     ++count_;
 }
 
+void CallbackQueue::addCallback(const CallbackInterfacePtr &callback, std::uint64_t owner_id)
+{
+    if (enabled_)
+    {
+        append(callback, owner_id);
+    }
+}
+
 void CallbackQueue::removeByID(std::uint64_t owner_id)
 {
-    std::size_t kept = 0;
+    std::size_t kept = 0, kept_of_batch = 0;
     for (std::size_t i = 0; i < count_; ++i)
     {
-        Entry &entry = ring_[(head_ + i) % ring_.size()];
-        if (entry.owner_id == owner_id)
+        if (at(i).owner_id == owner_id)
         {
-            entry.callback.reset();
+            at(i).callback.reset();
+            continue;
         }
-        else if (kept++ != i)
+        kept_of_batch += i < batch_ ? 1 : 0;
+        if (kept++ != i)
         {
-            std::swap(ring_[(head_ + kept - 1) % ring_.size()], entry);
+            std::swap(at(kept - 1), at(i));
         }
     }
     count_ = kept;
+    batch_ = kept_of_batch;
 }
 
+// Those that are being called are not among them.
 void CallbackQueue::clear()
 {
-    for (Entry &entry : ring_)
+    for (; count_ > batch_; --count_)
     {
-        entry.callback.reset();
+        at(count_ - 1).callback.reset();
     }
-    count_ = 0;
 }
 
 bool CallbackQueue::waitForCallback(WallDuration timeout)
@@ -87,26 +93,26 @@ bool CallbackQueue::waitForCallback(WallDuration timeout)
     const std::int64_t until = roscfe::now_ns() + timeout.toNSec();
     roscfe::pump(0);
     roscfe::run_async();
-    while (empty() && !roscfe::g_node.shutting_down && roscfe::now_ns() < until)
+    while (count_ == batch_ && !roscfe::g_node.shutting_down && roscfe::now_ns() < until)
     {
         roscfe::pump(until);
         roscfe::run_async();
     }
-    return !empty();
+    return count_ > batch_ && enabled_;
 }
 
+// Call the first one of the batch.
 CallbackQueue::CallOneResult CallbackQueue::callFirst()
 {
-    Entry                entry;
-    const std::size_t    at       = head_;
-    CallbackInterfacePtr callback = ring_[at].callback;
-    entry.owner_id                = ring_[at].owner_id;
-    ring_[at].callback.reset();
+    const CallbackInterfacePtr callback = at(0).callback;
+    const std::uint64_t        owner_id = at(0).owner_id;
+    at(0).callback.reset();
     head_ = (head_ + 1) % ring_.size();
     --count_;
-    if (!callback->ready() || callback->call() == CallbackInterface::TryAgain)
+    --batch_;
+    if (callback->call() == CallbackInterface::TryAgain)
     {
-        addCallback(callback, entry.owner_id);
+        append(callback, owner_id);
         return TryAgain;
     }
     return Called;
@@ -118,7 +124,29 @@ CallbackQueue::CallOneResult CallbackQueue::callOne(WallDuration timeout)
     {
         return Disabled;
     }
-    return waitForCallback(timeout) ? callFirst() : Empty;
+    if (!waitForCallback(timeout))
+    {
+        return enabled_ ? Empty : Disabled;
+    }
+    std::size_t ready = batch_;
+    while (ready < count_ && !at(ready).callback->ready())
+    {
+        ++ready;
+    }
+    if (ready == count_)
+    {
+        return TryAgain;
+    }
+    for (; ready > batch_; --ready)
+    {
+        std::swap(at(ready - 1), at(ready));
+    }
+    // In a callback it is another's turn: the one that was about to be called.
+    ++batch_;
+    ++calling_;
+    const CallOneResult result = callFirst();
+    --calling_;
+    return result;
 }
 
 void CallbackQueue::callAvailable(WallDuration timeout)
@@ -127,11 +155,16 @@ void CallbackQueue::callAvailable(WallDuration timeout)
     {
         return;
     }
-    // Those that are there now; what callbacks add waits for the next time.
-    for (std::size_t left = count_; left > 0 && count_ > 0 && enabled_; --left)
+    // Those that are there now; what callbacks add waits for the next time. In a callback, those that the callback's own
+    // caller has not called yet are among them.
+    batch_ = count_;
+    calling_ += batch_;
+    std::size_t called = 0;
+    for (; batch_ > 0; ++called)
     {
         callFirst();
     }
+    calling_ -= called;
 }
 
 // -- spinners ----------------------------------------------------------------------------------------------------------

@@ -1,5 +1,6 @@
 // ros::Time and its kin: the processor's clock, or what /clock says where the parameter /use_sim_time is true.
 #include "internal.h"
+#include "ros/console.h"
 #include "ros/time.h"
 
 namespace roscfe
@@ -119,8 +120,16 @@ T time_of(std::int64_t ns)
     return time;
 }
 
-bool sleep_for(std::int64_t ns)
+// As in roscpp, which takes the seconds of a negative duration for a number without a sign: the wait has no end.
+bool sleep_for(std::int32_t sec, std::int32_t nsec)
 {
+    const auto seconds = static_cast<std::uint32_t>(sec);
+    if (sec < 0)
+    {
+        ROS_WARN("a sleep of %.9f s waits for %u s, as in roscpp: a negative duration is taken for a long one",
+                 sec + nsec * 1e-9, seconds);
+    }
+    const std::int64_t ns = std::int64_t(seconds) * roscfe::kSecond + nsec;
     if (ns > 0)
     {
         roscfe::wait_until(roscfe::now_ns() + ns);
@@ -172,11 +181,11 @@ bool SteadyTime::sleepUntil(const SteadyTime &end)
 }
 bool Duration::sleep() const
 {
-    return roscfe::is_sim_time() ? roscfe::wait_for_clock(toNSec()) : sleep_for(toNSec());
+    return roscfe::is_sim_time() ? roscfe::wait_for_clock(toNSec()) : sleep_for(sec, nsec);
 }
 bool WallDuration::sleep() const
 {
-    return sleep_for(toNSec());
+    return sleep_for(sec, nsec);
 }
 
 void Time::init() {}

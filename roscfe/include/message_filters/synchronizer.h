@@ -7,10 +7,8 @@
 #include <tuple>
 #include <utility>
 
-#include "message_filters/connection.h"
+#include "message_filters/set_signal.h"
 #include "ros/message_traits.h"
-#include "ros/parameter_adapter.h"
-#include "roscfe/synchronizing.h"
 
 namespace message_filters
 {
@@ -47,37 +45,10 @@ class Synchronizer : public Policy
         connect(std::index_sequence_for<F...>(), filters...);
     }
 
-    // A callable that takes pointers to the messages, a function, or a method of an object.
-    template <class C>
-    Connection registerCallback(C callback)
+    template <class... C>
+    Connection registerCallback(C... callback)
     {
-        return add_callback([callback](const roscfe::ItemSet &set) mutable {
-            call(callback, set, std::make_index_sequence<kStreams>());
-        });
-    }
-    template <class... P>
-    Connection registerCallback(void (*callback)(P...))
-    {
-        return add_callback([callback](const roscfe::ItemSet &set) {
-            call_with<P...>([callback](P... parameters) { callback(parameters...); }, set,
-                            std::index_sequence_for<P...>());
-        });
-    }
-    template <class T, class U, class... P>
-    Connection registerCallback(void (T::*callback)(P...), U *object)
-    {
-        return add_callback([callback, object](const roscfe::ItemSet &set) {
-            call_with<P...>([callback, object](P... parameters) { (object->*callback)(parameters...); }, set,
-                            std::index_sequence_for<P...>());
-        });
-    }
-    template <class T, class U, class... P>
-    Connection registerCallback(void (T::*callback)(P...) const, U *object)
-    {
-        return add_callback([callback, object](const roscfe::ItemSet &set) {
-            call_with<P...>([callback, object](P... parameters) { (object->*callback)(parameters...); }, set,
-                            std::index_sequence_for<P...>());
-        });
+        return signal_.add(callback...);
     }
 
     template <int i>
@@ -93,12 +64,7 @@ class Synchronizer : public Policy
   private:
     void begin()
     {
-        this->synchronization().on_set = [this](const roscfe::ItemSet &set) {
-            for (auto each = callbacks_.begin(); each != callbacks_.end();)
-            {
-                (*each++)(set);
-            }
-        };
+        this->begin_synchronization([this](const roscfe::ItemSet &set) { signal_(set); });
     }
 
     template <std::size_t i>
@@ -125,34 +91,9 @@ class Synchronizer : public Policy
         inputs_.clear();
     }
 
-    template <std::size_t i>
-    static boost::shared_ptr<Message<i> const> message_of(const roscfe::ItemSet &set)
-    {
-        return boost::static_pointer_cast<Message<i> const>(set[i].message);
-    }
-    template <class C, std::size_t... i>
-    static void call(C &callback, const roscfe::ItemSet &set, std::index_sequence<i...>)
-    {
-        callback(message_of<i>(set)...);
-    }
-    template <class... P, class C, std::size_t... i>
-    static void call_with(C callback, const roscfe::ItemSet &set, std::index_sequence<i...>)
-    {
-        callback(ros::ParameterAdapter<P>::getParameter(
-            ros::MessageEvent<Message<i> const>(message_of<i>(set), set[i].receipt))...);
-    }
-
-    template <class F>
-    Connection add_callback(F callback)
-    {
-        callbacks_.push_back(boost::function<void(const roscfe::ItemSet &)>(callback));
-        const auto place = std::prev(callbacks_.end());
-        return Connection([this, place]() { callbacks_.erase(place); });
-    }
-
-    std::list<boost::function<void(const roscfe::ItemSet &)>> callbacks_;
-    std::list<Connection>                                     inputs_;
-    std::string                                               name_;
+    SetSignal<Messages>   signal_;
+    std::list<Connection> inputs_;
+    std::string           name_;
 };
 
 } // namespace message_filters

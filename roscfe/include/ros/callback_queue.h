@@ -36,7 +36,9 @@ class CallbackQueue : public CallbackQueueInterface
     void          callAvailable() { callAvailable(WallDuration()); }
     void          callAvailable(WallDuration timeout);
 
-    bool empty() const { return count_ == 0; }
+    // As roscpp counts: a queue is not empty while one of its callbacks runs, nor ever again after a callback has
+    // emptied it for the others, or has removed one of those that were about to be called.
+    bool empty() const { return count_ == batch_ && calling_ == 0; }
     bool isEmpty() const { return empty(); }
     void clear();
     void enable() { enabled_ = true; }
@@ -50,15 +52,19 @@ class CallbackQueue : public CallbackQueueInterface
         std::uint64_t        owner_id = 0;
     };
 
+    Entry &       at(std::size_t place) { return ring_[(head_ + place) % ring_.size()]; }
     CallOneResult callFirst();
     bool          waitForCallback(WallDuration timeout);
+    void          append(const CallbackInterfacePtr &callback, std::uint64_t owner_id);
     void          grow(std::size_t capacity);
 
     bool               enabled_;
     std::vector<Entry> ring_;
-    std::size_t        head_  = 0;
-    std::size_t        count_ = 0;
-    std::size_t        room_  = 0; // that was asked for
+    std::size_t        head_    = 0;
+    std::size_t        count_   = 0;
+    std::size_t        batch_   = 0; // the first ones: they are being called, and what comes meanwhile waits
+    std::size_t        calling_ = 0; // as roscpp counts them
+    std::size_t        room_    = 0; // that was asked for
 };
 
 // The queue that node handles use that say nothing else.

@@ -29,6 +29,10 @@ class ApproximateTime
     }
 
   protected:
+    void begin_synchronization(const boost::function<void(const roscfe::ItemSet &)> &on_set)
+    {
+        synchronization_.on_set = on_set;
+    }
     roscfe::Synchronization &synchronization() { return synchronization_; }
 
   private:
