@@ -79,8 +79,8 @@ class NodeFlight:
                 mission.run_for(LOOK_S)
                 refuse_fault(mission.console.lines)
                 node = mission.ros.graph.compiled.get("/node")
-                services = mission.ros.graph.services.items()
-                serves = {name: entry.service.type for name, entry in services if entry.service.node is node}
+                services = {name: entry.service for name, entry in mission.ros.graph.services.items()}
+                serves = {name: each.service_class._type for name, each in services.items() if each.__node__ is node}
                 published = {name: kind for name, kind in node.published.items() if name != "/rosout"} if node else {}
                 seen = Seen(published, dict(node.subscribed) if node else {}, serves, calls)
             for name in serves:
