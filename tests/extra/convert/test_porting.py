@@ -19,7 +19,11 @@ BY_HAND = "make "  # in a mission tree of cFS, which is not available here; dev.
 CROSS = "aarch64-linux-gnu-g++"
 SHOWN = {
     1: ("host: 2 nodes, 0 refused",),
-    2: ("[/pump] [ INFO] [316533802.550", "]: pump on\n", "/level       116  10.1     0"),  # then the costs of the calls
+    2: (
+        "[/pump] [ INFO] [316533802.550",
+        "]: pump on\n",
+        "/level       116  10.1     0",
+    ),  # then the costs of the calls
     3: ("2 nodes,",),
     5: ("* RESULT: SUCCESS", "* TESTS: 2"),
     6: ("host: 2 nodes, 0 refused",),
