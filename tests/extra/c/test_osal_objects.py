@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
+
 from tests.extra.c.building import compile_c, console_of, fly, fly_c, needs_compiler, said, write_mission
 from tests.extra.c.test_osal import HEADER, results
 
@@ -67,38 +69,40 @@ def test_code_loaded_later_uses_symbols_of_global_modules(tmp_path: Path) -> Non
     """
     console = fly_c(tmp_path, f"{HEADER}\nvoid TEST_Main(void)\n{{\n{body}\n}}\n", 1)
     assert said(console)[:5] == ["0", "0", "2", "0", "-1"]
-    assert "OS_ModuleLoad: /cf/SECOND.so: undefined symbol: first" in console
+    assert "OS_ModuleLoad: Error loading shared library: /cf/SECOND.so: undefined symbol: first" in console
 
 
-def test_modules_of_an_ended_application_are_unloaded(tmp_path: Path) -> None:
+LOADER = f"""{HEADER}
+void LOADER_Main(void)
+{{
+    Id id;
+    uint64_t at;
+    DID(OS_ModuleLoad(&id, "M", "/cf/MODULE.so", 0));
+    DID(OS_ModuleSymbolLookup(id, &at, "answer"));
+    OS_TaskDelay(100);
+    AT_THE_END;
+}}
+"""
+LATER = f"""{HEADER}
+void TEST_Main(void)
+{{
+    Id id;
+    uint64_t at;
+    OS_TaskDelay(2000);
+    DID(OS_SymbolLookup(&at, "answer"));
+    DID(OS_ModuleLoad(&id, "M", "/cf/MODULE.so", 0));
+}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("at_the_end", "seen"), [("CFE_ES_ExitApp(EXIT)", ["-1", "0"]), ("return", ["0", "-15"])], ids=["exits", "returns"]
+)
+def test_modules_are_unloaded_if_es_ends_their_application(tmp_path: Path, at_the_end: str, seen: list[str]) -> None:
     compile_c(tmp_path, "MODULE", "int answer(void) { return 42; }")
-    compile_c(
-        tmp_path,
-        "LOADER",
-        f"""{HEADER}
-        void LOADER_Main(void)
-        {{
-            Id id;
-            OS_ModuleLoad(&id, "M", "/cf/MODULE.so", 0);
-            OS_TaskDelay(100);
-        }}
-        """,
-    )
-    compile_c(
-        tmp_path,
-        "TEST",
-        f"""{HEADER}
-        void TEST_Main(void)
-        {{
-            uint64_t at;
-            OS_TaskDelay(50);
-            DID(OS_SymbolLookup(&at, "answer"));
-            OS_TaskDelay(2000);
-            DID(OS_SymbolLookup(&at, "answer"));
-        }}
-        """,
-    )
-    assert said(console_of(fly(write_mission(tmp_path, "LOADER", "TEST"), 4))) == ["0", "-1"]
+    compile_c(tmp_path, "LOADER", LOADER.replace("AT_THE_END", at_the_end))
+    compile_c(tmp_path, "TEST", LATER)
+    assert said(console_of(fly(write_mission(tmp_path, "LOADER", "TEST"), 4))) == ["0", "0", *seen]
 
 
 def test_ids_and_names(tmp_path: Path) -> None:
