@@ -205,7 +205,7 @@ class FixedString
     FixedString &erase(size_type from = 0, size_type count = npos)
     {
         check_place(from);
-        const size_type gone = std::min(count, size_ - from);
+        const size_type gone = std::min<size_type>(count, size_ - from);
         std::memmove(text_ + from, text_ + from + gone, size_ - from - gone);
         close(size_ - gone);
         return *this;
