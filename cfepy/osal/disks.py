@@ -17,7 +17,7 @@ from cfepy.osal.limits import (
     OS_FS_VOL_NAME_LEN,
     OS_MAX_PATH_LEN,
 )
-from cfepy.osal.volumes import Volume
+from cfepy.osal.volumes import LAST_OF_EXT4, Volume
 from cfepy.reading.texts import to_bytes
 from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
@@ -175,7 +175,7 @@ class DiskApi(Core):
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID, OS_ERR_NAME_TAKEN, OS_ERR_NO_FREE_IDS.
         """
         self._check(virt_path, OS_MAX_PATH_LEN)
-        volume = Volume(self._folder / phys_path)
+        volume = Volume(self._folder / phys_path, last_position=LAST_OF_EXT4)
         disk = OsDisk(virt_path, volume, RAM_BLOCK_BYTES, str(phys_path), virt_path)
         disk_id = self._register(self._disks, disk, "disk", 0)
         try:

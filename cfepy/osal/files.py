@@ -43,7 +43,6 @@ ACCESS_BITS = {
 READERS, WRITERS = (OS_READ_ONLY, OS_READ_WRITE), (OS_WRITE_ONLY, OS_READ_WRITE)
 NO_ACCESS = -1
 """The access mode of a folder that is open as a file."""
-LAST_POSITION = (1 << 63) - 1
 
 _DOTS = (".", "..")
 
@@ -164,12 +163,15 @@ class FileApi(Core):
         stream = self._file(filedes)
         if stream.access not in WRITERS:
             raise OsalError(OS_ERROR, f"{stream.path} is not open for writing")
-        position, count = stream.position, len(data)
-        if self._grow(stream, position + count) < position + count:
-            count = len(stream.node.data) - position
-            data = data[:count]
-            if count <= 0:
+        position, size = stream.position, len(stream.node.data)
+        end = position + len(data)
+        if end > size:
+            end = self.files.fitting(stream.volume, size, end)
+            if end <= position:  # nothing is written, so the file stays as long as it is
                 raise OsalError(OS_ERROR, f"the volume of {stream.path} has no room")
+            data = data[: end - position]
+            self._grow(stream, end)
+        count = len(data)
         stream.node.data[position : position + count] = data
         stream.node.modified_ns = self.kernel.now
         stream.position = position + count
@@ -187,15 +189,15 @@ class FileApi(Core):
         """Move the position of a descriptor (OS_lseek); return the new position from the start.
 
         Raises:
-            OsalError: OS_ERR_INVALID_ID, OS_ERROR for an invalid `whence`, a position before the start, or one that
-                63 bits cannot hold.
+            OsalError: OS_ERR_INVALID_ID, OS_ERROR for an invalid `whence`, a position before the start, or one beyond
+                the last of the disk.
         """
         if whence not in (OS_SEEK_SET, OS_SEEK_CUR, OS_SEEK_END):
             self._stream(filedes)
             raise OsalError(OS_ERROR, f"unknown origin {whence} of a seek")
         stream = self._file(filedes)
         origins = {OS_SEEK_SET: 0, OS_SEEK_CUR: stream.position, OS_SEEK_END: len(stream.node.data)}
-        if not 0 <= origins[whence] + offset <= LAST_POSITION:
+        if not 0 <= origins[whence] + offset <= stream.volume.last_position:
             raise OsalError(OS_ERROR, f"invalid seek by {offset} from {whence} in {stream.path}")
         stream.position = origins[whence] + offset
         return stream.position
@@ -286,17 +288,12 @@ class FileApi(Core):
         if self._costs.byte_ps:
             self.kernel.charge(self._costs.of_copying(count))
 
-    def _grow(self, stream: OsFile, size: int) -> int:
-        """Fill a file with zeros until it has `size` bytes, or until its volume is full.
-
-        Returns:
-            The number of bytes up to which the descriptor can write: `size`, or fewer.
-        """
+    def _grow(self, stream: OsFile, size: int) -> None:
+        """Fill a file with zeros until it has `size` bytes, or until its volume is full."""
         data = stream.node.data
         if size > len(data):
             size = self.files.fitting(stream.volume, len(data), size)
             data.extend(bytes(size - len(data)))
-        return size
 
 
 class OsDirectory(OsObject):

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.osal.limits import OS_MAX_FILE_NAME, OS_MAX_PATH_LEN
-from cfepy.osal.volumes import FileNode, Volume
+from cfepy.osal.volumes import LAST_OF_EXT4, FileNode, Volume
 from cfepy.reading.texts import to_bytes
 from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
@@ -56,7 +56,8 @@ class FileSystem:
     """
 
     def __init__(self, cf: Path | None = None, ram_bytes: int | None = RAM_BLOCK_BYTES * RAM_BLOCKS) -> None:
-        self._mounts: dict[str, Volume] = {"/cf": Volume(cf), "/ram": Volume(capacity=ram_bytes)}
+        disk = Volume(cf, last_position=LAST_OF_EXT4)
+        self._mounts: dict[str, Volume] = {"/cf": disk, "/ram": Volume(capacity=ram_bytes)}
         self._own = dict(self._mounts)  # the mounts after a reset
 
     def mount(self, mount_point: str, volume: Volume, guest: bool = False) -> None:

@@ -13,6 +13,11 @@ from pathlib import Path
 from cfepy.osal.limits import OS_FILESTAT_MODE_READ, OS_FILESTAT_MODE_WRITE
 from cfepy.reading.input_files import read_limited
 
+LAST_OF_TMPFS = (1 << 63) - 1
+"""The last position in a file of a RAM disk, which is a tmpfs on NASA's Linux."""
+LAST_OF_EXT4 = ((1 << 32) - 1) * 4096
+"""The last position in a file of a folder of the computer, an ext4 there: blocks are numbered with 32 bits."""
+
 
 @dataclass(slots=True)
 class FileNode:
@@ -48,11 +53,15 @@ class Volume:
     Args:
         host: folder of the host under it; None for none.
         capacity: limit of the total size of files in memory, in bytes; None for no limit.
+        last_position: the last position that a descriptor of a file can have.
     """
 
-    def __init__(self, host: Path | None = None, capacity: int | None = None) -> None:
+    def __init__(
+        self, host: Path | None = None, capacity: int | None = None, last_position: int = LAST_OF_TMPFS
+    ) -> None:
         self.host = host
         self.capacity = capacity
+        self.last_position = last_position
         self._nodes: dict[str, FileNode] = {}
         self._removed: list[FileNode] = []  # files without a path that were open when they lost it
         self._folders: dict[str, Folder] = {"": Folder("")}

@@ -171,8 +171,20 @@ def test_file_does_not_grow_beyond_the_memory_of_the_host(bench: Bench) -> None:
     filedes = os.open_create("/cf/x", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
     os.lseek(filedes, 1 << 40, OS_SEEK_SET)
     assert status_of(os.write, filedes, b"x") == OS_ERROR
+    assert os.lseek(filedes, 0, OS_SEEK_END) == 0, "a write that fails leaves the file as long as it was"
     assert status_of(os.file_truncate, filedes, 1 << 40) == OS_ERR_OUTPUT_TOO_LARGE
     assert status_of(os.lseek, filedes, (1 << 63) - 1, OS_SEEK_CUR) == OS_ERROR
+
+
+@pytest.mark.parametrize(("folder", "last"), [("/cf", 17_592_186_040_320), ("/ram", (1 << 63) - 1)])
+def test_last_position_in_a_file_is_that_of_its_disk_on_linux(bench: Bench, folder: str, last: int) -> None:
+    os = bench.os
+    filedes = os.open_create(f"{folder}/x", OS_FILE_FLAG_CREATE, OS_READ_WRITE)
+    for whence in (OS_SEEK_SET, OS_SEEK_CUR, OS_SEEK_END):
+        os.lseek(filedes, 0, OS_SEEK_SET)
+        assert status_of(os.lseek, filedes, last + 1, whence) == OS_ERROR
+        assert os.lseek(filedes, last, whence) == last
+    assert status_of(os.write, filedes, b"x") == OS_ERROR
 
 
 def test_a_full_disk_refuses(files: FileSystem) -> None:
