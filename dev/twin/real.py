@@ -20,6 +20,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import TracebackType
 
+from cfepy.config.versions import RELEASES
+
 VARIABLE = "CFEPY_REAL_CFE"
 EXECUTABLE = "core-cpu1"
 CI_PORT, TO_PORT = 1234, 1235
@@ -52,6 +54,21 @@ def installed(variable: str = VARIABLE) -> Path | None:
     if not (Path(folder) / EXECUTABLE).exists():
         raise FileNotFoundError(f"{variable}: no {EXECUTABLE} in {folder}")
     return Path(folder)
+
+
+def release_of(built: Path) -> str:
+    """Return which release of cFE an executable is, such as "7.0.0": the newest of those that it names.
+
+    Its OSAL and PSP may be older, and are in it too.
+
+    Raises:
+        ValueError: it names no release that cfepy knows.
+    """
+    data = (built / EXECUTABLE).read_bytes()
+    named = [release for release in RELEASES if f"v{release}".encode() in data]
+    if not named:
+        raise ValueError(f"{built / EXECUTABLE} names no release of {', '.join(RELEASES)}")
+    return max(named, key=lambda release: RELEASES[release].cfe)
 
 
 def one_cpu() -> int:

@@ -2,7 +2,8 @@
 
 The scripts have bad lines: missing, extra and too long parts, unknown types, two of one name, numbers in odd bases and
 out of range, and ends that are missing. The program compares the lines of Executive Services in the system log.
-CFEPY_REAL_CFE names the folder of NASA's core-cpu1, with the lab applications in its cf.
+CFEPY_REAL_CFE names the folder of NASA's core-cpu1, with the lab applications in its cf. cfepy runs the release that
+the executable names, or that of `--release`.
 """
 
 from __future__ import annotations
@@ -16,13 +17,12 @@ import tempfile
 from pathlib import Path
 from random import Random
 
+from cfepy.config.versions import RELEASES
 from cfepy.mission import Mission
 from cfepy.writing.console import Console
-from dev.twin.real import VARIABLE, RealCfe, installed
+from dev.twin.real import VARIABLE, RealCfe, installed, release_of
+from dev.twin.recorded import of_release
 
-DATA = Path(__file__).parents[2] / "tests/twin/data"
-RECORD = DATA / "startup_7_0_1.json.xz"
-RELEASE = "7.0.1"
 PROGRAMS = (("CFE_LIB", "sample_lib", "SAMPLE_LIB_Init", "SAMPLE_LIB"),
             ("CFE_APP", "sample_app", "SAMPLE_APP_Main", "SAMPLE_APP"),
             ("CFE_APP", "ci_lab", "CI_LAB_AppMain", "CI_LAB"),
@@ -92,20 +92,20 @@ def play_real(built: Path, script: bytes) -> list[str]:
         return said(real.console().partition(DONE)[0].decode("latin-1"))
 
 
-def play(script: bytes) -> list[str]:
-    """Boot a script on cfepy."""
+def play(script: bytes, release: str) -> list[str]:
+    """Boot a script on cfepy, with a release of cFE such as "7.0.1"."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "startup.scr").write_bytes(script)
-        Path(folder, "mission.yaml").write_text(f'cfe_version: "{RELEASE}"\n', encoding="utf-8")
+        Path(folder, "mission.yaml").write_text(f'cfe_version: "{release}"\n', encoding="utf-8")
         with Mission(folder, console=Console(quiet=True)) as mission:
             while mission.booted is None and mission.kernel.now < LIMIT_S * 10**9:
                 mission.run_for(0.1)
             return said("\n".join(mission.console.lines).partition(DONE.decode())[0])
 
 
-def load() -> list[tuple[bytes, list[str]]]:
-    """Return the recorded scripts, with the lines of NASA's cFE."""
-    rows = json.loads(lzma.decompress(RECORD.read_bytes()))
+def load(release: str) -> list[tuple[bytes, list[str]]]:
+    """Return the recorded scripts, with the lines of NASA's cFE of a release."""
+    rows = json.loads(lzma.decompress(of_release(release, "startup").read_bytes()))
     return [(text.encode("latin-1"), lines) for text, lines in rows]
 
 
@@ -114,23 +114,26 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m dev.twin.startup_scripts", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the first script")
     parser.add_argument("--count", type=int, default=60, help="how many scripts, with seeds that count up")
+    parser.add_argument("--release", choices=tuple(RELEASES), help="of cfepy; that of NASA's executable if not given")
     parser.add_argument("--record", action="store_true", help="keep the real one's lines for tests without it")
     options = parser.parse_args()
     built = installed()
     if built is None:
         parser.error(f"{VARIABLE} is not a folder with a real cFE")
+    release = options.release or release_of(built)
     rows, found = [], 0
     for seed in range(options.seed, options.seed + options.count):
         script = write_script(seed)
-        theirs, mine = play_real(built, script), play(script)
+        theirs, mine = play_real(built, script), play(script, release)
         rows.append((script.decode("latin-1"), theirs))
         if theirs != mine:
             found += 1
             print(f"seed {seed}: {script!r}", *(f"  cFE   {line}" for line in theirs if line not in mine), sep="\n")
             print(*(f"  cfepy {line}" for line in mine if line not in theirs), sep="\n")
     if options.record:
-        RECORD.write_bytes(lzma.compress(json.dumps(rows, separators=(",", ":")).encode(), preset=9))
-    print(f"{len(rows)} scripts, {found} different")
+        data = json.dumps(rows, separators=(",", ":")).encode()
+        of_release(release, "startup").write_bytes(lzma.compress(data, preset=9))
+    print(f"{len(rows)} scripts on {release}, {found} different")
     return 1 if found else 0
 
 

@@ -10,6 +10,7 @@ from dev.twin.api.recorded import Record, read_record, records
 from dev.twin.api.script import GROUPS, Writer, write_script
 from dev.twin.api.words import quote, unquote
 from dev.twin.api.wrong_calls import WRONG_GROUPS
+from dev.twin.real import release_of
 
 SHORT = 700
 LONG_ONES = [each for each in records() if each.calls > SHORT]
@@ -37,7 +38,7 @@ def test_new_script_has_the_answers_of_nasas_cfe() -> None:
     if built is None:
         pytest.skip(f"{real.VARIABLE} names no real cFE")
     script = write_script(4711, 2000)
-    assert differences(script, real.play(built, script), twin.play(script, real.release(built))) == []
+    assert differences(script, real.play(built, script), twin.play(script, release_of(built))) == []
 
 
 def test_short_and_long_records_exist() -> None:

@@ -10,6 +10,7 @@ from dev.twin.api import real, twin
 from dev.twin.api.compare import counts, differences
 from dev.twin.api.recorded import Record, write_record
 from dev.twin.api.script import KINDS, write_script
+from dev.twin.real import release_of
 
 
 def main() -> int:
@@ -26,7 +27,7 @@ def main() -> int:
         parser.error(
             f"{real.VARIABLE} is not a folder with a real cFE; dev/twin/api/real.py describes how to build one"
         )
-    release = real.release(built)
+    release = release_of(built)
     totals: Counter[str] = Counter()
     found = 0
     for seed in range(options.seed, options.seed + options.scripts):

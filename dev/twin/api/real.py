@@ -24,11 +24,6 @@ def installed() -> Path | None:
     return real.installed(VARIABLE)
 
 
-def release(built: Path) -> str:
-    """Return which release of cFE it is: "7.0.0"."""
-    return "7.0.1" if b"v7.0.1+dev" in (built / real.EXECUTABLE).read_bytes() else "7.0.0"
-
-
 def play(built: Path, script: list[str]) -> list[str]:
     """Return the answers of the real cFE to a script.
 
