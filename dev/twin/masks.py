@@ -38,6 +38,7 @@ BLANKS = {
     ("CFE_SB", 44): re.compile(rb"()\n"),
 }
 """Rows of differences.md: NASA's texts have 0, or end with a line feed; and how often tasks ran."""
+CI_LAB_HK = ci_lab.packets.HK_TLM
 OF_TELEMETRY = {
     "CFE_ES_HK_TLM": {
         "CFECoreChecksum": "made from the C build",
@@ -109,9 +110,11 @@ STAMP = re.compile(rb"^\d{4}-\d{3}-\d\d:\d\d:\d\d\.\d{5} ")
 NOT_ALIKE = re.compile(rb"(Event Log restored), .*")
 """Lines of the system log with counts of events, to which the modules' versions belong."""
 LAST_OF_NAME = 115
-"""The last byte of the table's name in a dump, which NASA's never sets, as its first word; see differences.md."""
+"""The last byte of the table's name in a dump. NASA's never sets it, nor the first two words; see differences.md."""
 NO_BYTES = b"\xfc" + b"\xff" * 7
 """The size of a block of the CDS that lost its bytes; see docs/reference/differences.md."""
+WITHOUT_SPARES = 28
+"""Bytes of the housekeeping of the CI_LAB of 7.0.1."""
 MOST_FLYWHEEL = 8
 """Events of flywheel mode that a log of 20 may have, at most."""
 APP_NAME, EVENT_ID, TEXT = slice(16, 36), slice(36, 38), slice(48, 170)
@@ -147,6 +150,8 @@ def is_event(packet: bytes) -> bool:
 def of_packet(packet: bytes) -> bytes | None:
     """Return the compared content of a packet, or None to leave it out."""
     declared = _declared().get(msg.get_msg_id(packet)) if len(packet) > 6 else None
+    if declared is CI_LAB_HK and len(packet) == WITHOUT_SPARES:
+        packet = _with_spares(packet)
     if declared is None or len(packet) != declared.length:
         return packet  # something that went up and was sent on
     if is_event(packet):
@@ -169,6 +174,13 @@ def of_packet(packet: bytes) -> bytes | None:
         packet = _without_unused_entries(packet)
     patterns = OF_TELEMETRY.get(declared.name, {})
     return packet[:2] + packet[4:6] + _masked(declared.payload, patterns, packet[TLM_HEADER_SIZE:])
+
+
+def _with_spares(packet: bytes) -> bytes:
+    """Return housekeeping of the CI_LAB of 7.0.1 with the spare bytes that the one of 7.0.0 and ours have."""
+    flags, counts = packet[TLM_HEADER_SIZE : TLM_HEADER_SIZE + 4], packet[TLM_HEADER_SIZE + 4 :]
+    size = (CI_LAB_HK.length - 7).to_bytes(2, "big")
+    return packet[:4] + size + packet[6:TLM_HEADER_SIZE] + flags + bytes(8) + counts + bytes(4)
 
 
 def _without_limit_errors(packet: bytes) -> bytes:
@@ -217,7 +229,7 @@ def of_file(data: bytes) -> bytes:
     left = bytearray(data)
     left[24:32] = bytes(8)  # when it was made
     if head.subtype == header.SUBTYPE_TBL_IMG:
-        left[HEADER_SIZE : HEADER_SIZE + 4] = bytes(4)[: len(left) - HEADER_SIZE]
+        left[HEADER_SIZE : HEADER_SIZE + 8] = bytes(8)[: len(left) - HEADER_SIZE]
         left[LAST_OF_NAME : LAST_OF_NAME + 1] = b"\0"[: len(left) - LAST_OF_NAME]
         return bytes(left[: HEADER_SIZE - 32]) + _text(left[HEADER_SIZE - 32 : HEADER_SIZE]) + bytes(left[HEADER_SIZE:])
     begin = bytes(left[: HEADER_SIZE - 32]) + _text(left[HEADER_SIZE - 32 : HEADER_SIZE])

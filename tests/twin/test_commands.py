@@ -151,6 +151,15 @@ def test_difference_is_found() -> None:
     assert step.packets
 
 
+def test_housekeeping_of_both_ci_labs_is_compared_field_by_field() -> None:
+    head = bytes.fromhex("0884c0010021 000000000000 00000000")
+    flags, counts = bytes([3, 1, 0, 1]), bytes([89, 0, 0, 0, 2, 0, 0, 0])
+    ours = head + flags + bytes(8) + counts + bytes(4)
+    theirs = head[:4] + b"\0\x15" + head[6:] + flags + counts
+    assert masks.of_packet(theirs) == masks.of_packet(ours)
+    assert masks.of_packet(theirs[:-4] + b"\1" + theirs[-3:]) != masks.of_packet(ours)
+
+
 @needs_real
 @pytest.mark.slow
 def test_commands_give_the_answers_of_nasas_cfe() -> None:
