@@ -177,6 +177,7 @@ class ModuleTables:
         node = self._node
         return {
             "RosStreamHandler": node.logs.RosStreamHandler,
+            "adopt_cache": partial(setattr, node.params, "cache"),
             "adopt_handler": partial(setattr, node, "handler"),
             "ServiceException": exceptions.ServiceException,
             "offered": lambda: topics.offered(node),

@@ -7,6 +7,7 @@ and big integers are refused with the same errors.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 from xml.parsers.expat import ExpatError
 
@@ -41,9 +42,10 @@ class Params:
     def __init__(self, node: Node, tree: ParameterTree) -> None:
         self._node = node
         self._tree = tree
+        self.cache: Any = None  # its ParamServerCache, once the node has loaded the class
 
     def get_param(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
-        """Return the value of a parameter, or a namespace as a dictionary.
+        """Return the value of a parameter, or a namespace as a dictionary. The node's cache comes first.
 
         Args:
             param_name: global, relative or private.
@@ -51,30 +53,54 @@ class Params:
 
         Raises:
             KeyError: there is no such parameter and no default; it holds `param_name`.
+            ValueError: the default is an array, which rospy compares.
         """
         self._node.universe.charge()
-        key = self._sent("getParam", self._node.names.resolve_name(param_name))[0]
-        value = self._tree.find(key)
+        resolved = self._node.names.resolve_name(param_name)
+        try:
+            return self.cached(resolved)
+        except KeyError:
+            pass
+        value = self._tree.find(self._sent("getParam", resolved)[0])
         if value is not _MISSING:
-            return self._unpacked(value)
-        if default is UNSPECIFIED:
-            raise KeyError(param_name)
-        return default
+            return self.unpacked(value)
+        if default != UNSPECIFIED:
+            return default
+        raise KeyError(param_name)
 
     def get_param_cached(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
-        """Return the same as `get_param`; the tree is as fast as a cache would be.
+        """Return the value of a parameter from the node's cache.
+
+        The first call for a parameter adds it to the cache, and the master reports its changes from then on.
 
         Raises:
+            KeyError: there is no such parameter and no default, or an empty namespace.
             TypeError: before `init_node`.
+            ValueError: the default is an array, which rospy compares.
         """
-        if not self._node.initialized:  # rospy asks the master to report changes to the node's URI, which is None
-            raise TypeError("cannot marshal None unless allow_none is enabled")
-        value = self.get_param(param_name, default)
-        if value == {} and default is not value:
-            if default is UNSPECIFIED:
-                raise KeyError(param_name)
-            return default  # rospy takes an empty namespace for none
-        return value
+        self._node.universe.charge()
+        try:
+            return self._node.universe.importer.load("rospy.client").get_master().get_param_cached(param_name)
+        except KeyError:
+            if default != UNSPECIFIED:
+                return default
+            raise
+
+    def cached(self, resolved_name: str) -> Any:
+        """Return the value of a parameter in the node's cache.
+
+        Raises:
+            KeyError: it is not there.
+        """
+        if self.cache is None:
+            raise KeyError(resolved_name)
+        return self.cache.get(resolved_name)
+
+    def recache(self, resolved_name: str, value: Any) -> None:
+        """Change a parameter in the node's cache, if it is there, to the value that the node set."""
+        if self.cache is not None:
+            with suppress(KeyError):
+                self.cache.update(resolved_name, value)
 
     def has_param(self, param_name: str) -> bool:
         """Return True if a parameter or namespace exists."""
@@ -92,10 +118,12 @@ class Params:
         """
         self._node.universe.charge()
         self._node.warn_of_illegal(param_name)
-        key = self._node.names.resolve_name(param_name)
-        key, value = self._sent("setParam", key, marshalled(param_value))
+        resolved = self._node.names.resolve_name(param_name)
+        key, value = self._sent("setParam", resolved, marshalled(param_value))
         if key != SEP or type(value) is dict:
-            self._tree.set(key, value)  # rospy ignores the master's refusal of a root that is not a dictionary
+            # rospy ignores the master's refusal of a root that is not a dictionary
+            self._tree.set(key, value, self._node.names.get_name())
+        self.recache(resolved, param_value)
 
     def give(self, values: Mapping[str, Any]) -> None:
         """Set the private parameters of the mission file for the node; see `ParameterTree.give`."""
@@ -146,12 +174,12 @@ class Params:
             fault = self._node.universe.importer.load("xmlrpc.client").Fault(1, f"{type(error)}:{error}")
         raise fault
 
-    def _unpacked(self, value: Any) -> Any:
+    def unpacked(self, value: Any) -> Any:
         """Return a copy for the node, with bytes and dates in the classes of its own xmlrpc.client."""
         if type(value) is dict:
-            return {key: self._unpacked(item) for key, item in value.items()}
+            return {key: self.unpacked(item) for key, item in value.items()}
         if type(value) is list:
-            return [self._unpacked(item) for item in value]
+            return [self.unpacked(item) for item in value]
         if type(value) is bytes:
             return self._node.universe.importer.load("xmlrpc.client").Binary(value)
         if type(value) is DateTime:

@@ -5,9 +5,10 @@ Source: wiki.ros.org/ROS/Master_API and wiki.ros.org/ROS/Parameter%20Server%20AP
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections import deque
+from collections.abc import Iterable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from rospy_shim.master import xmlrpc_calls as calls
 from rospy_shim.master.registrations import Entries, Registrations, uri_of
@@ -17,6 +18,7 @@ from rospy_shim.parameters.values import marshalled
 from rospy_shim.types.names import PRIV_NAME, SEP
 
 if TYPE_CHECKING:
+    from rospy_shim.client.node import Node
     from rospy_shim.graph.graph import Graph
 
 MASTER_NAME = "/master"
@@ -39,6 +41,7 @@ class MasterApi:
         self.registry = Registrations(graph)
         self._uri = uri
         self._graph = graph
+        self._updates: dict[str, deque[tuple[str, Any]]] = {}  # by the URI of the node that gets them
         self._params.on_change(self._notify)
 
     @answers("")
@@ -72,7 +75,7 @@ class MasterApi:
     def setParam(self, caller: str, key: str, value: Any) -> Answer:
         """Set a parameter; a dictionary replaces a namespace."""
         key = calls.resolve(key, caller)
-        self._params.set(key, marshalled(value))
+        self._params.set(key, marshalled(value), caller)
         return 1, f"parameter {key} set", 0
 
     @answers(0, calls.text("key"))
@@ -113,7 +116,7 @@ class MasterApi:
 
     @answers(0, calls.address("caller_api"), calls.text("key"))
     def subscribeParam(self, caller: str, uri: str, key: str) -> Answer:
-        """Return the value of a parameter. A node sees its changes in any case, since it reads the tree itself."""
+        """Return the value of a parameter, and report its changes to the node from now on."""
         key = calls.resolve(key, caller)
         self.registry.register_param_subscriber(key, caller, uri)
         value = self._params.find(key)
@@ -127,7 +130,7 @@ class MasterApi:
         return 1, f"Unsubscribe to parameter [{key}]", 1
 
     def _notify(self, changed: str) -> None:
-        """Send a change of a parameter to the nodes that have subscribed to it and that handle the call themselves.
+        """Send a change of a parameter to the nodes that have subscribed to it and that have a cache or a handler.
 
         All other nodes read the parameters without a call.
         """
@@ -135,16 +138,26 @@ class MasterApi:
         if not subscribers:
             return
         for node in self._graph.nodes.values():
-            if node.handler is None or node.kernel.current.owner is node.owner:
-                continue  # as on ROS, a node gets no call for its own change
+            if node.handler is None:
+                continue
             keys = [key for key, uris in subscribers.items() if uri_of(node) in uris.values()]
-            for key, value in _updates(keys, changed, self._params):
-                update = partial(node.handler.paramUpdate, MASTER_NAME, key, value)
-                node.start_task("paramUpdate", cast("Callable[[], None]", update))
+            is_own = self._params.changed_by == node.names.name
+            found = list(_updates(keys, changed, self._params, is_own))
+            if found:
+                waiting = self._updates.setdefault(uri_of(node), deque())
+                waiting += found
+                if len(waiting) == len(found):
+                    node.start_task("paramUpdate", partial(self._send_updates, node, waiting))
 
-    def subscribes_to_param(self, uri: str, key: str) -> bool:
-        """Return True if a node at a URI has subscribed to a parameter."""
-        return uri in self.registry.param_subscribers.get(key, {}).values()
+    @staticmethod
+    def _send_updates(node: Node, waiting: deque[tuple[str, Any]]) -> None:
+        """Send the waiting changes to a node, one after the other."""
+        while waiting:
+            key, value = waiting[0]
+            try:
+                node.handler.paramUpdate(MASTER_NAME, key, node.params.unpacked(value))
+            finally:
+                waiting.popleft()
 
     # -- the graph ---------------------------------------------------------------------------------------------------
 
@@ -242,21 +255,28 @@ def _unregistered(known: bool, done: bool, caller: str, topic: str) -> Answer:
     return 1, f"Unregistered [{caller}] as provider of [{topic}]", 1
 
 
-def _updates(keys: Iterable[str], changed: str, params: ParameterTree) -> Iterator[tuple[str, Any]]:
-    """Yield the keys, with a slash at the end, and values that ROS's master sends after a change: the changed key if it
-    is a subscribed one or below it, the subscribed key if it is below the changed one.
+def _updates(keys: Iterable[str], changed: str, params: ParameterTree, is_own: bool) -> Iterator[tuple[str, Any]]:
+    """Yield the keys, with a slash at the end, and values that ROS's master sends to a node after a change.
+
+    It sends the changed key if it is a subscribed one or below it, but not to a node that set it itself. It sends the
+    subscribed key if it is below a namespace that was set or deleted, but not if a value has replaced the namespace.
 
     Args:
         keys: the subscribed keys.
         changed: the changed key.
         params: all parameters.
+        is_own: whether the node set the changed key.
     """
     whole = changed.rstrip(SEP) + SEP
+    value = params.find(changed)
+    is_deleted = value is ParameterTree.MISSING
     for key in keys:
-        if whole.startswith(key.rstrip(SEP) + SEP):
-            yield whole, _value_or_nothing(params, changed)
-        elif key.startswith(whole):
-            yield key.rstrip(SEP) + SEP, _value_or_nothing(params, key)
+        inner = key.rstrip(SEP) + SEP
+        if whole.startswith(inner):
+            if is_deleted or not is_own:
+                yield whole, {} if is_deleted else value
+        elif inner.startswith(whole) and (is_deleted or type(value) is dict):
+            yield inner, _value_or_nothing(params, key)
 
 
 def _value_or_nothing(params: ParameterTree, key: str) -> Any:

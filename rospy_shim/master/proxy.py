@@ -52,22 +52,44 @@ class MasterProxy:
         Raises:
             KeyError: it is not set.
         """
-        code, _, value = self.getParam(key)
+        resolved = self._node.names.resolve_name(key)
+        try:
+            return self._node.params.cached(resolved)
+        except KeyError:
+            pass
+        code, _, value = self.target.getParam(self._node.names.get_caller_id(), resolved)
         if code != 1:
             raise KeyError(key)
         return value
 
     def get_param_cached(self, key: str) -> Any:
-        """Return the value of a parameter; the master is as fast as a cache would be.
+        """Return the value of a parameter from the node's cache; the master keeps it up to date from the first call on.
 
         Raises:
-            KeyError: it is not set.
+            KeyError: it is not set, or an empty namespace.
+            TypeError: before `init_node`; the node has no URI for the master's updates.
         """
-        return self[key]
+        node = self._node
+        resolved = node.names.resolve_name(key)
+        cache = node.universe.importer.load("rospy.impl.masterslave").get_param_server_cache()
+        try:
+            return cache.get(resolved)
+        except KeyError:
+            code, _, value = self.target.subscribeParam(
+                node.names.get_caller_id(), node.client.get_node_uri(), resolved
+            )
+            if code != 1:
+                raise KeyError(key)  # noqa: B904  # as in rospy, the traceback shows both errors
+            cache.set(resolved, value)
+            if isinstance(value, dict) and not value:
+                raise KeyError(key)  # noqa: B904
+            return value
 
     def __setitem__(self, key: str, value: Any) -> None:
-        """Set a parameter."""
-        self.setParam(key, value)
+        """Set a parameter; a cached value becomes `value` itself."""
+        resolved = self._node.names.resolve_name(key)
+        self.target.setParam(self._node.names.get_caller_id(), resolved, value)
+        self._node.params.recache(resolved, value)
 
     def __delitem__(self, key: str) -> None:
         """Remove a parameter.

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from rospy_shim.client.node import Node
     from rospy_shim.client.topic_side import TopicSide
     from rospy_shim.graph.compiled import CompiledNode
-    from rospy_shim.master.master_api import MasterApi
 
 TRANSPORT = "cFE SB"  # in place of TCPROS
 TCPROS = "TCPROS"  # with nodes outside of the mission
@@ -87,13 +86,11 @@ class SlaveApi(NodeApi):
 
     Args:
         node: the node.
-        master: knows which parameters the node has subscribed to.
     """
 
-    def __init__(self, node: Node, master: MasterApi) -> None:
+    def __init__(self, node: Node) -> None:
         super().__init__(node, node.universe.pid)
         self._node = node
-        self._master = master
 
     @answers("")
     def getMasterUri(self, caller: str) -> Answer:
@@ -165,10 +162,15 @@ class SlaveApi(NodeApi):
 
     @answers(-1, _global_name, None)
     def paramUpdate(self, caller: str, key: str, value: Any) -> Answer:
-        """Confirm if the node has subscribed to the parameter; it reads the tree itself."""
-        if not self._master.subscribes_to_param(uri_of(self._node), key):
-            return -1, "not subscribed", 0
-        return 1, "", 0
+        """Change a parameter in the node's cache."""
+        cache = self._node.params.cache
+        try:
+            if cache is not None:
+                cache.update(key, self._node.params.unpacked(value))
+                return 1, "", 0
+        except KeyError:
+            pass
+        return -1, "not subscribed", 0
 
     # -- services ----------------------------------------------------------------------------------------------------
 

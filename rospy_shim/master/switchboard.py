@@ -61,7 +61,7 @@ class Switchboard:
             return self.master
         for node in self._graph.nodes.values():
             if place == _place(_host(uri_of(node))):
-                return SlaveApi(node, self.master)
+                return SlaveApi(node)
         for compiled in self._graph.compiled.values():
             if place == _place(_host(uri_of(compiled))):
                 return CompiledApi(compiled, self._graph, MASTER_URI)
@@ -71,7 +71,7 @@ class Switchboard:
         """Return the object that answers for a node of the mission, by its name; None if there is no such node."""
         node, compiled = self._graph.nodes.get(name), self._graph.compiled.get(name)
         if node is not None:
-            return SlaveApi(node, self.master)
+            return SlaveApi(node)
         return None if compiled is None else CompiledApi(compiled, self._graph, MASTER_URI)
 
 

@@ -23,6 +23,9 @@ class ParameterTree:
 
     Args:
         initial: the tree to begin with.
+
+    Attributes:
+        changed_by: the node that set the parameter of which listeners are notified; "" for all other changes.
     """
 
     def __init__(self, initial: Mapping[str, Any] | None = None) -> None:
@@ -32,6 +35,7 @@ class ParameterTree:
         self._listeners: list[Callable[[str], object]] = []
         self._started: set[str] = set()
         self._survived = False
+        self.changed_by = ""
         for name, value in (initial or {}).items():
             self.set(join(SEP, name), _plain(value))
 
@@ -118,7 +122,8 @@ class ParameterTree:
         """
         self._listeners.append(listener)
 
-    def _tell(self, key: str) -> None:
+    def _tell(self, key: str, by: str = "") -> None:
+        self.changed_by = by
         for listener in self._listeners:
             listener(key)
 
@@ -135,8 +140,13 @@ class ParameterTree:
 
     MISSING = _MISSING
 
-    def set(self, key: str, value: Any) -> None:
+    def set(self, key: str, value: Any, by: str = "") -> None:
         """Set the value of a name; a dictionary replaces the whole namespace.
+
+        Args:
+            key: the name.
+            value: the value.
+            by: the node that sets it, if it is one.
 
         Raises:
             TypeError: the root can only be a dictionary.
@@ -145,7 +155,7 @@ class ParameterTree:
         """
         self._set(key, value)
         self._save()
-        self._tell(key)
+        self._tell(key, by)
 
     def _set(self, key: str, value: Any) -> None:
         parts = _parts(key)

@@ -16,7 +16,7 @@ from rospy.core import MASTER_NAME, ROSRPC, get_node_uri
 from rospy.impl._node import adopt_handler
 from rospy.impl.paramserver import get_param_server_cache
 from rospy.impl.validators import ParameterInvalid
-from rospy.names import ANYTYPE, GLOBALNS, REMAP, SEP, SERVICE_ANYTYPE, TOPIC_ANYTYPE, get_name
+from rospy.names import ANYTYPE, GLOBALNS, REMAP, SEP, SERVICE_ANYTYPE, TOPIC_ANYTYPE, get_name, global_name
 
 __all__ = [
     "ANYTYPE",
@@ -159,10 +159,11 @@ class ROSHandler:
         """Return the published topics."""
         return self.__call("getPublications", caller_id)
 
+    @apivalidate(-1, (global_name("parameter_key"), None))
     def paramUpdate(self, caller_id: str, parameter_key: str, parameter_value: Any) -> Answer:
         """Take a changed parameter into the cache of subscribed ones."""
         try:
-            get_param_server_cache().update(parameter_key.rstrip(SEP), parameter_value)
+            get_param_server_cache().update(parameter_key, parameter_value)
         except KeyError:
             return -1, "not subscribed", 0
         return 1, "", 0

@@ -20,6 +20,7 @@ def test_names_resolve_as_in_the_node(tmp_path: Path) -> None:
         print(master.getParam("old"), master.get_param_cached("~own"))
         print(master.search_param("own"), master.search_param("nothing"), master.lookupNode("node")[0])
         del master["~own"]
+        rospy.sleep(0.1)  # until the master has reported it to the cache
         for use in (lambda: master["~own"], lambda: master.__delitem__("~own"), lambda: master.get_param_cached("no")):
             try:
                 use()

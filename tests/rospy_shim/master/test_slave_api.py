@@ -54,18 +54,18 @@ def test_connections(tmp_path: Path) -> None:
     assert printed[3] == "[['/words', 5, [[1, 5, 1, True]]]] [['/numbers', [[2, 0, 0, -1, True]]]] []"
 
 
-def test_updates_of_parameters_and_publishers_are_accepted(tmp_path: Path) -> None:
+def test_updates_of_publishers_and_cached_parameters_are_accepted(tmp_path: Path) -> None:
     questions = """
     uri = rosgraph.Master("/x").lookupNode("/asked")
     print(node.paramUpdate("/x", "/p", 1))
-    rosgraph.Master("/asked").subscribeParam(uri, "/p")
+    rosgraph.Master("/asked").subscribeParam(uri, "/p")  # the node itself has not cached it
     print(node.paramUpdate("/x", "/p", 1), node.paramUpdate("/x", "p", 1)[:2], node.paramUpdate("/x", "", 1)[:2])
     print(node.publisherUpdate("/x", "/words", [uri]), node.publisherUpdate("/x", "/words", "no list")[:2])
     print(node.publisherUpdate("/x", "/words", ["no uri"])[1], node.publisherUpdate("/x", "/words", [1])[1])
     """
     assert ask(tmp_path, questions) == [
         "[-1, 'not subscribed', 0]",
-        "[1, '', 0] [-1, 'ERROR: parameter [parameter_key] must be a globally referenced name']"
+        "[-1, 'not subscribed', 0] [-1, 'ERROR: parameter [parameter_key] must be a globally referenced name']"
         " [-1, 'ERROR: parameter [parameter_key] must be a non-empty string']",
         "[1, '', 0] [-1, 'ERROR: param [publishers] must be a list']",
         "ERROR: param [publishers] does not contain valid URLs [no uri]"
