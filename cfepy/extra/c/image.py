@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 import struct
-from typing import NamedTuple, Protocol
+from typing import Protocol
 
 from cfepy.extra.c.arena import PAGE, Arena
 from cfepy.extra.c.elf import ElfError, Relocation, SharedObject, Symbol
@@ -247,13 +247,6 @@ class Image:
     def unload(self) -> None:
         """Take it out of memory."""
         self._arena.unmap(self.base)
-
-
-class LoadedModule(NamedTuple):
-    """A module from OS_ModuleLoad: its id, and whether code that is loaded later sees its symbols."""
-
-    id: int
-    is_global: bool
 
 
 class LoadedCode:

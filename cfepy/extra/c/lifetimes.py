@@ -1,8 +1,9 @@
-"""Objects that begin and end with tasks and with loaded objects: thread-local variables, and calls at an end."""
+"""Lifetimes: thread-local variables of tasks and objects, calls at an end, and the time that an object is in memory."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
 from typing import Any
 
 from cfepy.extra.c.image import Image
@@ -146,3 +147,81 @@ class Ends:
                 return
             self._waiting.remove(mine[-1])
             yield mine[-1][:2]
+
+
+class Openings:
+    """Which loaded objects are open, and which stay in memory for others, as Linux's dlopen and dlclose decide.
+
+    An object that is opened again is the same object, with the same variables. It leaves memory when nobody has it open
+    and no other object in memory uses a name of it. OSAL looks up global names for the executable, which never ends, so
+    glibc keeps an object for good in which OS_SymbolLookup has found a global name.
+
+    Attributes:
+        with_global_names: objects whose names all code sees, apart from libraries; in the order of their opening.
+    """
+
+    def __init__(self) -> None:
+        self.with_global_names: dict[Image, None] = {}
+        self._files: dict[Image, str] = {}
+        self._count: Counter[Image] = Counter()
+        self._used: dict[Image, set[Image]] = {}
+        self._kept: set[Image] = set()
+
+    def begin(self, image: Image, file: str, used: Iterable[Image]) -> None:
+        """Count the first opening of an object.
+
+        Args:
+            image: the object.
+            file: its virtual path.
+            used: objects whose names it uses.
+        """
+        self._files[image] = file
+        self._used[image] = set(used)
+        self.again(image)
+
+    def again(self, image: Image) -> None:
+        """Count another opening of an object."""
+        self._count[image] += 1
+
+    def of_file(self, file: str, data: bytes) -> Image | None:
+        """Return the object of a file that is in memory, or None."""
+        return next((each for each, name in self._files.items() if name == file and each.source.data == data), None)
+
+    def look_up(self, name: str) -> int | None:
+        """Return the address of a name that all code sees, and keep its object for good; None if none has it."""
+        for image in self.with_global_names:
+            if name in image.symbols:
+                self._kept.add(image)
+                return image.symbols[name]
+        return None
+
+    def end(self, image: Image) -> list[Image]:
+        """Count the end of an opening.
+
+        Args:
+            image: the object.
+
+        Returns:
+            The objects that leave memory: the object itself, and those that only it has used.
+        """
+        self._count[image] -= 1
+        leaving: list[Image] = []
+        while True:
+            used = {other for each in self._files for other in self._used[each]}
+            idle = [each for each in self._files if self._count[each] <= 0 and each not in used | self._kept]
+            if not idle:
+                return leaving
+            leaving += idle
+            for each in idle:
+                self._forget(each)
+
+    def _forget(self, image: Image) -> None:
+        self.with_global_names.pop(image, None)
+        for each in (self._files, self._count, self._used):
+            each.pop(image)
+
+    def clear(self) -> None:
+        """Forget all, at the end of the processor."""
+        for each in list(self._files):
+            self._forget(each)
+        self._kept.clear()

@@ -152,12 +152,20 @@ class Exports:
             return self._variable(name)
         return self.calls.address(name) if name in self.declared else None
 
-    def symbol(self, name: str, more: tuple[Image, ...] = ()) -> int | None:
-        """Return the address of a name, in libraries first; None if it is undefined."""
+    def symbol(self, name: str, more: tuple[Image, ...] = (), used: set[Image] | None = None) -> int | None:
+        """Return the address of a name, in libraries first; None if it is undefined.
+
+        Args:
+            name: the name.
+            more: libraries of the host that have it too.
+            used: gets the object that has the name.
+        """
         if name in GUARDS:
             return self.declared_symbol(name)
         for image in (*self.shared(), *more):
             if name in image.symbols:
+                if used is not None:
+                    used.add(image)
                 return image.symbols[name]
         return self.declared_symbol(name)
 
@@ -181,24 +189,32 @@ class LinkedWith:
         thread_locals: of the processor.
         own: libraries of the host that belong to it.
         run: calls a function of C.
+        used: gets the objects whose names it uses.
     """
 
-    def __init__(self, exports: Exports, thread_locals: ThreadLocals, own: tuple[Image, ...], run: _Run) -> None:
+    def __init__(
+        self, exports: Exports, thread_locals: ThreadLocals, own: tuple[Image, ...], run: _Run, used: set[Image]
+    ) -> None:
         self._exports = exports
         self._thread_locals = thread_locals
         self._own = own
         self.run = run
+        self._used = used
 
     def resolve(self, name: str) -> int:
         """Return the address; see `Linker`. A call of an undefined function is a fault of the caller."""
-        found = self._exports.symbol(name, self._own)
+        found = self._exports.symbol(name, self._own, self._used)
         return self._exports.calls.address(name) if found is None else found
 
     def resolve_weak(self, name: str) -> int:
-        return self._exports.symbol(name, self._own) or 0
+        return self._exports.symbol(name, self._own, self._used) or 0
 
     def of_library(self, name: str) -> int | None:
-        return next((image.symbols[name] for image in self._exports.shared() if name in image.symbols), None)
+        image = next((each for each in self._exports.shared() if name in each.symbols), None)
+        if image is None:
+            return None
+        self._used.add(image)
+        return image.symbols[name]
 
     def resolve_thread_local(self, name: str) -> tuple[int, int]:
         """Return module and offset; see `Linker`.
@@ -208,6 +224,7 @@ class LinkedWith:
         """
         for image in self._seen():
             if name in image.thread_locals:
+                self._used.add(image)
                 return self.module_of(image), image.thread_locals[name]
         raise ElfError(f"undefined thread-local variable {name}")
 

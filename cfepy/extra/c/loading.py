@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from weakref import WeakKeyDictionary
 
 from cfepy.es import SymbolError
 from cfepy.extra.c.abi import abi_profile
@@ -34,7 +33,6 @@ class CompiledLoader:
         self.on_node = on_node
         self._console = console
         self._read: dict[bytes, SharedObject] = {}
-        self._files: WeakKeyDictionary[Image, str] = WeakKeyDictionary()
 
     def code(self, file: str, data: bytes) -> CompiledCode:
         """Return the code in a shared object, not loaded yet.
@@ -59,8 +57,20 @@ class CompiledLoader:
         return self._read[data]
 
     def load(self, file: str, data: bytes) -> Image:
-        """Load a shared object. It raises the errors of `read`."""
+        """Load a shared object, or open the one of the same file that is in memory, as dlopen does on Linux.
+
+        In a safe mission each opening has its own variables. It raises the errors of `read`.
+        """
         source = self.read(file, data)
+        there = None if self.runtime.handle.os.config.safe else self.runtime.openings.of_file(file, data)
+        return self._new(file, source) if there is None else self._again(file, there)
+
+    def _again(self, file: str, image: Image) -> Image:
+        self.runtime.openings.again(image)
+        self._console.write(f"OS_ModuleLoad: {file} is in memory already, and keeps its variables")
+        return image
+
+    def _new(self, file: str, source: SharedObject) -> Image:
         try:
             missing = self.runtime.missing(source)
             nowhere = undefined_on_linux(source, missing)
@@ -73,7 +83,7 @@ class CompiledLoader:
                 self._console.write(
                     f"OS_ModuleLoad: {file} was built {profile.value}, but the mission specifies otherwise"
                 )
-            image = self.runtime.load(source)
+            image = self.runtime.load(file, source)
             if image.replaced:
                 names = ", ".join(sorted(image.replaced))
                 self._console.write(f"OS_ModuleLoad: {file} uses {names} of a library in place of its own")
@@ -84,28 +94,30 @@ class CompiledLoader:
             raise self._failed(CFault(f"{file}: {error}")) from error
 
     def load_application(self, file: str, data: bytes, app_name: str) -> Image:
-        """Load an application. Two applications from one file share its variables, as dlopen has it on Linux.
+        """Load an application, as `load` does. Two applications from one file share its variables.
 
-        In a safe mission each has its own, and so has each ROS node, which is a process of its own on a robot. It
-        raises the errors of `read`.
+        A ROS node has its own, because it is a process of its own on a robot. It raises the errors of `read`.
         """
-        others = {name: image for name, image in self.runtime.applications.items() if self._files.get(image) == file}
-        shared = next(iter(others.values()), None)
-        if shared is None or NODE_MARK in shared.symbols or self.runtime.handle.os.config.safe:
-            image = self.load(file, data)
-            self._files[image] = file
-            return image
-        self._console.write(f"OS_ModuleLoad: {file} is in use: {app_name} shares the variables of {', '.join(others)}")
-        return shared
+        source = self.read(file, data)
+        if any(each.name == NODE_MARK and each.is_defined for each in source.symbols):
+            return self._new(file, source)
+        image = self.load(file, data)
+        others = [name for name, each in self.runtime.applications.items() if each is image]
+        if others:
+            self._console.write(
+                f"OS_ModuleLoad: {file} is in use: {app_name} shares the variables of {', '.join(others)}"
+            )
+        return image
 
     def symbol(self, image: Image, file: str, symbol: str) -> int:
         """Return the address of an entry point.
 
         Raises:
-            SymbolError: there is none of that name.
+            SymbolError: there is none of that name. The image is closed.
         """
         address = image.symbols.get(symbol)
         if address is None:
+            self.runtime.close_image(image)
             self._console.write(f"OS_SymbolLookup: {file} has no function {symbol}")
             raise SymbolError(OS_ERROR, symbol)
         return address
@@ -132,8 +144,8 @@ class CompiledCode:
     def main(self, symbol: str, app_name: str) -> Callable[[], object]:
         runtime = self._loader.runtime
         image = self._loader.load_application(self._file, self._data, app_name)
-        runtime.applications[app_name] = image
         function = self._loader.symbol(image, self._file, symbol)
+        runtime.applications[app_name] = image
         if NODE_MARK in image.symbols:
             self._loader.on_node()
 
@@ -155,7 +167,9 @@ class CompiledCode:
             runtime.libraries[self._file] = image  # its own functions may be wanted while it is initialised
             status = runtime.status(function, lib_id) if function else 0
             if status:
-                del runtime.libraries[self._file]
+                runtime.close_image(image)
+                if image not in runtime.images():
+                    del runtime.libraries[self._file]
             return status
 
         return LoadedCode(image), init

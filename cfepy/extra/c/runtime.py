@@ -12,8 +12,8 @@ from cfepy.extra.c.crashes import CFault, CJump, explained
 from cfepy.extra.c.elf import SharedObject
 from cfepy.extra.c.engine import engine
 from cfepy.extra.c.guard import POISON, Guard, GuardedTables
-from cfepy.extra.c.image import Image, LoadedModule
-from cfepy.extra.c.lifetimes import Ends, ThreadLocals
+from cfepy.extra.c.image import Image
+from cfepy.extra.c.lifetimes import Ends, Openings, ThreadLocals
 from cfepy.extra.c.linking import LIBRARIES, Exports, LinkedWith, host_library, refused_names, wanted_names
 from cfepy.extra.c.memory import CMemory, Constants
 from cfepy.extra.c.packets import PacketImages
@@ -64,7 +64,8 @@ class CRuntime:
         guard, tables: check blocks and images of tables; None without the guard.
         tells_code: whether the operating system gives addresses of code; NASA's Linux does not.
         applications, libraries: loaded images, by the name of the application or the path of the library.
-        modules: images that OS_ModuleLoad loaded.
+        modules: images that OS_ModuleLoad loaded, by the module's id.
+        openings: which images are open, and which stay.
         at_app_end: called when an application has ended.
         at_close: called at the end of the processor, while its memory still exists.
         on_unload: functions that get each image before it is unloaded.
@@ -134,7 +135,8 @@ class CRuntime:
         self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
         self.ends = Ends(self.run, self.image_at)
         self.libraries: dict[str, Image] = {}
-        self.modules: dict[Image, LoadedModule] = {}
+        self.modules: dict[int, Image] = {}
+        self.openings = Openings()
         self.applications: dict[str, Image] = {}
         self.on_unload: list[Callable[[Image], None]] = [self.ends.forget, self.thread_locals.forget]
         self._images: list[Image] = []
@@ -172,26 +174,32 @@ class CRuntime:
 
     # -- code --------------------------------------------------------------------------------------------------------
 
-    def load(self, source: SharedObject) -> Image:
-        """Load a new copy of a shared object and call its load functions.
+    def load(self, file: str, source: SharedObject) -> Image:
+        """Load a new copy of a shared object, call its load functions, and open it.
+
+        Args:
+            file: its virtual path.
+            source: the object.
 
         Raises:
             CFault: a load function failed; the object is unloaded again.
         """
         own: tuple[Image, ...] = ()
+        used: set[Image] = set()
         try:
             for name in LIBRARIES:
                 if name in source.needed:
-                    own += (self._loaded(host_library(name), own),)
-            image = self._loaded(source, own)
+                    own += (self._loaded(host_library(name), own, used),)
+            image = self._loaded(source, own, used)
         except BaseException:
             self._drop(*own[::-1])
             raise
         self._own[image] = own
+        self.openings.begin(image, file, used - {image, *own})
         return image
 
-    def _loaded(self, source: SharedObject, own: tuple[Image, ...]) -> Image:
-        image = Image(source, self.arena, LinkedWith(self._exports, self.thread_locals, own, self.run))
+    def _loaded(self, source: SharedObject, own: tuple[Image, ...], used: set[Image]) -> Image:
+        image = Image(source, self.arena, LinkedWith(self._exports, self.thread_locals, own, self.run, used))
         self._images.append(image)
         try:
             for function in image.functions_at_load:
@@ -206,13 +214,12 @@ class CRuntime:
     def unload(self, app_name: str) -> None:
         """Unload the code of an ended application, and free its blocks of malloc and of messages."""
         image = self.applications.pop(app_name, None)
-        if image is not None and image not in self.applications.values():  # otherwise another one uses it
-            self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
+        if image is not None:
             with self.streams.ending(app_name):
-                self.unload_image(image)
-        for each, module in list(self.modules.items()):
-            if not self._is_known(module.id):  # it was freed with the other objects of the application
-                self.unload_module(each)
+                self.close_image(image)
+        for module_id in list(self.modules):
+            if not self._is_known(module_id):  # it was freed with the other objects of the application
+                self.close_image(self.modules.pop(module_id))
         apps = self.cfe.es.apps
         for owner in [each for each in self._owners if apps.find(each) is None]:
             self._heap.give_all(owner)
@@ -233,11 +240,16 @@ class CRuntime:
         takes: int = self._heap.takes
         return takes
 
-    def unload_image(self, image: Image) -> None:
-        """Call the end functions of an image, and unload it."""
-        for each in (image, *self._own.pop(image, ())[::-1]):
-            self._finish(each)
-            self._drop(each)
+    def close_image(self, image: Image) -> None:
+        """Close an image. What leaves memory with it is unloaded after a call of its end functions."""
+        for leaving in self.openings.end(image):
+            self._leave_tables(leaving)
+            for each in (leaving, *self._own.pop(leaving, ())[::-1]):
+                self._finish(each)
+                self._drop(each)
+
+    def _leave_tables(self, image: Image) -> None:
+        self.cfe.tbl.leave_memory(lambda data: self.memory.address_of(data) in image)
 
     def _drop(self, *images: Image) -> None:
         for each in images:
@@ -268,12 +280,7 @@ class CRuntime:
 
     def shared(self) -> list[Image]:
         """Return the images whose symbols all code sees."""
-        return [*self.libraries.values(), *(image for image, module in self.modules.items() if module.is_global)]
-
-    def unload_module(self, image: Image) -> None:
-        """Unload an image that OS_ModuleLoad loaded."""
-        self.modules.pop(image, None)
-        self.unload_image(image)
+        return list(dict.fromkeys((*self.libraries.values(), *self.openings.with_global_names)))
 
     def _is_known(self, module_id: int) -> bool:
         try:
@@ -283,15 +290,18 @@ class CRuntime:
         return True
 
     def symbol(self, name: str) -> int | None:
-        """Return the address of a function or variable.
+        """Return the address of a function or variable, for OS_SymbolLookup.
 
         It is searched in the API, libraries, modules and applications, in this order.
         """
         found = self._exports.declared_symbol(name)
         if found is not None:
             return found
-        images = (*self.shared(), *self.modules, *self.applications.values())
-        return next((image.symbols[name] for image in images if name in image.symbols), None)
+        at = next((image.symbols[name] for image in self.libraries.values() if name in image.symbols), None)
+        if at is None:
+            at = self.openings.look_up(name)
+        others = (*self.modules.values(), *self.applications.values()) if at is None else ()
+        return next((image.symbols[name] for image in others if name in image.symbols), at)
 
     def missing(self, source: SharedObject) -> list[str]:
         """Return the undefined names that an object needs.
@@ -436,6 +446,7 @@ class CRuntime:
         self.applications.clear()
         self.libraries.clear()
         self.modules.clear()
+        self.openings.clear()
         self.arena.close()
 
 

@@ -42,14 +42,69 @@ def test_modules_and_symbols(tmp_path: Path) -> None:
         DID(OS_SymbolTableDump("/ram/x", 1000));
         DID(OS_ModuleUnload(id));
         DID(OS_ModuleUnload(id));
-        ((int (*)(void))at)();
     """
     console = fly_c(tmp_path, f"{HEADER}\nvoid TEST_Main(void)\n{{\n{body}\n}}\n", 2)
     assert said(console)[:23] == [
         *("-1", "0", "-2", "-2", "0", "0", "42", "-1", "0", "0", "7", "0", "1", "0", "1", "-1", "-2"),
         *("0", "M /cf/MODULE.so 0", "0", "-28", "0", "-16"),
     ]
-    assert "SIGSEGV" in console, "the code of a module is gone with it"
+
+
+def test_code_of_a_module_is_gone_with_it_and_a_file_is_loaded_once(tmp_path: Path) -> None:
+    compile_c(tmp_path, "MODULE", "int answer(void) { return 42; }")
+    body = """
+        Id id, other;
+        uint64_t at, mine;
+        DID(OS_ModuleLoad(&id, "M", "/cf/MODULE.so", 1));
+        DID(OS_SymbolLookup(&at, "answer"));
+        DID(((int (*)(void))at)());
+        DID(OS_ModuleLoad(&other, "OTHER", "/cf/TEST.so", 0));
+        DID(OS_ModuleSymbolLookup(other, &mine, "TEST_Main"));
+        DID(mine == (uint64_t)TEST_Main);
+        DID(OS_ModuleUnload(other));
+        DID(OS_ModuleUnload(id));
+        DID(OS_SymbolLookup(&mine, "answer"));
+        ((int (*)(void))at)();
+        SAY("alive");
+    """
+    console = fly_c(tmp_path, f"{HEADER}\nvoid TEST_Main(void)\n{{\n{body}\n}}\n", 2)
+    assert said(console) == ["0", "0", "42", "0", "0", "1", "0", "0", "-1"]
+    assert "SIGSEGV" in console
+
+
+def test_global_module_stays_while_others_use_it_and_for_good_once_it_was_looked_up(tmp_path: Path) -> None:
+    compile_c(tmp_path, "FIRST", "static int calls;\nint first(void) { return ++calls; }")
+    compile_c(tmp_path, "SECOND", "int first(void);\nint second(void) { return 100 + first(); }")
+    body = """
+        Id id, user, again;
+        uint64_t at;
+        OS_ModuleLoad(&id, "FIRST", "/cf/FIRST.so", 0);
+        OS_ModuleLoad(&user, "SECOND", "/cf/SECOND.so", 1);
+        OS_ModuleSymbolLookup(user, &at, "second");
+        DID(CALL());
+        DID(OS_ModuleUnload(id));
+        DID(CALL()); /* SECOND uses it */
+        OS_ModuleLoad(&id, "FIRST", "/cf/FIRST.so", 1);
+        OS_ModuleLoad(&again, "AGAIN", "/cf/FIRST.so", 1);
+        OS_ModuleSymbolLookup(id, &at, "first");
+        DID(CALL());
+        DID(OS_ModuleUnload(id));
+        DID(CALL());
+        OS_ModuleUnload(again);
+        OS_ModuleUnload(user);
+        DID(OS_ModuleLoad(&id, "FIRST", "/cf/FIRST.so", 1));
+        DID(OS_ModuleLoad(&user, "SECOND", "/cf/SECOND.so", 1)); /* it has left memory, and is not global now */
+        OS_ModuleLoad(&again, "AGAIN", "/cf/FIRST.so", 0);
+        DID(OS_SymbolLookup(&at, "first"));
+        DID(CALL());
+        OS_ModuleUnload(id);
+        OS_ModuleUnload(again);
+        DID(OS_SymbolLookup(&at, "first"));
+        DID(CALL());
+    """
+    call = "#define CALL() (((int (*)(void))at)())\n"
+    console = fly_c(tmp_path, f"{HEADER}{call}void TEST_Main(void)\n{{\n{body}\n}}\n", 1)
+    assert said(console) == ["101", "0", "102", "3", "0", "4", "0", "-1", "0", "1", "0", "2"]
 
 
 def test_code_loaded_later_uses_symbols_of_global_modules(tmp_path: Path) -> None:

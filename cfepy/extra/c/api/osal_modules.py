@@ -10,7 +10,7 @@ from struct import Struct
 from typing import TYPE_CHECKING
 
 from cfepy.extra.c.api.osal_values import BAD, new_id
-from cfepy.extra.c.image import LoadedCode, LoadedModule
+from cfepy.extra.c.image import LoadedCode
 from cfepy.extra.c.memory import chars
 from cfepy.osal import OS_MAX_API_NAME, OS_MAX_PATH_LEN, OS_MODULE_FLAG_LOCAL_SYMBOLS
 from cfepy.status import (
@@ -47,14 +47,15 @@ def _declare_modules(api: Declarations, c: CRuntime) -> None:
         module_id = os.module_load(name, file, flags)
         code = os.module_code(module_id)
         if isinstance(code, LoadedCode):
-            c.modules[code.image_] = LoadedModule(module_id, not flags & OS_MODULE_FLAG_LOCAL_SYMBOLS)
+            c.modules[module_id] = code.image_
+            if not flags & OS_MODULE_FLAG_LOCAL_SYMBOLS:
+                c.openings.with_global_names[code.image_] = None
         return module_id
 
     def unload(module_id: int) -> None:
-        code = os.module_code(module_id)
         os.module_unload(module_id)
-        if isinstance(code, LoadedCode):
-            c.unload_module(code.image_)
+        if module_id in c.modules:
+            c.close_image(c.modules.pop(module_id))
 
     def info(module_id: int, at: int) -> None:
         memory.poke(at, bytes(MODULE_INFO.size))
