@@ -125,7 +125,6 @@ class EsTask:
         self.commands = CommandTable(
             (pk.NOOP, self._noop),
             (pk.RESET_COUNTERS, self._reset_counters),
-            (pk.SEND_HK, self._send_housekeeping),
             *ResetCommands(es, self.replies).handlers(),
             *AppControlCommands(es, self.replies).handlers(),
             *QueryCommands(es, self.replies).handlers(),
@@ -133,6 +132,7 @@ class EsTask:
             *PerfCommands(es, self.replies, self.perf_dump).handlers(),
             *CdsCommands(es, self.replies).handlers(),
         )
+        self.commands.handle(pk.SEND_HK, self._send_housekeeping, any_length=True)  # NASA's code does not check it
 
     def _jobs(self) -> tuple[Job, ...]:
         es = self.es

@@ -114,10 +114,25 @@ def test_cES1003_an_invalid_command_is_counted_and_reported(
     assert counters(flight) == (valid, invalid + 1)
 
 
+def longer(command: Command) -> bytes:
+    """Return a command with a byte too many."""
+    packet = bytearray(command.packet() + b"x")
+    packet[4:6] = (len(packet) - 7).to_bytes(2, "big")
+    return bytes(packet)
+
+
+def test_a_housekeeping_request_of_another_length_is_answered(flight: Flight) -> None:
+    before = counters(flight)
+    flight.packets.clear()
+    flight.transmit(longer(pk.SEND_HK))
+    assert len(flight.all(pk.HK_TLM)) == 1
+    assert flight.events() == []
+    assert counters(flight) == before
+
+
 def test_cES1003_a_command_of_another_length_is_counted_and_reported(flight: Flight) -> None:
-    for count, command in enumerate(pk.COMMANDS, 1):
-        packet = bytearray(command.packet() + b"x")
-        packet[4:6] = (len(packet) - 7).to_bytes(2, "big")
+    for count, command in enumerate((each for each in pk.COMMANDS if each.msg_id == pk.CMD_MID), 1):
+        packet = longer(command)
         flight.packets.clear()
         flight.transmit(bytes(packet))
         (event,) = flight.events()

@@ -152,7 +152,7 @@ class Ends:
 class Openings:
     """Which loaded objects are open, and which stay in memory for others, as Linux's dlopen and dlclose decide.
 
-    An object that is opened again is the same object, with the same variables. It leaves memory when nobody has it open
+    An object that is opened again is the same object, with the same variables. It leaves memory when it is open no more
     and no other object in memory uses a name of it. OSAL looks up global names for the executable, which never ends, so
     glibc keeps an object for good in which OS_SymbolLookup has found a global name.
 
