@@ -10,7 +10,7 @@ from collections.abc import Callable
 from functools import partial
 
 from cfepy.core_app import Replies
-from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, CommandTable, Dispatch
+from cfepy.msg import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, Command, CommandTable, Dispatch
 from cfepy.ports import Ports
 from cfepy.time import events as ev
 from cfepy.time import packets as pk
@@ -93,6 +93,10 @@ class TimeCommands:
         done = self.table.dispatch(packet)
         if done.outcome in (BAD_MSG_ID, BAD_CODE, BAD_LENGTH):
             self._reject(done)
+
+    def reject_length(self, packet: bytes, command: Command) -> None:
+        """Count and report a packet that is too short for its command."""
+        self._reject(Dispatch(BAD_LENGTH, command.msg_id, 0, len(packet), command.length))
 
     def _reject(self, done: Dispatch) -> None:
         if done.outcome == BAD_MSG_ID:

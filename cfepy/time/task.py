@@ -7,6 +7,8 @@ CFE_TIME_Tone1HzTask, CFE_TIME_Local1HzTask and the timer "cFS-1Hz".
 
 from __future__ import annotations
 
+from functools import partial
+
 from cfepy.config.platform import PlatformConfig
 from cfepy.core_app import serve
 from cfepy.ports import Ports
@@ -72,11 +74,12 @@ class TimeTask:
         told = [pk.TONE_CMD, pk.SEND_CMD] if settings.fake_tone else [pk.TONE_CMD]
         self._signals = [command.packet() for command in told]
         self._one_hz_signal = pk.ONEHZ_CMD.packet()
-        commands.table.handle(pk.ONEHZ_CMD, self._one_hz_command)
-        commands.table.handle(pk.TONE_CMD, lambda packet: tone.take_signal())
-        commands.table.handle(pk.DATA_CMD, self._data_command)
+        handle = partial(commands.table.handle, any_length=True)  # NASA's code does not check the lengths of these
+        handle(pk.ONEHZ_CMD, self._one_hz_command)
+        handle(pk.TONE_CMD, lambda packet: tone.take_signal())
+        handle(pk.DATA_CMD, self._data_command)
         if not settings.client:
-            commands.table.handle(pk.SEND_CMD, lambda packet: sender.send())
+            handle(pk.SEND_CMD, lambda packet: sender.send())
 
     # -- tasks -----------------------------------------------------------------------------------------------------
 
@@ -171,6 +174,9 @@ class TimeTask:
             self.take_tone(self._tone.clock.local() if latch is None else latch)
 
     def _data_command(self, packet: bytes) -> None:
+        if len(packet) < pk.DATA_CMD.length:  # NASA's code reads what is behind the packet in memory
+            self._commands.reject_length(packet, pk.DATA_CMD)
+            return
         fields = pk.DATA_CMD.read(packet)
         met, stcf = (ticks_of(fields[name]) for name in ("AtToneMET", "AtToneSTCF"))
         self._tone.take_data(ToneData(met, stcf, fields["AtToneLeapSeconds"], fields["AtToneState"]))

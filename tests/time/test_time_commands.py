@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.msg import Layout, get_msg_id
+from cfepy.msg import Command, Layout, get_msg_id
 from cfepy.time import SysTime, add, subtract
 from cfepy.time import packets as pk
 from tests.declared import assert_as_recorded, assert_complete
@@ -119,8 +119,15 @@ def test_unknown_message_is_reported_but_not_counted(running: World) -> None:
 
 
 def test_a_request_for_housekeeping_may_have_any_length(running: World) -> None:
-    """NASA's TIME does not look, as EVS and SB do not."""
+    """NASA's TIME does not look, as ES, EVS and SB do not."""
     running.command(0, b"xyz", msg_id=pk.SEND_HK_MID)
+    assert running.events == []
+    assert running.command_counters() == (0, 0)
+
+
+@pytest.mark.parametrize("command", [pk.TONE_CMD, pk.ONEHZ_CMD, pk.DATA_CMD, pk.SEND_CMD], ids=lambda each: each.name)
+def test_messages_of_the_tone_may_be_too_long(running: World, command: Command) -> None:
+    running.command(0, command.packet()[8:] + b"x", msg_id=command.msg_id)
     assert running.events == []
     assert running.command_counters() == (0, 0)
 
