@@ -131,6 +131,7 @@ class BagReader:
             self._bag: BagFile = storage().opened(self._file)
             self._bag.read_version()
             self._bag.open()
+            self._bag.contents.sort()
         except _broken() as error:
             self._file.close()
             raise UsageError(f"{error}{_hint(error, file)}", file=file) from None

@@ -53,14 +53,14 @@ def seconds(ns: int) -> float:
 
 
 def times_of(chunks: list[Chunk]) -> tuple[float, float]:
-    """Return the times of the first and the last message in s.
+    """Return the start of the first chunk and the end of the last one in s, which need not be the earliest and latest.
 
     Raises:
         ROSBagException: there is no message.
     """
     if not chunks:
         raise ROSBagException("Bag contains no message")
-    return seconds(min(chunk.start for chunk in chunks)), seconds(max(chunk.end for chunk in chunks))
+    return seconds(chunks[0].start), seconds(chunks[-1].end)
 
 
 def count(chunks: list[Chunk], connections: Iterable[Connection]) -> int:
@@ -82,7 +82,12 @@ def _uses(chunks: list[Chunk]) -> list[tuple[int, str]]:
 
 
 def types_and_topics(bag: Bag, topic_filters: str | list[str] | None = None) -> TypesAndTopicsTuple:
-    """See `Bag.get_type_and_topic_info`. The types include all topics."""
+    """Return the result of `Bag.get_type_and_topic_info`. The types include all topics."""
+    return _described(bag, bag.__storage__.contents.chunks, topic_filters)
+
+
+def _described(bag: Bag, chunks: list[Chunk], topic_filters: str | list[str] | None = None) -> TypesAndTopicsTuple:
+    """Return the same, with the messages of some chunks."""
     md5sums: dict[str, str] = {}
     for connection in bag._connections.values():
         md5sums.setdefault(connection.datatype, connection.md5sum)
@@ -91,12 +96,12 @@ def types_and_topics(bag: Bag, topic_filters: str | list[str] | None = None) -> 
     else:
         wanted = topic_filters if isinstance(topic_filters, list) else [topic_filters]
     rows = {topic: list(bag._get_connections(topic)) for topic in sorted(dict.fromkeys(wanted))}
-    topics = {topic: _topic(bag, found) for topic, found in rows.items() if found}
+    topics = {topic: _topic(bag, chunks, found) for topic, found in rows.items() if found}
     return TypesAndTopicsTuple(dict(sorted(md5sums.items())), topics)
 
 
-def _topic(bag: Bag, connections: list[Connection]) -> TopicTuple:
-    messages = count(bag.__all_chunks__(), connections)
+def _topic(bag: Bag, chunks: list[Chunk], connections: list[Connection]) -> TopicTuple:
+    messages = count(chunks, connections)
     return TopicTuple(connections[0].datatype, messages, len(connections), _frequency(bag, connections))
 
 
@@ -145,9 +150,9 @@ def _time_rows(chunks: list[Chunk]) -> list[tuple[str, str]]:
 def _duration(length: float) -> str:
     minutes = int(length / 60)
     hours = minutes // 60
-    if hours:
+    if hours > 0:
         return f"{hours}hr {minutes % 60}:{int(length % 60):02d}s ({int(length)}s)"
-    if minutes:
+    if minutes > 0:
         return f"{minutes}:{int(length % 60):02d}s ({int(length)}s)"
     return f"{length:.1f}s"
 
@@ -190,7 +195,7 @@ def _aligned(texts: list[str]) -> list[str]:
 
 
 def _type_rows(bag: Bag) -> list[tuple[str, str]]:
-    types, topics = types_and_topics(bag)
+    types, topics = _described(bag, bag.__all_chunks__())
     width = max(len(name) for name in types)
     rows = [("", f"{name:<{width}} [{md5sum}]") for name, md5sum in types.items()]
     rows[0] = ("types", rows[0][1])
@@ -265,8 +270,8 @@ def _yaml(bag: Bag) -> str:
     lines += [f"duration: {end - start:.6f}", f"start: {start:.6f}", f"end: {end:.6f}", f"size: {bag.size}"]
     lines += [f"messages: {bag.get_message_count()}", "indexed: True"]
     found = bag.get_compression_info()
-    lines.append(f"compression: {found.compression}")
-    if any(chunk.compression != Compression.NONE for chunk in chunks):
+    lines.append(f"compression: {found.compression if bag.__storage__.contents.chunks else Compression.NONE}")
+    if any(chunk.compression != Compression.NONE for chunk in bag.__storage__.contents.chunks):
         lines += [f"uncompressed: {found.uncompressed}", f"compressed: {found.compressed}"]
     types, topics = types_and_topics(bag)
     lines.append("types:")

@@ -95,7 +95,9 @@ class Player:
                 time.sleep(POLL_S)
 
     def _messages(self) -> Iterator[Any]:
-        """(topic, raw parts, time) of all bags, by time."""
+        """Yield (topic, raw parts, time) of all bags, by time, also of bags whose chunks overlap."""
+        for bag in self._bags:
+            bag.__contents__().sort()
         topics = self._options.topics or None
         found = [bag.read_messages(topics, self._first, self._last, raw=True) for bag in self._bags]
         return heapq.merge(*found, key=lambda message: message.timestamp)

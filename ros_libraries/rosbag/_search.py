@@ -50,6 +50,19 @@ def entries(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: 
         yield entry
 
 
+def entries_reverse(bag: Indexed, chosen: Iterable[Connection] | None, start: Any, end: Any) -> Iterator[Entry]:
+    """Yield the same from the last one on."""
+    contents = bag.__contents__()
+    connected = list(contents.connections.values() if chosen is None else chosen)
+    for entry in contents.entries(connected, reverse=True):
+        time = genpy.Time(0, entry.time) if start or end else genpy.Time()
+        if end and time > end:
+            continue
+        if start and time < start:
+            return
+        yield entry
+
+
 Parts = tuple[Callable[[], bytes], Callable[[], dict[str, str]]]
 
 

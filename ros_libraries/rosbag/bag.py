@@ -109,7 +109,6 @@ class Bag(Indexed):
         self.__storage__ = opened(self._file) if mode == "r" else BagFile(self._file)
         self._topic_connections: dict[str, Connection] = {}
         self._connection_indexes_read = mode != "w"
-        self.__knows_entries__ = mode == "w"
         self.__begin(allow_unindexed)
 
     def __open_file(self, name: Any) -> Any:
@@ -166,11 +165,8 @@ class Bag(Indexed):
     @property
     def size(self) -> int:
         """Bytes of the file, including unwritten data."""
-        file = self.__opened__()
-        at = file.tell()
-        size = int(file.seek(0, 2))
-        file.seek(at)
-        return size + self.__storage__.pending
+        self.__opened__()
+        return self.__size__()
 
     @property
     def compression(self) -> str:
@@ -342,7 +338,6 @@ class Bag(Indexed):
         self.flush()
         self._topic_connections.clear()
         self._connection_indexes_read = not isinstance(self.__storage__, BagFile)
-        self.__knows_entries__ = True
         yield from self.__storage__.reindex()
 
     def close(self) -> None:

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import re
 import sys
-from bisect import insort
 from collections.abc import Iterator, Mapping
 from io import BytesIO, UnsupportedOperation
-from operator import attrgetter
 from typing import BinaryIO, NamedTuple
 
 from . import compression, index, records, scan
@@ -46,7 +44,6 @@ class BagFile:
         self.version = 200
         self.header_pos = 0
         self._cached: tuple[int, bytes] = (-1, b"")
-        self._cached_end = 0
         self._read_end = 0  # where the last reading ended in the file; 0 if something was written since
         self._open: OpenChunk | None = None
 
@@ -149,8 +146,7 @@ class BagFile:
             self.file.seek(chunk.data_pos)
             stored = records.read(self.file, chunk.stored_size)
             self._cached = (pos, compression.decompress(chunk.compression, stored))
-            self._cached_end = self.file.tell()
-        self._read_end = self._cached_end
+            self._read_end = self.file.tell()
         return self._cached[1]
 
     # -- writing -----------------------------------------------------------------------------------------------------
@@ -203,48 +199,48 @@ class BagFile:
             The bytes of the chunk so far; `flush` ends it when there are enough.
         """
         self._read_end = 0
-        return self._chunk(kind).write_message(connection, time, data)
+        chunk = self._chunk(kind)
+        self.contents.insert(connection.id, chunk.enter(connection, time))
+        return chunk.write_message(connection, time, data)
 
     def enter(self, connection: Connection, time: int, kind: str = compression.NONE) -> None:
         """Add an entry to the index alone, for a message that could not be serialized. The arguments are the same as
         for `write`.
         """
         self._read_end = 0
-        self._chunk(kind).enter(connection, time)
+        self.contents.insert(connection.id, self._chunk(kind).enter(connection, time))
 
     def _chunk(self, kind: str) -> OpenChunk:
         if self._open is None:
-            self._open = OpenChunk(kind)
+            self._open = OpenChunk(kind, self.file.seek(0, 2))
         return self._open
 
     @property
     def pending(self) -> int:
-        """Bytes of the chunk that is not in the file yet."""
-        return 0 if self._open is None else self._open.data.tell()
+        """Bytes that ROS has in the file already for the open chunk; compressors hold its data back."""
+        if self._open is None:
+            return 0
+        header = len(self._open.header(0, 0))
+        return header + (self._open.data.tell() if self._open.kind == compression.NONE else 0)
 
     def all_chunks(self) -> list[Chunk]:
-        """Return the chunks in the file, and the one that is about to be."""
+        """Return the chunks in the file. If there are none yet, return the one that is being written, as ROS does."""
         made = None if self._open is None else self._open.chunk
-        return self.contents.chunks if made is None else [*self.contents.chunks, made]
+        return self.contents.chunks if made is None or self.contents.chunks else [made]
 
     def flush(self) -> None:
         """End the chunk, if there is one, and write it to the file."""
         made, self._open = self._open, None
         if made is None or made.chunk is None:
             return
-        chunk = made.chunk
-        chunk.pos = self.file.seek(0, 2)
+        pos = self.file.seek(0, 2)
+        if pos != made.chunk.pos:  # a program has written to the file itself
+            self.contents.move(made.chunk.pos, pos)
+            made.chunk.pos = pos
         made.write_to(self.file)
-        self.contents.chunks.append(chunk)
+        self.contents.chunks.append(made.chunk)
         for number, found in made.entries.items():
             index.write_entries(self.file, number, found)
-            known = self.contents.indexes.setdefault(number, [])
-            added = [Entry(time, chunk.pos, offset) for time, offset in found]
-            if not known or known[-1].time <= added[0].time:
-                known.extend(added)
-            else:
-                for entry in added:
-                    insort(known, entry, key=attrgetter("time"))
         self.file.flush()
 
     def finish(self) -> None:
@@ -267,10 +263,12 @@ class OpenChunk:
 
     Args:
         kind: kind of its compression.
+        pos: its position in the file.
     """
 
-    def __init__(self, kind: str) -> None:
+    def __init__(self, kind: str, pos: int) -> None:
         self.kind = kind
+        self.pos = pos
         self.data = BytesIO()
         self.chunk: Chunk | None = None  # None as long as there is no message
         self.entries: dict[int, list[tuple[int, int]]] = {}
@@ -280,8 +278,7 @@ class OpenChunk:
         index.write_connection(self.data, connection)
 
     def write_message(self, connection: Connection, time: int, data: bytes) -> int:
-        """Write a message; returns the size of the chunk."""
-        self.enter(connection, time)
+        """Write a message that was entered. Returns the size of the chunk."""
         fields = {
             "op": records.pack_uint8(records.OP_MSG_DATA),
             "conn": records.pack_uint32(connection.id),
@@ -290,28 +287,40 @@ class OpenChunk:
         records.write_record(self.data, fields, data)
         return self.data.tell()
 
-    def enter(self, connection: Connection, time: int) -> None:
-        """Add an entry that leads to the next record."""
+    def enter(self, connection: Connection, time: int) -> Entry:
+        """Add an entry that leads to the next record. Returns it."""
         if self.chunk is None:
-            self.chunk = Chunk(-1, time, time)
+            self.chunk = Chunk(self.pos, time, time)
         self.chunk.add(connection.id, time)
         found = self.entries.setdefault(connection.id, [])
-        found.append((time, self.data.tell()))
+        offset = self.data.tell()
+        found.append((time, offset))
         if len(found) > 1 and found[-2][0] > time:
             found.sort(key=lambda each: each[0])
+        return Entry(time, self.pos, offset)
+
+    def header(self, size: int, stored_size: int) -> bytes:
+        """Return the chunk's record up to its data.
+
+        Args:
+            size: bytes of the data.
+            stored_size: the same after compression.
+        """
+        fields: records.Fields = {
+            "op": records.pack_uint8(records.OP_CHUNK),
+            "compression": self.kind,
+            "size": records.pack_uint32(size),
+        }
+        made = BytesIO()
+        records.write_header(made, fields)
+        return made.getvalue() + records.pack_uint32(stored_size)
 
     def write_to(self, file: BinaryIO) -> None:
         """Write the chunk's record."""
         assert self.chunk is not None
         chunk, data = self.chunk, self.data.getvalue()
         stored = compression.compress(self.kind, data)
-        fields: records.Fields = {
-            "op": records.pack_uint8(records.OP_CHUNK),
-            "compression": self.kind,
-            "size": records.pack_uint32(len(data)),
-        }
-        records.write_header(file, fields)
-        file.write(records.pack_uint32(len(stored)))
+        file.write(self.header(len(data), len(stored)))
         chunk.compression, chunk.size, chunk.stored_size, chunk.data_pos = (
             self.kind,
             len(data),

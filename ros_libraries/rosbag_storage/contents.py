@@ -6,6 +6,7 @@ Imports records and errors.
 from __future__ import annotations
 
 import heapq
+from bisect import insort
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from operator import attrgetter
@@ -72,25 +73,39 @@ class Chunk:
 
 @dataclass
 class Contents:
-    """The index of a bag: connections by number, chunks in the order of the file, entries by connection and time."""
+    """The index of a bag: connections by number, chunks in the order of the file, entries by connection.
+
+    As in ROS, the entries of a connection are ordered by time in a bag that was written or scanned. In one that was
+    opened they are in the order of the chunks, whose times may overlap.
+    """
 
     connections: dict[int, Connection] = field(default_factory=dict)
     chunks: list[Chunk] = field(default_factory=list)
     indexes: dict[int, list[Entry]] = field(default_factory=dict)
 
-    def entries(self, connections: Iterable[Connection]) -> Iterator[Entry]:
-        """Return the entries of some connections, by time."""
-        return heapq.merge(*(self.indexes.get(each.id, []) for each in connections), key=attrgetter("time"))
+    def entries(self, connections: Iterable[Connection], reverse: bool = False) -> Iterator[Entry]:
+        """Return the entries of some connections: the earliest (or latest) of their next ones, again and again."""
+        indexes = (self.indexes.get(each.id, []) for each in connections)
+        ordered = (reversed(index) for index in indexes) if reverse else indexes
+        return heapq.merge(*ordered, key=attrgetter("time"), reverse=reverse)
 
-    def double(self) -> None:
-        """List each entry twice, as ROS does when it reads the entries that it knows from the file."""
+    def insert(self, connection: int, entry: Entry) -> None:
+        """Add the entry of a new message. If the entries before are not in order, neither is its place, as in ROS."""
+        insort(self.indexes.setdefault(connection, []), entry, key=attrgetter("time"))
+
+    def move(self, before: int, after: int) -> None:
+        """Give the entries of a chunk its new position in the file."""
         for index in self.indexes.values():
-            index += index[:]
+            index[:] = [each._replace(chunk_pos=after) if each.chunk_pos == before else each for each in index]
 
-    def settle(self) -> None:
-        """All entries were read: put them in order, and forget connections that have no message."""
-        for number, index in list(self.indexes.items()):
+    def sort(self) -> None:
+        """Order the entries of each connection by time."""
+        for index in self.indexes.values():
             index.sort(key=attrgetter("time"))
+
+    def forget_empty(self) -> None:
+        """Forget connections that have no message, when all entries were read."""
+        for number, index in list(self.indexes.items()):
             if not index:
                 del self.indexes[number]
                 self.connections.pop(number, None)

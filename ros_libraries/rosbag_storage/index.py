@@ -51,13 +51,13 @@ def read_index(file: BinaryIO, header: Mapping[str, bytes]) -> Contents:
 
 
 def read_entries(file: BinaryIO, contents: Contents) -> None:
-    """Where each message is, from behind the chunks."""
+    """Add where each message is, from behind the chunks, in the order of these."""
     for chunk in contents.chunks:
         file.seek(chunk.data_pos + chunk.stored_size)
         for _ in chunk.connection_counts:
             number, entries = read_chunk_entries(file, chunk.pos)
             contents.indexes[number].extend(entries)
-    contents.settle()
+    contents.forget_empty()
 
 
 def read_connection(file: BinaryIO) -> Connection:

@@ -55,7 +55,8 @@ class McapFile(BagFile):
         self.file.seek(at)
         if records.read(self.file, min(end - at, len(mcap.MAGIC))) != mcap.MAGIC:
             raise ROSBagFormatException(f"the recording was not finished: it has no end at byte {at:,}")
-        self.contents.settle()
+        self.contents.sort()
+        self.contents.forget_empty()
 
     def read_entries(self) -> None:
         """`open` has read them."""

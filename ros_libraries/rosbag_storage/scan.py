@@ -38,7 +38,8 @@ def scan(file: BinaryIO, contents: Contents, start: int) -> Generator[int, None,
         sound = at
     except (ROSBagException, OSError, EOFError, ValueError):
         pass  # the rest is invalid, and is left out
-    contents.settle()
+    contents.sort()
+    contents.forget_empty()
     return sound
 
 
