@@ -23,9 +23,9 @@ from typing import NamedTuple
 
 from cfepy.extra.convert import Profile
 from cfepy.extra.convert.build import LANGUAGE, library_includes, profile_flags
+from cfepy.extra.convert.cpp_package import CppPackage, Program
 from cfepy.extra.convert.message_headers import write_headers
 from cfepy.extra.convert.node_check import check_program
-from cfepy.extra.convert.packages import CppPackage, Program
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import shipped
 

@@ -17,6 +17,7 @@ from cfepy.cli.ros.rostest import read_results as read_test_results
 from cfepy.es.startup_script import check, entries
 from cfepy.extra.c.engine import compiler
 from cfepy.extra.c.toolchain.source_files import read_cmake_lists
+from cfepy.extra.convert.catkin_reader import TESTING
 from cfepy.extra.convert.cpp_sources import collect, main_form
 from cfepy.extra.convert.node_check.source import read_source
 from cfepy.extra.convert.output import write_files
@@ -346,7 +347,7 @@ def cmake_lists(data: bytes, path: Path) -> None:
     (path.parent / "src").mkdir(exist_ok=True)
     for name in ("src/one.cpp", "src/two.c", "one.cpp"):
         (path.parent / name).write_text("int a;\n", encoding="utf-8")
-    package = read_package(path.parent, "demo", testing=True)
+    package = read_package(path.parent, "demo", TESTING)
     for node_type in (*package.executables(), *package.nodelets()):
         with suppress(UsageError):
             program = program_of(package, node_type, Packages(path, {}))

@@ -18,9 +18,9 @@ SECONDS = 30
 MEMORY = 500 << 10
 """KB that a trick may take."""
 QUICKER = {
-    "cfepy.extra.c.toolchain.cmake_script.CMAKE_CHARACTERS": 1_000_000,
-    "cfepy.extra.c.toolchain.cmake_script.CMAKE_COMMANDS": 20_000,
-    "cfepy.extra.c.toolchain.cmake_script.CMAKE_FILES": 5_000,
+    "cfepy.extra.c.toolchain.cmake_budget.CMAKE_CHARACTERS": 1_000_000,
+    "cfepy.extra.c.toolchain.cmake_budget.CMAKE_COMMANDS": 20_000,
+    "cfepy.extra.c.toolchain.cmake_budget.CMAKE_FILES": 5_000,
     "cfepy.extra.convert.packages.CPP_FILES": 500,
     "cfepy.interpreter.syntax_trees.PYTHON_WORDS": 50_000,
     "ros_libraries.rosbag_storage.compression.LARGEST": 10 << 20,

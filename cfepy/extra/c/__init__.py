@@ -33,6 +33,7 @@ if TYPE_CHECKING:
         CMakeBudget,
         CMakeScript,
         CompilerError,
+        GeneratorExpressions,
         Options,
         TableFiles,
         build,
@@ -40,7 +41,9 @@ if TYPE_CHECKING:
         cpp_compiler,
         end_bounded,
         headers_folder,
+        split_list,
         start_bounded,
+        version_of,
     )
 
 __all__ = [
@@ -53,6 +56,7 @@ __all__ = [
     "CompiledLoader",
     "CompilerError",
     "ElfError",
+    "GeneratorExpressions",
     "Options",
     "TableFiles",
     "abi_profile",
@@ -66,7 +70,9 @@ __all__ = [
     "ground_differences",
     "headers_folder",
     "read_shared_object",
+    "split_list",
     "start_bounded",
+    "version_of",
     "wanted_names",
     "writing_cache",
 ]
@@ -89,6 +95,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "CMakeBudget",
                 "CMakeScript",
                 "CompilerError",
+                "GeneratorExpressions",
                 "Options",
                 "TableFiles",
                 "build",
@@ -96,7 +103,9 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "cpp_compiler",
                 "end_bounded",
                 "headers_folder",
+                "split_list",
                 "start_bounded",
+                "version_of",
             ),
         },
     )

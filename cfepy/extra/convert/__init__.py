@@ -16,11 +16,11 @@ from cfepy.interpreter.faces import face
 if TYPE_CHECKING:
     from cfepy.extra.convert.capacities import wrong_capacities
     from cfepy.extra.convert.conversion import converted, task_of
+    from cfepy.extra.convert.cpp_package import Program
     from cfepy.extra.convert.flight_build import build_for_flight
     from cfepy.extra.convert.message_headers import Profile
     from cfepy.extra.convert.node_check import RULES, CheckReport, Level, check_program, programs_of, sarif_of
     from cfepy.extra.convert.output import write_files
-    from cfepy.extra.convert.packages import Program
     from cfepy.extra.convert.project import project_files, report
 
 __all__ = [
@@ -51,7 +51,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".flight_build": ("build_for_flight",),
             ".message_headers": ("Profile",),
             ".output": ("write_files",),
-            ".packages": ("Program",),
+            ".cpp_package": ("Program",),
             ".project": ("project_files", "report"),
         },
     )

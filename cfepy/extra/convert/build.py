@@ -29,10 +29,10 @@ from cfepy.extra.c import (
 )
 from cfepy.extra.convert.capacities import Capacities
 from cfepy.extra.convert.configurations import CONFIGURATION_TYPES, configuration_headers
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.cpp_sources import SourceSet, collect, message_types
 from cfepy.extra.convert.entry import NodeEntry, main_header
 from cfepy.extra.convert.message_headers import Profile, write_headers
-from cfepy.extra.convert.packages import Program
 from cfepy.mission import ARENA_BYTES
 from cfepy.reading.contained_files import write_contained
 from cfepy.reading.resources import shipped

@@ -14,8 +14,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.entry import quoted
-from cfepy.extra.convert.packages import Program
 from cfepy.reading.resources import import_path, python_command
 from cfepy.status import UsageError
 from rospy_shim.library_parts import FOLDER

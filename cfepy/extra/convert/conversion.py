@@ -10,9 +10,10 @@ from typing import Any
 
 from cfepy.extra.convert.build import library_includes, provided_packages
 from cfepy.extra.convert.configurations import CONFIGURATION_TYPES, configuration_headers
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.cpp_sources import SourceSet, collect, main_form, message_types
 from cfepy.extra.convert.entry import NodeEntry, parameter_rows
-from cfepy.extra.convert.packages import MANIFEST, Program, program_of, read_package
+from cfepy.extra.convert.packages import MANIFEST, program_of, read_package
 from cfepy.extra.convert.source_names import NodeNames, SourceNames, names_of, texts_below
 from cfepy.mission import launch_file
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, RosConfig

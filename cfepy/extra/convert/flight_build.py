@@ -12,6 +12,7 @@ from typing import Any
 from cfepy.extra.c import CompilerError, check_elf_reader
 from cfepy.extra.convert.build import BuildOptions, build_node, provided_packages
 from cfepy.extra.convert.capacities import capacities_of
+from cfepy.extra.convert.catkin_reader import TESTING
 from cfepy.extra.convert.cpp_sources import collect, main_form
 from cfepy.extra.convert.entry import NodeEntry, parameter_rows
 from cfepy.extra.convert.google_test import add_google_test, uses_google_test
@@ -50,7 +51,7 @@ def build_for_flight(
     packages = Packages(node.near, node.env)
     package = read_package(node.folders[0], node.package)
     if node.type not in (*package.executables(), *package.nodelets()):
-        package = read_package(node.folders[0], node.package, testing=True)
+        package = read_package(node.folders[0], node.package, TESTING)
     program = program_of(package, node.type, packages, provided_packages())
     missing = collect(program.sources, program.includes).missing
     if uses_google_test(missing):

@@ -9,7 +9,7 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from cfepy.extra.convert.packages import Program
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 

@@ -19,8 +19,8 @@ from xmlrpc.client import ServerProxy
 
 from cfepy.extra.convert.build import library_includes
 from cfepy.extra.convert.configurations import configuration_script
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.cpp_sources import collect, message_types
-from cfepy.extra.convert.packages import Program
 from dev.convert.stimulus.outcome import Outcome, outcome_of
 from dev.convert.stimulus.script import Scene
 from dev.roscfe.building import CPP

@@ -16,7 +16,7 @@ import cfepy.extra.convert.flight_build
 from cfepy.es.packets import START_APP
 from cfepy.extra.convert import build_for_flight
 from cfepy.extra.convert.build import provided_packages
-from cfepy.extra.convert.packages import Program
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.mission import Mission
 from cfepy.mission.launch import COMPILED_STACK_BYTES, PRIORITY, read_launch
 from cfepy.mission.processor import Machine

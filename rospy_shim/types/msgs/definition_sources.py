@@ -17,7 +17,7 @@ from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import DEFINITION_BYTES
 from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
-from rospy_shim.types.msgs.packages import Packages, has_definitions
+from rospy_shim.types.msgs.packages import Packages, folders_of_definitions, has_definitions
 
 _DASHES = "---"
 _PARTS = ("Goal", "Result", "Feedback")
@@ -157,7 +157,7 @@ class OnDisk:
     def packages(self) -> list[str]:
         """Return the names of the packages that have definitions, sorted."""
         names = self._packages.names()
-        return [name for name in names if any(map(has_definitions, self._packages.folders(name)))]
+        return [name for name in names if any(map(_has_some, self._packages.folders(name)))]
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
         """Return messages or services of a package, from its first folder that has some."""
@@ -181,13 +181,19 @@ class Texts:
         return {key.partition("/")[2]: self._definitions[key] for key in of_package} or None
 
 
+def _has_some(folder: Path) -> bool:
+    kinds = ("msg", "srv", "action")
+    return has_definitions(folder) or any(folders_of_definitions(folder, kind) for kind in kinds)
+
+
 def _in_folder(folder: Path, kind: Kind, mistakes: Mistakes | None) -> dict[str, Definition]:
     messages = messages_of(_files(folder, "action"), mistakes) if kind == "msg" else {}
     return messages | _files(folder, kind)
 
 
 def _files(folder: Path, kind: str) -> dict[str, Definition]:
-    return {path.stem: _read(path) for path in sorted((folder / kind).glob(f"*.{kind}"))}
+    places = [folder / kind, *folders_of_definitions(folder, kind)]
+    return {path.stem: _read(path) for place in places for path in sorted(place.glob(f"*.{kind}"))}
 
 
 def _read(path: Path) -> Definition:

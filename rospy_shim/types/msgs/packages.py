@@ -15,7 +15,7 @@ from pathlib import Path
 
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.reading.input_files import text_limited
-from cfepy.reading.input_limits import PYTHON_BYTES, XML_BYTES
+from cfepy.reading.input_limits import CMAKE_BYTES, PYTHON_BYTES, XML_BYTES
 from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 
@@ -25,6 +25,10 @@ _DEFINITIONS = ("msg", "srv", "action")
 _PACKAGE_DIR = re.compile(r"""package_dir['"]?\s*[=:]\s*\{\s*['"]{2}\s*:\s*['"]([^'"]+)['"]""")
 _NAME = re.compile(r"<name>([^<]*)</name>")
 _LEGAL = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,254}")
+_ADD = {"msg": "message", "srv": "service", "action": "action"}
+_ADDED = re.compile(r"\badd_(message|service|action)_files\s*+\(([^()]*+)\)", re.IGNORECASE)
+_DIRECTORY = re.compile(r"\bDIRECTORY\s++\"?([^\s\"]++)")
+_COMMENT = re.compile(r"#[^\n]*+")
 _SHOWN = 100  # characters of a name that is wrong
 
 
@@ -181,6 +185,31 @@ def has_manifest(folder: Path) -> bool:
 def has_definitions(folder: Path) -> bool:
     """Return True if a folder has .msg files in `msg`, or .srv or .action files in their folders."""
     return any(True for kind in _DEFINITIONS for _ in (folder / kind).glob(f"*.{kind}"))
+
+
+def folders_of_definitions(folder: Path, kind: str) -> list[Path]:
+    """Return the folders that genmsg takes definitions from: those of `add_message_files(DIRECTORY ...)` and its kin.
+
+    Args:
+        folder: of the package.
+        kind: "msg", "srv" or "action".
+
+    Returns:
+        Folders in the package, without the one that has the name of the kind.
+    """
+    try:
+        text = text_limited(folder / "CMakeLists.txt", CMAKE_BYTES, "replace")
+    except (OSError, UsageError):
+        return []
+    if "DIRECTORY" not in text:
+        return []
+    found: dict[Path, None] = {}
+    for command, words in _ADDED.findall(_COMMENT.sub("", text)):
+        named = _DIRECTORY.search(words) if command.lower() == _ADD[kind] else None
+        name = os.path.normpath(named[1].replace("${CMAKE_CURRENT_SOURCE_DIR}/", "")) if named else kind
+        if name != kind and not name.startswith(("..", "/")) and "$" not in name:
+            found[folder / name] = None
+    return [each for each in found if os.path.isdir(each)]
 
 
 def is_package(folder: Path) -> bool:

@@ -25,11 +25,11 @@ def values(folder: Path, text: str, name: str = "r") -> list[str]:
         ('set(r "a # b")', ["a # b"]),
         ("set(r a #[[ b\n c ]] d)", ["a", "d"]),
         ("#[==[ set(r x) ]==]\nset(r a)", ["a"]),
-        ("set(x a b)\nset(r ${x} ${x}c)", ["a", "b", "a bc"]),
+        ("set(x a b)\nset(r ${x} ${x}c)", ["a", "b", "a", "bc"]),
         ("set(x y)\nset(y z)\nset(r ${${x}})", ["z"]),
         ("foreach(i RANGE 1 3)\nlist(APPEND r ${i})\nendforeach()", ["1", "2", "3"]),
         ("foreach(i IN ITEMS a b)\nlist(APPEND r ${i})\nendforeach()", ["a", "b"]),
-        ("function(f a)\nset(r ${a} ${ARGN})\nendfunction()\nf(1 2 3)", ["1", "2", "3"]),
+        ("function(f a)\nset(r ${a} ${ARGN} PARENT_SCOPE)\nendfunction()\nf(1 2 3)", ["1", "2", "3"]),
         ("if(NOT NOT UNIX AND (X OR (UNIX AND NOT X)))\nset(r yes)\nendif()", ["yes"]),
         ("if(1.10 VERSION_GREATER 1.9 AND 01 VERSION_EQUAL 1)\nset(r yes)\nendif()", ["yes"]),
         ("if(X)\nif(UNIX)\nset(r no)\nendif()\nelseif(UNIX)\nset(r yes)\nelse()\nset(r no)\nendif()", ["yes"]),
@@ -61,7 +61,7 @@ def test_patterns_find_files(tmp_path: Path) -> None:
 
 
 def test_commands_of_a_file_count_for_all_its_subfolders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cfepy.extra.c.toolchain.cmake_script.CMAKE_COMMANDS", 100)
+    monkeypatch.setattr("cfepy.extra.c.toolchain.cmake_budget.CMAKE_COMMANDS", 100)
     outer = CMakeScript(tmp_path, {})
     outer.run("set(r a)\n" * 60)
     inner = CMakeScript(tmp_path / "in", outer.variables, outer.budget)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.convert.configurations import configuration_headers
-from cfepy.extra.convert.packages import CppPackage, Program
+from cfepy.extra.convert.cpp_package import CppPackage, Program
 from cfepy.status import UsageError
 from dev.convert.node_flights import mission_of
 from dev.roscfe.building import needs_cpp

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert import packages
+from cfepy.extra.convert import catkin_reader
 from cfepy.extra.convert.packages import program_of, read_package
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Packages
@@ -99,7 +99,7 @@ def test_plugin_file_with_several_libraries_is_read(tmp_path: Path) -> None:
 def test_eigen_headers_exported_by_a_package_reach_its_users(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     eigen = tmp_path / "eigen3"
     eigen.mkdir()
-    monkeypatch.setattr(packages, "EIGEN", str(eigen))
+    monkeypatch.setattr(catkin_reader, "EIGEN", str(eigen))
     write(tmp_path, {**FILES, "helpers/CMakeLists.txt": "project(helpers)\ncatkin_package(DEPENDS EIGEN3)\n"})
     package = read_package(tmp_path / "demo", "demo")
     program = program_of(package, "talker", Packages(tmp_path / "demo/src/talker.cpp", {}), ours=["roscpp"])

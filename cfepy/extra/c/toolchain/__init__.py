@@ -14,8 +14,12 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.extra.c.toolchain.application import Built, Options, TableFiles, build
-    from cfepy.extra.c.toolchain.cmake_script import CMakeBudget, CMakeScript
+    from cfepy.extra.c.toolchain.cmake_budget import CMakeBudget
+    from cfepy.extra.c.toolchain.cmake_conditions import version_of
+    from cfepy.extra.c.toolchain.cmake_script import CMakeScript
+    from cfepy.extra.c.toolchain.cmake_words import split_list
     from cfepy.extra.c.toolchain.compiler import CompilerError, call_bounded, cpp_compiler, end_bounded, start_bounded
+    from cfepy.extra.c.toolchain.generator_expressions import GeneratorExpressions
     from cfepy.extra.c.toolchain.headers import headers_folder
 
 __all__ = [
@@ -23,6 +27,7 @@ __all__ = [
     "CMakeBudget",
     "CMakeScript",
     "CompilerError",
+    "GeneratorExpressions",
     "Options",
     "TableFiles",
     "build",
@@ -30,7 +35,9 @@ __all__ = [
     "cpp_compiler",
     "end_bounded",
     "headers_folder",
+    "split_list",
     "start_bounded",
+    "version_of",
 ]
 
 if not TYPE_CHECKING:  # a type checker sees the names above, and no others
@@ -38,7 +45,11 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         __name__,
         {
             ".application": ("Built", "Options", "TableFiles", "build"),
-            ".cmake_script": ("CMakeBudget", "CMakeScript"),
+            ".cmake_conditions": ("version_of",),
+            ".cmake_budget": ("CMakeBudget",),
+            ".cmake_script": ("CMakeScript",),
+            ".cmake_words": ("split_list",),
+            ".generator_expressions": ("GeneratorExpressions",),
             ".compiler": ("CompilerError", "call_bounded", "cpp_compiler", "end_bounded", "start_bounded"),
             ".headers": ("headers_folder",),
         },

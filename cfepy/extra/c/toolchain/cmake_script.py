@@ -1,8 +1,8 @@
 """A reader of CMake's language: enough of it for the files of cFS applications and of catkin packages.
 
-It is not CMake: it finds nothing on the computer and builds nothing. It follows variables, `if`, `foreach`, `function`
-and `macro`, lists, `file(GLOB)` and the files of subfolders. A subclass defines the meaning of a command. A condition
-holds only if it is known to be true: an unset variable is false.
+It is not CMake: it finds nothing on the computer and builds nothing. It follows variables and their scopes, `if`,
+loops, `function` and `macro`, the commands for lists, texts and paths, `file(GLOB)` and the files of subfolders. A
+subclass defines the meaning of a command. A condition holds only if it is known to be true: an unset variable is false.
 
 A file may come from any source, so the work that it can cause is limited (`CMakeBudget`). A file beyond the limit is
 refused.
@@ -12,100 +12,32 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
+from enum import Enum, auto
 from pathlib import Path
-from typing import NamedTuple
 
-from cfepy.reading.input_limits import CMAKE_CHARACTERS, CMAKE_COMMANDS, CMAKE_DEPTH, CMAKE_FILES
-from cfepy.status import UsageError
+from cfepy.extra.c.toolchain.cmake_budget import CMakeBudget, matching_files
+from cfepy.extra.c.toolchain.cmake_commands import list_command, math_command, path_command, string_command
+from cfepy.extra.c.toolchain.cmake_conditions import CMakeCondition
+from cfepy.extra.c.toolchain.cmake_words import CMakeCommand, CMakeWord, commands_of, expanded_text, split_list
 
 FILE = "CMakeLists.txt"
-FALSE = ("", "0", "OFF", "NO", "FALSE", "N", "IGNORE", "NOTFOUND")
-_TOKEN = re.compile(
-    r"(?P<comment>#\[=*\[)|#[^\n]*|(?P<quoted>\"(?:[^\"\\]|\\.)*+\"?)|(?P<open>\()|(?P<close>\))"
-    r"|(?P<space>\s+)|(?P<word>(?:[^\s()\"#\\]|\\.)++)|.",
-    re.DOTALL,
-)
-_NAME = re.compile(r"[A-Za-z_]\w*")
-_WORD = re.compile(r'"((?:[^"\\]|\\.)*+)"|([^\s;]+)', re.DOTALL)
-_ASKED = re.compile(r'"((?:[^"\\]|\\.)*+)"|([()])|([^\s;()]+)', re.DOTALL)
-_VARIABLE = re.compile(r"\$\{(\w+)\}")
-_NUMBER = re.compile(r"[0-9]{1,18}")
-_DEEP = "**"  # any number of folders, in a pattern
-_MOST_PARTS = 40  # of a pattern
-_LONGEST_PART = 255  # characters of a file's name
-_ROUNDS = 8  # of replacements of variables in names and values of variables
+_NUMBER = re.compile(r"-?[0-9]{1,18}")
 _ENDS = {"if": "endif", "foreach": "endforeach", "while": "endwhile", "function": "endfunction", "macro": "endmacro"}
+_PARENT = "PARENT_SCOPE"
 
 
-class CMakeBudget:
-    """Limits for the files of a package, including subfolders.
+class _End(Enum):
+    """How the execution of commands ended."""
 
-    Args:
-        file: the outermost one, for errors.
-    """
-
-    def __init__(self, file: Path) -> None:
-        self._file = file
-        self._commands = CMAKE_COMMANDS
-        self._characters = CMAKE_CHARACTERS
-        self._files = CMAKE_FILES
-        self._depth = 0
-
-    def command(self) -> None:
-        """Count a command. It raises the errors of `spend`."""
-        self._commands -= 1
-        if self._commands < 0:
-            raise self._error(f"executes more than {CMAKE_COMMANDS:,} commands, loops included")
-
-    def turns(self, count: int) -> None:
-        """Count the turns of a loop, each as a command. It raises the errors of `spend`."""
-        self._commands -= count
-        if self._commands < 0:
-            raise self._error(f"has a loop of {count:,} iterations, more than {CMAKE_COMMANDS:,} commands")
-
-    def spend(self, characters: int) -> None:
-        """Count characters of words that are read or made.
-
-        Raises:
-            UsageError: they are too many.
-        """
-        self._characters -= characters
-        if self._characters < 0:
-            raise self._error(f"makes words of more than {CMAKE_CHARACTERS:,} characters")
-
-    def look(self) -> None:
-        """Count a file or folder that a pattern examines. It raises the errors of `spend`."""
-        self._files -= 1
-        if self._files < 0:
-            raise self._error(f"has patterns that match more than {CMAKE_FILES:,} files")
-
-    @contextmanager
-    def inside(self) -> Iterator[None]:
-        """Count a nested block, call or subfolder in this context. It raises the errors of `spend`."""
-        self._depth += 1
-        if self._depth > CMAKE_DEPTH:
-            raise self._error(f"has more than {CMAKE_DEPTH} nested blocks, calls and subfolders")
-        yield
-        self._depth -= 1
-
-    def _error(self, what: str) -> UsageError:
-        return UsageError(f"{what}, the limit; simplify it", file=self._file)
+    NEXT = auto()
+    CONTINUE = auto()
+    BREAK = auto()
+    RETURN = auto()
 
 
-class CMakeCommand(NamedTuple):
-    """A command: its name in small letters, and the text between the parentheses."""
-
-    name: str
-    text: str
-
-    @property
-    def words(self) -> list[str]:
-        """Its words, with unexpanded variables."""
-        return [quoted or plain for quoted, plain in _WORD.findall(self.text)]
+_LEAVING = {"return": _End.RETURN, "break": _End.BREAK, "continue": _End.CONTINUE}
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +64,21 @@ class _Block:
         return _Block(self.commands, self.ends, start, max(start, stop))
 
 
+@dataclass(frozen=True, slots=True)
+class _Routine:
+    """A function or a macro.
+
+    Attributes:
+        parameters: names of its parameters.
+        body: its commands.
+        is_function: whether it has variables of its own.
+    """
+
+    parameters: Sequence[str]
+    body: _Block
+    is_function: bool
+
+
 class CMakeScript:
     """Executes a file; a subclass gives meaning to commands.
 
@@ -139,22 +86,30 @@ class CMakeScript:
         folder: of the file.
         variables: variables that are already set.
         budget: the remaining budget of the including file; None for a separate file.
+        outer: the script of the including folder, whose functions are known and whose variables PARENT_SCOPE sets.
 
     Attributes:
         folder: of the file that is being read.
         variables: by name, each a list.
         budget: the remaining budget.
-        follows_loops: whether `foreach` is executed.
+        follows_loops: whether loops are executed.
     """
 
     follows_loops = True
 
-    def __init__(self, folder: Path, variables: Mapping[str, Sequence[str]], budget: CMakeBudget | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        variables: Mapping[str, Sequence[str]],
+        budget: CMakeBudget | None = None,
+        outer: CMakeScript | None = None,
+    ) -> None:
         self.folder = folder
         self.budget = CMakeBudget(folder / FILE) if budget is None else budget
         self.budget.spend(sum(len(name) + len(values) for name, values in variables.items()))
         self.variables = {name: list(values) for name, values in variables.items()}
-        self._routines: dict[str, tuple[list[str], _Block]] = {}
+        self._routines: dict[str, _Routine] = {} if outer is None else outer._routines
+        self._parents: list[dict[str, list[str]]] = [{} if outer is None else outer.variables]
 
     def run(self, text: str) -> None:
         """Execute a file's text.
@@ -163,7 +118,7 @@ class CMakeScript:
             UsageError: it exceeds the budget.
         """
         self.budget.spend(len(text))
-        commands = list(_commands(text))
+        commands = list(commands_of(text))
         with self.budget.inside():
             self._all(_Block(commands, _ends(commands), 0, len(commands)))
 
@@ -171,104 +126,143 @@ class CMakeScript:
         """Execute a command outside of structures, with expanded words. Subclasses add more commands."""
         match name, words:
             case "set", [variable, *values]:
-                self.variables[variable] = _until(_until(values, "CACHE"), "PARENT_SCOPE")
-            case "unset", [variable, *_]:
-                self.variables.pop(variable, None)
-            case "list", ["APPEND", variable, *values]:
-                self.variables.setdefault(variable, []).extend(values)
-            case "list", ["REMOVE_ITEM", variable, *values]:
-                before, unwanted = self.variables.get(variable, []), set(values)
-                self.budget.spend(len(before))
-                self.variables[variable] = [each for each in before if each not in unwanted]
+                self._set(variable, values)
+            case "unset", [variable, *rest]:
+                (self._parents[-1] if _PARENT in rest else self.variables).pop(variable, None)
+            case "option", [variable, _, *default]:
+                self.variables.setdefault(variable, default[:1] or ["OFF"])
+            case "list", _:
+                list_command(self, words)
+            case "string", _:
+                string_command(self, words)
+            case "get_filename_component", _:
+                path_command(self, words)
+            case "math", _:
+                math_command(self, words)
+            case "cmake_parse_arguments", [prefix, *rest]:
+                self._parse(prefix, rest)
             case "aux_source_directory", [folder, variable]:
                 self.variables.setdefault(variable, []).extend(self.glob(f"{folder}/*.c*"))
             case "file", ["GLOB" | "GLOB_RECURSE" as kind, variable, *patterns]:
                 self.variables[variable] = self._globbed(patterns, kind == "GLOB_RECURSE")
 
+    def _set(self, variable: str, values: Sequence[str]) -> None:
+        is_outer = values[-1:] == [_PARENT]
+        values = values[:-1] if is_outer else values
+        is_cached = "CACHE" in values
+        values = values[: values.index("CACHE")] if is_cached else values
+        items = [item for value in values for item in split_list(value)]
+        self.spend(len(items))
+        if is_cached and variable in self.variables:
+            return
+        held = self._parents[-1] if is_outer else self.variables
+        if values:
+            held[variable] = items
+        else:
+            held.pop(variable, None)
+
     def glob(self, pattern: str, deep: bool = False) -> list[str]:
         """Return files of a pattern, sorted, relative to the folder; with `deep` also those of subfolders."""
         base, _, name = pattern.rpartition("/")
         pattern = f"{base}/**/{name}".lstrip("/") if deep else pattern
-        return _matching_files(self.folder, pattern, self.budget.look)
+        return matching_files(self.folder, pattern, self.budget.look)
 
-    def holds(self, words: Sequence[str]) -> bool:
-        """Return True if a condition holds. An unknown condition does not hold."""
-        return _Condition(self, words).value()
-
-    def is_true(self, word: str) -> bool:
-        """Return True if a word is true: a constant, or a variable that is not false."""
-        if word.upper() in ("1", "ON", "YES", "TRUE", "Y"):
-            return True
-        values = self.variables.get(word, [])
-        return bool(values) and values[0].upper() not in FALSE and not values[0].upper().endswith("-NOTFOUND")
-
-    def expanded(self, words: Sequence[str]) -> list[str]:
-        """Return words with their variables replaced. A variable that is a whole word becomes a word for each value."""
+    def expanded(self, words: Sequence[CMakeWord]) -> list[str]:
+        """Return words with their variables replaced. A list that is not quoted becomes a word for each item."""
         found: list[str] = []
         for word in words:
-            whole = _VARIABLE.fullmatch(word)
-            if whole:
-                values = self.variables.get(whole[1], [])
-                self.budget.spend(len(values) + sum(map(len, values)))
-                found += values
-            else:
-                found.append(self.text(word))
+            text = self.text(word)
+            found += split_list(text) if word.kind == "plain" else [text]
         return found
 
-    def text(self, word: str) -> str:
-        """Return a word with its variables replaced, including those in names of variables."""
-        self.budget.spend(len(word))
-        for _ in range(_ROUNDS):
-            replaced = _VARIABLE.sub(self._value, word)
-            if replaced == word:
-                break
-            word = replaced
-        return word
+    def text(self, word: CMakeWord) -> str:
+        """Return a word with its variables and escapes replaced."""
+        self.spend(len(word.text))
+        if word.kind == "bracket" or ("$" not in word.text and "\\" not in word.text):
+            return word.text
+        return expanded_text(word.text, self._value)
 
-    def _value(self, variable: re.Match[str]) -> str:
-        value = " ".join(self.variables.get(variable[1], []))
-        self.budget.spend(len(value) + 1)
+    def _value(self, name: str) -> str:
+        value = ";".join(each.replace(";", "\\;") for each in self.variables.get(name, []))
+        self.spend(len(value) + 1)
         return value
+
+    # -- what conditions and commands for variables need ---------------------------------------------------------------
+
+    def knows(self, kind: str, name: str) -> bool:
+        """Return True if there is such a TARGET, COMMAND or POLICY."""
+        return kind == "COMMAND" and name.lower() in self._routines
+
+    def matched(self, groups: Sequence[str]) -> None:
+        """Set the variables of a regular expression that has matched."""
+        for number, group in enumerate(groups):
+            self.variables[f"CMAKE_MATCH_{number}"] = split_list(group)
+
+    def spend(self, characters: int) -> None:
+        """Count characters of words that are read or made."""
+        self.budget.spend(characters)
+
+    def descend(self) -> None:
+        """Count a nested bracket, and refuse too many."""
+        self.budget.descend()
+
+    def ascend(self) -> None:
+        """End a nested bracket."""
+        self.budget.ascend()
 
     # -- structures ----------------------------------------------------------------------------------------------------
 
-    def _all(self, block: _Block) -> bool:
-        """Execute commands. Returns False if `return` ends the file or function."""
+    def _all(self, block: _Block) -> _End:
+        """Execute commands, and return how that ended."""
         at = block.start
         while at < block.stop:
             self.budget.command()
             each = block.commands[at]
             end = block.end_of(at) if each.name in _ENDS else at
-            if each.name == "return":
-                return False
-            if not self._one(each, block.part(at + 1, end)):
-                return False
+            if each.name in _LEAVING:
+                return _LEAVING[each.name]
+            ended = self._one(each, block.part(at + 1, end))
+            if ended is not _End.NEXT:
+                return ended
             at = end + 1
-        return True
+        return _End.NEXT
 
-    def _one(self, each: CMakeCommand, body: _Block) -> bool:
+    def _one(self, each: CMakeCommand, body: _Block) -> _End:
         match each.name:
             case "if":
                 with self.budget.inside():
                     return self._all(self._branch(each, body))
+            case "foreach" | "while" if not self.follows_loops:
+                pass
             case "foreach":
                 with self.budget.inside():
-                    return not self.follows_loops or self._loop(self._words(each), body)
+                    return self._loop(self._words(each), body)
+            case "while":
+                with self.budget.inside():
+                    return self._while(each, body)
             case "function" | "macro":
                 name, *parameters = self._words(each) or [""]
-                self._routines[name.lower()] = (parameters, body)
-            case "while":
-                pass  # its condition is not known here
+                self._routines[name.lower()] = _Routine(parameters, body, each.name == "function")
             case name if name in self._routines:
                 with self.budget.inside():
-                    self._call(*self._routines[name], self._words(each))
+                    return self._call(self._routines[name], self._words(each))
             case name:
                 self.command(name, self._words(each))
-        return True
+        return _End.NEXT
 
     def _words(self, command: CMakeCommand) -> list[str]:
-        self.budget.spend(len(command.text))
+        self.budget.spend(command.size)
         return self.expanded(command.words)
+
+    def _holds(self, condition: CMakeCommand) -> bool:
+        self.budget.spend(condition.size)
+        words: list[CMakeWord] = []
+        for word in condition.words:
+            if word.kind == "plain" and "$" in word.text:
+                words += [CMakeWord(_literal(each)) for each in split_list(self.text(word))]
+            else:
+                words.append(word)
+        return CMakeCondition(self, words).value()
 
     def _branch(self, first: CMakeCommand, body: _Block) -> _Block:
         """Return the commands of the branch that holds."""
@@ -277,7 +271,7 @@ class CMakeScript:
         while at <= body.stop:
             each = body.commands[at] if at < body.stop else None
             if each is None or each.name in ("elseif", "else"):
-                if condition is None or self.holds(self._asked(condition)):
+                if condition is None or self._holds(condition):
                     return body.part(start, at)
                 if each is None:
                     break
@@ -286,184 +280,125 @@ class CMakeScript:
             at = (body.end_of(at) if each is not None and each.name in _ENDS else at) + 1
         return body.part(body.stop, body.stop)
 
-    def _asked(self, condition: CMakeCommand) -> list[str]:
-        self.budget.spend(len(condition.text))
-        return [quoted or mark or plain for quoted, mark, plain in _ASKED.findall(condition.text)]
+    def _while(self, condition: CMakeCommand, body: _Block) -> _End:
+        while self._holds(condition):
+            self.budget.turns(1)
+            ended = self._all(body)
+            if ended is _End.RETURN:
+                return ended
+            if ended is _End.BREAK:
+                break
+        return _End.NEXT
 
-    def _loop(self, words: list[str], body: _Block) -> bool:
+    def _loop(self, words: list[str], body: _Block) -> _End:
         name, *values = words or [""]
         match values:
             case ["IN", *rest]:
-                values = [item for each in rest if each != "ITEMS" for item in self._listed(each, "LISTS" in rest)]
-            case ["RANGE", *numbers] if all(map(_NUMBER.fullmatch, numbers)) and len(numbers) in (1, 2):
-                first, last = (0, *map(int, numbers))[-2:]
-                self.budget.turns(max(last - first, 0))
-                values = [str(each) for each in range(first, last + 1)]
+                values = list(self._listed(rest))
+            case ["RANGE", *numbers] if all(map(_NUMBER.fullmatch, numbers)) and len(numbers) in (1, 2, 3):
+                first, last, step = _range(*map(int, numbers))
+                self.budget.turns(max((last - first) // step, 0))
+                values = [str(each) for each in range(first, last + (1 if step > 0 else -1), step)]
         self.budget.turns(len(values))
+        before = self.variables.get(name)
+        ended = _End.NEXT
         for value in values:
             self.variables[name] = [value]
-            if not self._all(body):
-                return False
-        return True
+            ended = self._all(body)
+            if ended in (_End.RETURN, _End.BREAK):
+                break
+        if before is None:
+            self.variables.pop(name, None)
+        else:
+            self.variables[name] = before
+        return _End.RETURN if ended is _End.RETURN else _End.NEXT
 
-    def _listed(self, word: str, of_lists: bool) -> list[str]:
-        found = [] if word == "LISTS" else self.variables.get(word, []) if of_lists else [word]
-        self.budget.spend(len(found))
-        return found
+    def _listed(self, words: Sequence[str]) -> Iterator[str]:
+        """Yield the values of a loop over LISTS and ITEMS."""
+        of_lists = False
+        for word in words:
+            if word in ("LISTS", "ITEMS"):
+                of_lists = word == "LISTS"
+                continue
+            found = self.variables.get(word, []) if of_lists else [word]
+            self.budget.spend(len(found))
+            yield from found
 
-    def _call(self, parameters: Sequence[str], body: _Block, words: list[str]) -> None:
-        own = (*parameters, "ARGV", "ARGN")
-        self.budget.spend(len(own) + len(words))
-        before = {name: self.variables[name] for name in own if name in self.variables}
-        for name, value in zip(parameters, words, strict=False):
-            self.variables[name] = [value]
-        self.variables |= {"ARGV": words, "ARGN": words[len(parameters) :]}
-        self._all(body)
-        for name in own:
-            if name in before:
-                self.variables[name] = before[name]
+    def _call(self, routine: _Routine, words: list[str]) -> _End:
+        given = dict(zip(routine.parameters, ([each] for each in words), strict=False))
+        given |= {f"ARGV{number}": [each] for number, each in enumerate(words[:20])}
+        given |= {"ARGC": [str(len(words))], "ARGV": words, "ARGN": words[len(routine.parameters) :]}
+        self.budget.spend(len(given) + len(words))
+        outer = self.variables
+        if routine.is_function:
+            self.budget.spend(len(outer))
+            self._parents.append(outer)
+            self.variables = {**outer, **given}
+            self._all(routine.body)
+            self.variables = self._parents.pop()
+            return _End.NEXT
+        before = {name: outer.get(name) for name in given}
+        outer |= given
+        ended = self._all(routine.body)
+        for name, values in before.items():
+            if values is None:
+                outer.pop(name, None)
             else:
-                self.variables.pop(name, None)
+                outer[name] = values
+        return ended
+
+    def _parse(self, prefix: str, words: Sequence[str]) -> None:
+        """Execute cmake_parse_arguments."""
+        if prefix == "PARSE_ARGV" or len(words) < 3:
+            return
+        flags, singles, many = (split_list(each) for each in words[:3])
+        found: dict[str, list[str]] = {each: ["FALSE"] for each in flags}
+        found |= {each: [] for each in (*singles, *many, "UNPARSED_ARGUMENTS")}
+        section, most = "UNPARSED_ARGUMENTS", -1
+        for each in words[3:]:
+            if each in flags:
+                found[each], section, most = ["TRUE"], "UNPARSED_ARGUMENTS", -1
+            elif each in singles or each in many:
+                section, most = each, 1 if each in singles else -1
+            elif most == 0:
+                found["UNPARSED_ARGUMENTS"].append(each)
+            else:
+                found[section].append(each)
+                most -= most > 0
+        for name, values in found.items():
+            variable = f"{prefix}_{name}"
+            if values:
+                self.variables[variable] = values
+            else:
+                self.variables.pop(variable, None)
 
     def _globbed(self, patterns: Sequence[str], deep: bool) -> list[str]:
         found: list[str] = []
+        base = ""
         names = iter(patterns)
         for each in names:
             if each == "RELATIVE":
+                base = next(names, "")
+            elif each == "LIST_DIRECTORIES":
                 next(names, None)
             elif each not in ("CONFIGURE_DEPENDS", "FOLLOW_SYMLINKS"):
                 found += self.glob(each, deep)
+        if base:
+            found = [os.path.relpath(self.folder / each, self.folder / base) for each in found]
+            self.budget.spend(sum(map(len, found)))
         return found
 
 
-class _Condition:
-    """A condition of `if`, read from left to right: OR binds least, then AND, then NOT.
-
-    Args:
-        script: the script with the variables.
-        words: of the condition.
-    """
-
-    def __init__(self, script: CMakeScript, words: Sequence[str]) -> None:
-        self._script = script
-        self._words = words
-        self._at = 0
-
-    def value(self) -> bool:
-        """Return True if it holds."""
-        return bool(self._words) and self._either()
-
-    def _either(self) -> bool:
-        found = self._both()
-        while self._take("OR"):
-            found = self._both() or found
-        return found
-
-    def _both(self) -> bool:
-        found = self._single()
-        while self._take("AND"):
-            found = self._single() and found
-        return found
-
-    def _single(self) -> bool:
-        negated = False
-        while self._take("NOT"):
-            negated = not negated
-        return self._plain() != negated
-
-    def _plain(self) -> bool:
-        if self._take("("):
-            with self._script.budget.inside():
-                found = self._either()
-            self._take(")")
-            return found
-        word = self._next()
-        if word in _TESTS and self._ahead() not in ("", "AND", "OR", ")"):
-            return _TESTS[word](self._script, self._script.text(self._next()))
-        if self._ahead() in _COMPARISONS:
-            compare = _COMPARISONS[self._next()]
-            return compare(self._meant(word), self._meant(self._next()))
-        return self._script.is_true(self._script.text(word))
-
-    def _ahead(self) -> str:
-        """Return the next word; empty if there is none."""
-        return self._words[self._at] if self._at < len(self._words) else ""
-
-    def _next(self) -> str:
-        word = self._ahead()
-        self._at += 1
-        return word
-
-    def _take(self, word: str) -> bool:
-        if self._ahead() != word:
-            return False
-        self._at += 1
-        return True
-
-    def _meant(self, word: str) -> str:
-        values = self._script.variables.get(word)
-        if values is None:
-            return self._script.text(word)
-        meant = " ".join(values)
-        self._script.budget.spend(len(meant))
-        return meant
+def _literal(text: str) -> str:
+    """Return a text as a word that stands for itself."""
+    return re.sub(r"[\\$]", r"\\\g<0>", text)
 
 
-_TESTS: Mapping[str, Callable[[CMakeScript, str], bool]] = {
-    "DEFINED": lambda script, word: word in script.variables,
-    "EXISTS": lambda script, word: os.path.exists(script.folder / word),
-    "IS_DIRECTORY": lambda script, word: os.path.isdir(script.folder / word),
-    "TARGET": lambda script, word: False,
-    "COMMAND": lambda script, word: False,
-    "POLICY": lambda script, word: False,
-}
-_COMPARISONS: Mapping[str, Callable[[str, str], bool]] = {
-    "STREQUAL": lambda one, other: one == other,
-    "EQUAL": lambda one, other: one == other,
-    "MATCHES": lambda one, other: other in one,
-    "VERSION_LESS": lambda one, other: _version(one) < _version(other),
-    "VERSION_GREATER": lambda one, other: _version(one) > _version(other),
-    "VERSION_EQUAL": lambda one, other: _version(one) == _version(other),
-    "VERSION_LESS_EQUAL": lambda one, other: _version(one) <= _version(other),
-    "VERSION_GREATER_EQUAL": lambda one, other: _version(one) >= _version(other),
-}
-
-
-def _version(text: str) -> list[tuple[int, str]]:
-    """Return the numbers of a version in a form that compares as numbers, with any number of digits."""
-    numbers = (each.lstrip("0") for each in re.findall(r"[0-9]+", text))
-    return [(len(each), each) for each in numbers]
-
-
-def _until(words: list[str], word: str) -> list[str]:
-    return words[: words.index(word)] if word in words else words
-
-
-def _commands(text: str) -> Iterator[CMakeCommand]:
-    """Yield the commands of a file; an unfinished one is left out."""
-    name, parts, depth, at = "", [""], 0, 0
-    while at < len(text):
-        token = _TOKEN.match(text, at)
-        assert token is not None  # the last alternative takes any character
-        at = token.end()
-        kind = token.lastgroup
-        if kind == "comment":
-            end = text.find(f"]{'=' * (len(token[0]) - 3)}]", at)
-            at = len(text) if end < 0 else end + len(token[0]) - 1
-        elif kind == "open" and (depth or name):
-            depth += 1
-            parts += ["("] if depth > 1 else []
-        elif kind == "close" and depth:
-            depth -= 1
-            if depth:
-                parts.append(")")
-            else:
-                yield CMakeCommand(name.lower(), "".join(parts))
-                name, parts = "", []
-        elif depth:
-            parts += [token[0]] if kind is not None else []
-        elif kind != "space" and kind is not None:
-            name, parts = token[0] if kind == "word" and _NAME.fullmatch(token[0]) else "", []
+def _range(first: int, *more: int) -> tuple[int, int, int]:
+    """Return the first, the last and the step of a range; one number alone is the last."""
+    begin, end = (first, more[0]) if more else (0, first)
+    step = more[1] if len(more) > 1 and more[1] else 1 if begin <= end else -1
+    return begin, end, step
 
 
 def _ends(commands: Sequence[CMakeCommand]) -> dict[int, int]:
@@ -476,63 +411,3 @@ def _ends(commands: Sequence[CMakeCommand]) -> dict[int, int]:
         elif open_at.get(each.name):
             found[open_at[each.name].pop()] = at
     return found
-
-
-# -- files of a pattern: links can form cycles, which the budget ends --------------------------------------------------
-
-
-def _matching_files(folder: Path, pattern: str, look: Callable[[], object]) -> list[str]:
-    """Find the files and folders of a pattern.
-
-    Args:
-        folder: folder in which the search begins.
-        pattern: a path with `*`, `?` and `[...]` in its parts; `**` stands for any number of folders, and follows no
-            symbolic links.
-        look: called for each file or folder that is examined; may raise.
-
-    Returns:
-        Paths relative to the folder, sorted; empty for an absolute pattern.
-    """
-    parts = [each for each in pattern.split("/") if each not in ("", ".")]
-    is_strange = any((_DEEP in each and each != _DEEP) or len(each) > _LONGEST_PART or "\0" in each for each in parts)
-    if not parts or pattern.startswith("/") or is_strange or len(parts) > _MOST_PARTS:
-        return []
-    return sorted(set(_below(folder, "", parts, look)))
-
-
-def _below(folder: Path, inner: str, parts: Sequence[str], look: Callable[[], object]) -> Iterator[str]:
-    """Yield paths in an inner folder that match the parts."""
-    part, *rest = parts
-    if part == _DEEP:
-        for place in _folders(folder, inner, look):
-            yield from _below(folder, place, rest, look) if rest else [place] if place else []
-    elif any(mark in part for mark in "*?["):
-        for entry in _entries(folder, inner, look):
-            if fnmatchcase(entry.name, part) and (not rest or os.path.isdir(entry.path)):
-                found = f"{inner}{entry.name}"
-                yield from _below(folder, f"{found}/", rest, look) if rest else [found]
-    else:
-        look()
-        found = f"{inner}{part}"
-        if os.path.exists(folder / found):
-            yield from _below(folder, f"{found}/", rest, look) if rest else [found]
-
-
-def _folders(folder: Path, inner: str, look: Callable[[], object]) -> Iterator[str]:
-    """Yield an inner folder and all folders in it, each with a slash at its end."""
-    waiting = [inner]
-    while waiting:
-        place = waiting.pop()
-        yield place
-        inside = (each for each in _entries(folder, place, look) if each.is_dir(follow_symlinks=False))
-        waiting += [f"{place}{each.name}/" for each in inside]
-
-
-def _entries(folder: Path, inner: str, look: Callable[[], object]) -> Iterator[os.DirEntry[str]]:
-    try:
-        with os.scandir(folder / inner) as found:
-            for entry in found:
-                look()
-                yield entry
-    except OSError:
-        return

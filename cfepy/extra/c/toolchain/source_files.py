@@ -19,6 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.extra.c.toolchain.cmake_script import FILE, CMakeScript
+from cfepy.extra.c.toolchain.cmake_words import CMakeWord
 from cfepy.extra.c.toolchain.compiler import SOURCE_SUFFIXES
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import CMAKE_BYTES
@@ -242,9 +243,9 @@ class _Reader(CMakeScript):
             case _:
                 super().command(name, words)
 
-    def expanded(self, words: Sequence[str]) -> list[str]:
+    def expanded(self, words: Sequence[CMakeWord]) -> list[str]:
         """Expand words. A folder of another application also makes it a dependency."""
         for word in words:
-            for name in _MISSION_DIR.findall(word):
+            for name in _MISSION_DIR.findall(word.text):
                 self.found.dependencies += [name] if name not in self.found.dependencies else []
         return super().expanded(words)

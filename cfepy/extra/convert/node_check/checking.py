@@ -9,12 +9,12 @@ from pathlib import Path
 
 from cfepy.extra.convert.build import library_includes
 from cfepy.extra.convert.capacities import Capacities, capacities_of
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.message_headers import Profile, write_headers
 from cfepy.extra.convert.node_check.compiler import Compiler, tell
 from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace, SubscriptionMemory
 from cfepy.extra.convert.node_check.headers import write_refusal, write_refusals
 from cfepy.extra.convert.node_check.program import ProgramSources, subscriptions
-from cfepy.extra.convert.packages import Program
 from cfepy.mission import CppNodesConfig
 from cfepy.reading.contained_files import write_contained
 from cfepy.rtos import Stopwatch

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from cfepy.extra.convert.build import BOOST_IN_PART
 from cfepy.extra.convert.configurations import configuration_headers
+from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.entry import LONGEST_QUEUE
 from cfepy.extra.convert.message_headers import Profile
 from cfepy.extra.convert.node_check.findings import CheckReport, GraphName, SourcePlace
@@ -28,7 +29,6 @@ from cfepy.extra.convert.node_check.headers import (
 )
 from cfepy.extra.convert.node_check.source import read_source, type_of
 from cfepy.extra.convert.node_check.source_file import Include, SourceFile
-from cfepy.extra.convert.packages import Program
 from cfepy.reading.input_files import read_limited
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Library

@@ -8,7 +8,8 @@ from pathlib import Path
 
 from cfepy.extra.convert.build import provided_packages
 from cfepy.extra.convert.conversion import task_of
-from cfepy.extra.convert.packages import MANIFEST, SUFFIXES, CppPackage, Program, program_of, read_package
+from cfepy.extra.convert.cpp_package import CppPackage, Program
+from cfepy.extra.convert.packages import MANIFEST, SUFFIXES, program_of, read_package
 from cfepy.status import UsageError
 from rospy_shim.types.msgs import Packages
 
