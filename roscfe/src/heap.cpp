@@ -332,23 +332,6 @@ void operator delete[](void *at, std::align_val_t, const std::nothrow_t &) noexc
     give(at);
 }
 
-// A function of the C++ library throws, where nodes are built without exceptions. It would find no handler, and its own
-// memory for that (70 kB of malloc's) would be the arena's.
-extern "C" {
-
-[[noreturn]] void *__cxa_allocate_exception(std::size_t) noexcept
-{
-    roscfe::refuse("exception", "a function of the C++ library has thrown one");
-}
-[[noreturn]] void *__cxa_allocate_dependent_exception() noexcept
-{
-    roscfe::refuse("exception", "a function of the C++ library has thrown one");
-}
-void __cxa_free_exception(void *) noexcept {}
-void __cxa_free_dependent_exception(void *) noexcept {}
-
-} // extern "C"
-
 // -- functions of C, in whose place the linker puts these (--wrap) --------------------------------------------------
 
 extern "C" {
@@ -451,7 +434,8 @@ void *__wrap_memalign(std::size_t alignment, std::size_t size)
 
 char *__wrap_strndup(const char *text, std::size_t most)
 {
-    const std::size_t size = strnlen(text, most);
+    const void *      end  = std::memchr(text, '\0', most);
+    const std::size_t size = end != nullptr ? static_cast<std::size_t>(static_cast<const char *>(end) - text) : most;
     char *            made = static_cast<char *>(c_block(size + 1));
     if (made != nullptr)
     {

@@ -5,8 +5,12 @@
 #include <cstring>
 #include <vector>
 
+#include "roscfe/parts.h"
+
 #include "internal.h"
+#include "ros/advertise_options.h"
 #include "ros/console.h"
+#include "roscfe/format.h"
 
 namespace roscfe
 {
@@ -81,18 +85,33 @@ std::uint8_t *put_text(std::uint8_t *at, const char *text)
     return at + size;
 }
 
+int print_text(char *to, std::size_t size, const char *form, std::va_list values)
+{
+    return format::print_by_libc != nullptr ? format::print_by_libc(to, size, form, values)
+                                            : format::print(to, size, form, values);
+}
+
+__attribute__((format(printf, 3, 4))) int format_text(char *to, std::size_t size, const char *form, ...)
+{
+    std::va_list values;
+    va_start(values, form);
+    const int length = print_text(to, size, form, values);
+    va_end(values);
+    return length;
+}
+
 // OS_printf takes so many characters at once, and cuts the rest with the end of the line.
 void show(int level, std::int64_t now, const char *text)
 {
     static char line[kLongest + 160];
     char        simulated[40] = "";
-    if (is_sim_time() && ros_now_ns() != 0)
+    if (is_simulated() && ros_now_ns() != 0)
     {
         const std::int64_t time = ros_now_ns();
-        std::snprintf(simulated, sizeof simulated, ", %lld.%09lld", static_cast<long long>(time / kSecond),
+        format_text(simulated, sizeof simulated, ", %lld.%09lld", static_cast<long long>(time / kSecond),
                       static_cast<long long>(time % kSecond));
     }
-    const int length = std::snprintf(line, sizeof line, "[%s] [%s] [%lld.%09lld%s]: %s", g_node.name.c_str(), kNames[level],
+    const int length = format_text(line, sizeof line, "[%s] [%s] [%lld.%09lld%s]: %s", g_node.name.c_str(), kNames[level],
                                      static_cast<long long>(now / kSecond), static_cast<long long>(now % kSecond), simulated,
                                      text);
     constexpr int kPiece = OS_BUFFER_SIZE - 2; // room for the end of the line, and of the text
@@ -108,6 +127,7 @@ void show(int level, std::int64_t now, const char *text)
 // rosgraph_msgs/Log, without a list of topics.
 void publish(int level, std::int64_t now, const char *file, int line, const char *function, const char *text)
 {
+    parts::need(parts::subscribers); // of /rosout
     if (!g_node.started || !g_node.knows_subscribers || pipes_on(kRosoutMsgId) == 0)
     {
         return;
@@ -151,7 +171,7 @@ void print(int level, const char *file, int line, const char *function, const ch
     static char  text[kLongest];
     std::va_list arguments;
     va_start(arguments, format);
-    const int length = std::vsnprintf(text, sizeof text, format, arguments);
+    const int length = print_text(text, sizeof text, format, arguments);
     va_end(arguments);
     if (length >= static_cast<int>(sizeof text))
     {
@@ -183,6 +203,15 @@ bool is_due(double period, std::int64_t &last_ns, bool first)
 }
 
 } // namespace logging
+
+void log_other_type(const Publication &there, const ros::AdvertiseOptions &options)
+{
+    ROS_ERROR("Tried to advertise on topic [%s] with md5sum [%s] and datatype [%s], but the topic is already advertised as "
+              "md5sum [%s] and datatype [%s]",
+              there.topic_.c_str(), options.md5sum.c_str(), options.datatype.c_str(), there.md5_.c_str(),
+              there.type_.c_str());
+}
+
 } // namespace roscfe
 
 namespace ros

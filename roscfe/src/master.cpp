@@ -1,10 +1,9 @@
-// The master: cfepy's ROS application where it runs. MsgIds of names come from it, else from the tables that the
-// convertor has made.
+// The master: cfepy's ROS application where it runs. MsgIds of names come from it.
 #include <cstring>
 
 #include "internal.h"
 #include "ros/this_node.h"
-#include "roscfe/refuse.h"
+#include "roscfe/parts.h"
 
 namespace roscfe
 {
@@ -83,45 +82,11 @@ bool call_master(std::uint8_t what, const std::string &name, const char *one, co
     return good;
 }
 
-Registration enroll(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition)
+bool enroll_with_master(Kind kind, const std::string &name, const char *type, const char *md5, const char *definition,
+                        Registration &place)
 {
-    Registration place;
-    if (type == nullptr)
-    {
-        place.msg_id = kMasterMsgId; // the master itself, which needs nobody to find it
-        return place;
-    }
-    if (g_node.has_master && (ask(kind, Kind::begun, name, type, md5, definition, place) || place.refused))
-    {
-        return place;
-    }
-    if (kind == Kind::server || kind == Kind::client)
-    {
-        for (int i = 0; i < g_node.description->service_count; ++i)
-        {
-            if (name == g_node.description->services[i].name)
-            {
-                place.msg_id = g_node.description->services[i].answer_msg_id;
-                return place;
-            }
-        }
-        refuse("no MsgId for the service; write it in the mission file's services", name.c_str());
-    }
-    for (int i = 0; i < g_node.description->topic_count; ++i)
-    {
-        if (name == g_node.description->topics[i].name)
-        {
-            place.msg_id = g_node.description->topics[i].msg_id;
-            place.raw    = g_node.description->topics[i].raw;
-            return place;
-        }
-    }
-    if (name == "/rosout")
-    {
-        place.msg_id = kRosoutMsgId;
-        return place;
-    }
-    refuse("no MsgId for the topic; write it in the mission file's topics", name.c_str());
+    parts::need(parts::parameter_server); // whoever has a master has parameters there
+    return g_node.has_master && (ask(kind, Kind::begun, name, type, md5, definition, place) || place.refused);
 }
 
 void withdraw_name(Kind kind, const std::string &name)
@@ -130,6 +95,33 @@ void withdraw_name(Kind kind, const std::string &name)
     if (g_node.has_master)
     {
         ask(kind, Kind::gone, name, "", "", "", place);
+    }
+}
+
+// cfepy looks after its nodes as roslaunch does: one that ends by itself may be required, or is started again.
+void tell_end(int status)
+{
+    static bool               is_told = false; // what ends the node on the way does not tell it again
+    std::vector<std::uint8_t> answer;
+    if (is_told || !g_node.has_master || g_node.asked_to_end)
+    {
+        return;
+    }
+    is_told         = true;
+    const bool told = call_master(kEnded, g_node.description->app, std::to_string(status).c_str(), "", "", answer);
+    if (!told || answer.size() < 5 || answer[0] == 0)
+    {
+        return;
+    }
+    CFE_ES_AppId_t app;
+    const auto     delay_ms = static_cast<std::uint32_t>(answer[1]) | static_cast<std::uint32_t>(answer[2]) << 8 |
+                          static_cast<std::uint32_t>(answer[3]) << 16 | static_cast<std::uint32_t>(answer[4]) << 24;
+    OS_TaskDelay(delay_ms);
+    std::uint32_t run = CFE_ES_RunStatus_APP_RUN;
+    CFE_ES_RunLoop(&run); // ES restarts what it has seen running
+    if (CFE_ES_GetAppID(&app) == CFE_SUCCESS)
+    {
+        CFE_ES_RestartApp(app); // takes place when the task has ended
     }
 }
 

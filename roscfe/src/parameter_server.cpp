@@ -4,9 +4,16 @@
 
 #include "internal.h"
 #include "json.h"
+#include "roscfe/parts.h"
 
 namespace roscfe
 {
+
+namespace parts
+{
+extern const char parameter_server = 0;
+}
+
 namespace server
 {
 

@@ -8,14 +8,26 @@
 #include "json.h"
 #include "ros/param.h"
 #include "ros/this_node.h"
+#include "roscfe/parts.h"
 
 namespace roscfe
 {
+
+namespace parts
+{
+extern const char parameters = 0;
+}
 
 using XmlRpc::XmlRpcValue;
 
 namespace
 {
+
+std::size_t length_in(const char *text, std::size_t room)
+{
+    const void *end = std::memchr(text, '\0', room);
+    return end != nullptr ? static_cast<std::size_t>(static_cast<const char *>(end) - text) : room;
+}
 
 enum class Relation
 {
@@ -78,7 +90,7 @@ class Rows
         for (int i = first; i < end; ++i)
         {
             const char *      part = rows_[i].name;
-            const std::size_t size = strnlen(part, sizeof rows_[i].name);
+            const std::size_t size = length_in(part, sizeof rows_[i].name);
             for (std::size_t of_part = i == first ? 0 : 1; of_part < size; ++of_part, ++at)
             {
                 if (at == name.size()) // of "/" resolving leaves nothing
@@ -113,7 +125,7 @@ class Rows
     }
 
   private:
-    static std::string field(const char *at, std::size_t size) { return std::string(at, strnlen(at, size)); }
+    static std::string field(const char *at, std::size_t size) { return std::string(at, length_in(at, size)); }
 
     ParamRow *rows_ = nullptr;
 };

@@ -6,6 +6,8 @@
 #include "ros/init.h"
 #include "ros/node_handle.h"
 #include "ros/service.h"
+#include "roscfe/parts.h"
+#include "roscfe/refuse.h"
 
 namespace roscfe
 {
@@ -196,9 +198,33 @@ bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t 
     return false;
 }
 
+Registration enroll_service(Kind kind, const std::string &name, const char *type, const char *md5)
+{
+    parts::need(parts::subscribers); // a caller asks whether there is a server
+    Registration place;
+    if (type == nullptr)
+    {
+        place.msg_id = kMasterMsgId; // the master itself, which needs nobody to find it
+        return place;
+    }
+    if (enroll_with_master != nullptr && enroll_with_master(kind, name, type, md5, "", place))
+    {
+        return place;
+    }
+    for (int i = 0; i < g_node.description->service_count; ++i)
+    {
+        if (name == g_node.description->services[i].name)
+        {
+            place.msg_id = g_node.description->services[i].answer_msg_id;
+            return place;
+        }
+    }
+    refuse("no MsgId for the service; write it in the mission file's services", name.c_str());
+}
+
 void offer(const boost::shared_ptr<Service> &service, const char *type, const char *md5)
 {
-    service->answer_id_ = enroll(Kind::server, service->name_, type, md5, "").msg_id;
+    service->answer_id_ = enroll_service(Kind::server, service->name_, type, md5).msg_id;
     service->callbacks_->expect(16);
     g_node.services.push_back(service);
     if (!listen(service->answer_id_ | kCommandBit))
@@ -216,8 +242,13 @@ void withdraw(const boost::shared_ptr<Service> &service)
     if (!g_node.ended)
     {
         service->callbacks_->removeByID(reinterpret_cast<std::uintptr_t>(service.get()));
-        listen_no_more(service->answer_id_ | kCommandBit);
-        withdraw_name(Kind::server, service->name_);
+        const auto request_id = static_cast<std::uint16_t>(service->answer_id_ | kCommandBit);
+        CFE_SB_Unsubscribe(CFE_SB_ValueToMsgId(request_id), g_node.pipe);
+        listen_no_more(request_id);
+        if (withdraw_name != nullptr)
+        {
+            withdraw_name(Kind::server, service->name_);
+        }
     }
 }
 
@@ -232,7 +263,7 @@ Client::Client(const std::string &name, const char *type, const char *md5, std::
                std::size_t most_of_response, bool persistent)
     : name_(name), most_(most_of_response), is_master_(type == nullptr)
 {
-    const Registration place = enroll(Kind::client, name, type, md5, "");
+    const Registration place = enroll_service(Kind::client, name, type, md5);
     answer_id_               = place.msg_id;
     long_request_.reserve(most_of_request);
     answer_.reserve(most_ > 0 ? most_ + 1 : 0);
@@ -362,7 +393,7 @@ bool Client::call()
 bool take_answer(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size)
 {
     const std::size_t lead = kTelemetryHeader + kAnswerLead;
-    if (msg_id == kMasterMsgId && size >= lead && number_at(packet + kTelemetryHeader) == 0)
+    if (server::forget_cached != nullptr && msg_id == kMasterMsgId && size >= lead && number_at(packet + kTelemetryHeader) == 0)
     {
         server::forget_cached(std::string_view(reinterpret_cast<const char *>(packet) + lead, size - lead)); // a notice
         return true;

@@ -3,9 +3,15 @@
 #include <cstddef>
 
 #include "internal.h"
+#include "roscfe/parts.h"
 
 namespace roscfe
 {
+
+namespace parts
+{
+extern const char subscribers = 0;
+}
 
 namespace
 {
@@ -115,7 +121,10 @@ void know(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
     if (has_room_for(msg_id))
     {
         g_known.push_back({msg_id, false, pipe, queue});
-        publication_has_subscriber(msg_id, pipe);
+        if (publication_has_subscriber != nullptr)
+        {
+            publication_has_subscriber(msg_id, pipe);
+        }
     }
 }
 
@@ -126,8 +135,14 @@ void forget(std::uint16_t msg_id, CFE_SB_PipeId_t pipe)
                                      return known.msg_id == msg_id && same_pipe(known.pipe, pipe);
                                  }),
                   g_known.end());
-    publication_lost_subscriber(msg_id, pipe);
-    clients_lost_server(msg_id, pipe);
+    if (publication_lost_subscriber != nullptr)
+    {
+        publication_lost_subscriber(msg_id, pipe);
+    }
+    if (clients_lost_server != nullptr)
+    {
+        clients_lost_server(msg_id, pipe);
+    }
 }
 
 void forget_all_without_pipe(std::uint16_t msg_id)
@@ -170,7 +185,7 @@ bool read_one(const CFE_SB_Buffer_t *buffer, std::size_t size)
     {
         know(id, report.Pipe);
     }
-    else if (!same_pipe(report.Pipe, g_node.pipe))
+    else if (!same_pipe(report.Pipe, g_node.pipe) && publication_has_another != nullptr)
     {
         publication_has_another(id, report.Pipe, report.Qos.Priority);
     }
@@ -313,7 +328,7 @@ void open_subscribers()
         }
     }
     g_node.knows_subscribers = !g_known.empty();
-    g_node.has_master        = pipes_on(kMasterMsgId | kCommandBit) > 0;
+    g_node.has_master        = enroll_with_master != nullptr && pipes_on(kMasterMsgId | kCommandBit) > 0;
 }
 
 bool take_report(std::uint16_t msg_id, const CFE_SB_Buffer_t *buffer, std::size_t size)
@@ -343,7 +358,6 @@ void send_from_now_on(std::uint16_t msg_id)
 
 void listen_no_more(std::uint16_t msg_id)
 {
-    CFE_SB_Unsubscribe(CFE_SB_ValueToMsgId(msg_id), g_node.pipe);
     if (!g_node.knows_subscribers)
     {
         return;

@@ -29,7 +29,7 @@ def run(profile: Profile, tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Return a function that runs a case and returns its output lines."""
     made = tmp_path_factory.mktemp("heap") / "heap"
     base = [*STRICT_FLAGS, *NO_WARNINGS, *profile_flags(profile), "-O1"]
-    objects = compile_objects(made, [ROSCFE / "src/heap.cpp"], base=base)
+    objects = compile_objects(made, [ROSCFE / "src/heap.cpp", ROSCFE / "src/throwing.cpp"], base=base)
     objects += compile_objects(made.with_name("case"), [PROGRAM], base=base)
     link_program(made, objects, *WITH_ARENA, *OWN_CPP_LIBRARY)
 

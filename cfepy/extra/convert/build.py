@@ -61,9 +61,13 @@ BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that refuse headers of the real Boost that were found by chance."""
 BOOST_IN_PART = ("boost/thread.hpp", "boost/thread/thread.hpp", "boost/foreach.hpp", "boost/circular_buffer.hpp")
 """Headers that the small Boost has only for one task. A node for the host gets the computer's."""
+WHOLE, NOT_WHOLE = ("-Wl,--whole-archive",), ("-Wl,--no-whole-archive",)
+"""On cfepy a node has all parts of the library, since a part may be called by the library alone."""
 WITH_ARENA = ("-Wl,--wrap=" + ",--wrap=".join(ALLOCATING),)
 OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
+BASIC_FOLDERS = ("src", "core", "posix")
+"""Folders of the interface library whose sources do not depend on the headers that a node uses."""
 HEAP_SOURCE = "heap.cpp"
 """The source of the interface library that contains the arena."""
 MOST_AT_ONCE = 2
@@ -111,14 +115,14 @@ def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path
     """
     folder, included = library_folder(), list(used)
     every = sorted((folder / "src").rglob("*.cpp"))
-    parts = {each.relative_to(folder / "src").parts[0] for each in every if each.parent.name != "src"}
-    needed = [each for each in every if each.parent.name == "src"]
+    parts = {each.parent.name for each in every} - set(BASIC_FOLDERS)
+    needed = [each for each in every if each.parent.name in BASIC_FOLDERS]
     while True:
         reached = [*included, *collect(needed, library_includes(real_boost)).contents]
         inside = (each.relative_to(folder / "include") for each in reached if each.is_relative_to(folder / "include"))
         names = tuple({each.parts[0] for each in inside})
         wanted = {part for part in parts if any(name.startswith(part) for name in names)}
-        found = [each for each in every if each.parent.name == "src" or each.parent.name in wanted]
+        found = [each for each in every if each.parent.name in (*BASIC_FOLDERS, *wanted)]
         if found == needed:
             return needed
         needed = found
@@ -235,7 +239,7 @@ class NodeBuild:
         if not made.is_file():
             archive = built_core(self._options, self._real_boost, self._types, self.sources.contents)
             told = compile_units(units, entry.name)
-            _link([*(each.object for each in units), archive], made, link_flags(self._options.profile))
+            _link([*(str(each.object) for each in units), *WHOLE, str(archive), *NOT_WHOLE], made, link_flags(self._options.profile))
             with writing_cache(warnings.parent):
                 warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
         told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
@@ -473,10 +477,10 @@ def _call(command: Sequence[str]) -> str:
     return said.rstrip()
 
 
-def _link(parts: Sequence[Path], made: Path, flags: Iterable[str]) -> None:
+def _link(parts: Sequence[str], made: Path, flags: Iterable[str]) -> None:
     with _scratch() as scratch:
         linked = scratch / made.name
-        _call([*cpp_compiler(), *flags, "-o", str(linked), *map(str, parts)])
+        _call([*cpp_compiler(), *flags, "-o", str(linked), *parts])
         shared = unique_symbols(linked)
         if shared:
             text = f"has {', '.join(shared[:4])}, which all nodes would share [unique-symbol]"

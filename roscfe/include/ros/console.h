@@ -3,12 +3,21 @@
 #define ROSCONSOLE_ROSCONSOLE_H
 
 #include <cstdio>
-#include <iostream>
 #include <map>
 #include <sstream>
 #include <string>
 
 #include "ros/time.h"
+#if defined(ROSCFE_PROFILE_POOL) || defined(ROSCFE_PROFILE_STRICT)
+#include "roscfe/log_stream.h"
+#include "roscfe/standard_streams.h"
+#define ROSCFE_STREAM_ ::roscfe::LogStream
+#define ROSCFE_TEXT_OF_(stream) (stream).text()
+#else
+#include <iostream>
+#define ROSCFE_STREAM_ std::ostringstream
+#define ROSCFE_TEXT_OF_(stream) (stream).str().c_str()
+#endif
 
 #ifndef ROSCONSOLE_DEFAULT_NAME
 #ifdef ROS_PACKAGE_NAME
@@ -94,9 +103,9 @@ bool is_due(double period, std::int64_t &last_ns, bool first);
     {                                                                                                                  \
         if ((level) >= ROSCONSOLE_MIN_SEVERITY && ::roscfe::logging::is_enabled(level) && (condition))                 \
         {                                                                                                              \
-            std::ostringstream roscfe_stream_;                                                                         \
+            ROSCFE_STREAM_ roscfe_stream_;                                                                             \
             roscfe_stream_ << args;                                                                                    \
-            ::roscfe::logging::print(level, __FILE__, __LINE__, __FUNCTION__, "%s", roscfe_stream_.str().c_str());     \
+            ::roscfe::logging::print(level, __FILE__, __LINE__, __FUNCTION__, "%s", ROSCFE_TEXT_OF_(roscfe_stream_));  \
         }                                                                                                              \
     } while (0)
 

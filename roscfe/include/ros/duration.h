@@ -10,6 +10,7 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "roscfe/parts.h"
 #include "roscfe/refuse.h"
 
 namespace roscfe
@@ -42,10 +43,10 @@ class Moment
 
 // Print a sign, seconds, a point and nine digits. As in ROS the stream's width is for what comes first, and is there
 // again afterwards.
-template <class Seconds>
-std::ostream &print_seconds(std::ostream &os, const char *sign, Seconds sec, uint32_t nsec)
+template <class Stream, class Seconds>
+Stream &print_seconds(Stream &os, const char *sign, Seconds sec, uint32_t nsec)
 {
-    const std::streamsize width = os.width();
+    const auto width = os.width();
     if (sign)
         os << sign;
     os << sec << '.';
@@ -160,7 +161,12 @@ class Duration : public DurationBase<Duration>
     explicit Duration(double seconds) : DurationBase<Duration>(seconds) {}
     explicit Duration(const Rate &rate);
 
-    bool sleep() const;
+    bool sleep() const
+    {
+        roscfe::parts::need(roscfe::parts::exact_waits); // of short ones
+        return sleep_now();
+    }
+    bool sleep_now() const;
 };
 
 // A span of the host's time, which on cFE is the mission's too.
@@ -173,18 +179,29 @@ class WallDuration : public DurationBase<WallDuration>
     explicit WallDuration(const Rate &rate);
     explicit WallDuration(const WallRate &rate);
 
-    bool sleep() const;
+    bool sleep() const
+    {
+        roscfe::parts::need(roscfe::parts::exact_waits); // of short ones
+        return sleep_now();
+    }
+    bool sleep_now() const;
 };
 
 // A negative span is printed as a person writes it: -0.5, which is kept as -1 second and 500,000,000 nanoseconds.
-template <class T>
-std::ostream &operator<<(std::ostream &os, const DurationBase<T> &duration)
+template <class Stream, class T>
+Stream &print_on(Stream &os, const DurationBase<T> &duration)
 {
     using roscfe::detail::print_seconds;
     if (duration.sec >= 0 || duration.nsec == 0)
         return print_seconds(os, nullptr, duration.sec, static_cast<uint32_t>(duration.nsec));
     const char *sign = duration.sec == -1 ? "-" : "";
     return print_seconds(os, sign, duration.sec + 1, static_cast<uint32_t>(1000000000 - duration.nsec));
+}
+
+template <class T>
+std::ostream &operator<<(std::ostream &os, const DurationBase<T> &duration)
+{
+    return print_on(os, duration);
 }
 
 inline constexpr Duration DURATION_MAX(std::numeric_limits<int32_t>::max(), 999999999);

@@ -20,6 +20,7 @@
 #include "ros/subscribe_options.h"
 #include "ros/subscriber.h"
 #include "ros/timer.h"
+#include "roscfe/parts.h"
 
 namespace ros
 {
@@ -50,7 +51,12 @@ class NodeHandle
         AdvertiseOptions options;
         options.init<M>(topic, queue_size);
         options.latch = latch;
-        return advertise(options);
+        roscfe::parts::need_room<roscfe::wire::most_bytes<M>()>();
+        if (latch)
+        {
+            roscfe::parts::need(roscfe::parts::latching);
+        }
+        return advertise_as(options);
     }
     template <class M>
     Publisher advertise(const std::string &topic, std::uint32_t queue_size, const SubscriberStatusCallback &connect_cb,
@@ -63,7 +69,11 @@ class NodeHandle
         options.latch          = latch;
         return advertise(options);
     }
-    Publisher advertise(AdvertiseOptions &options);
+    Publisher advertise(AdvertiseOptions &options)
+    {
+        roscfe::parts::need(roscfe::parts::latching);
+        return advertise_as(options);
+    }
 
     // A method of an object, of one behind a shared pointer, or a function; first with any parameter, then with a
     // pointer to the message named, for calls such as subscribe<std_msgs::String>(...).
@@ -326,6 +336,8 @@ class NodeHandle
     bool getParamNames(std::vector<std::string> &keys) const { return param::getParamNames(keys); }
 
   private:
+    Publisher advertise_as(AdvertiseOptions &options);
+
     template <class P, class F>
     Subscriber hear(const std::string &topic, std::uint32_t queue_size, F function, const TransportHints &hints,
                     const VoidConstPtr &tracked_object = VoidConstPtr())

@@ -31,13 +31,13 @@ class Publisher
         roscfe::Advertised & advertised  = *handle_->advertised;
         roscfe::Publication &publication = *advertised.publication_;
         const bool           is_wanted   = publication.is_wanted(advertised.latch_);
-        if (!is_wanted && !publication.is_watched())
+        if (!is_wanted && (roscfe::is_watched == nullptr || !roscfe::is_watched(publication)))
         {
             ++publication.seq_;
             return;
         }
         const std::size_t size = roscfe::wire::length(message);
-        std::uint8_t *    at = is_wanted ? publication.begin(size, advertised.latch_) : publication.begin_unsent(size);
+        std::uint8_t *    at = is_wanted ? publication.begin(size, advertised.latch_) : roscfe::begin_unsent(size);
         if (at == nullptr)
         {
             return;
@@ -49,7 +49,8 @@ class Publisher
         }
         else
         {
-            publication.show_unsent(at, size);
+            publication.write_number(at, size);
+            roscfe::show_unsent(publication, at, size);
             ++publication.seq_;
         }
     }

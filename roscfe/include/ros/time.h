@@ -125,10 +125,16 @@ class TimeBase : public roscfe::detail::Moment<T>
     }
 };
 
+template <class Stream, class T, class D>
+Stream &print_on(Stream &os, const TimeBase<T, D> &time)
+{
+    return roscfe::detail::print_seconds(os, nullptr, time.sec, time.nsec);
+}
+
 template <class T, class D>
 std::ostream &operator<<(std::ostream &os, const TimeBase<T, D> &time)
 {
-    return roscfe::detail::print_seconds(os, nullptr, time.sec, time.nsec);
+    return print_on(os, time);
 }
 
 // The mission's time.

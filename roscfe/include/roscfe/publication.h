@@ -20,42 +20,35 @@ struct AdvertiseOptions;
 namespace roscfe
 {
 
+class Subscription;
 class Publication;
 
-// What one call of advertise has asked for, which the copies of its publisher share: a message to be kept for subscribers
-// that come later, and callbacks that are told of subscribers.
-class Advertised : public ros::CallbackInterface, public boost::enable_shared_from_this<Advertised>
+// What one call of advertise has asked for, which the copies of its publisher share. What more than plain messages is asked
+// for (a message to be kept for subscribers that come later, callbacks that are told of subscribers) is in latching.cpp.
+class Advertised
 {
   public:
-    Advertised(const boost::shared_ptr<Publication> &publication, const ros::AdvertiseOptions &options,
-               ros::CallbackQueueInterface *callbacks);
+    explicit Advertised(const boost::shared_ptr<Publication> &publication, bool latch = false)
+        : publication_(publication), latch_(latch)
+    {
+    }
+    Advertised(const Advertised &) = delete;
+    Advertised &operator=(const Advertised &) = delete;
+    virtual ~Advertised() = default;
 
+    // The topic has the publisher from now on.
+    virtual void begin() {}
     // A subscriber has come, or has gone: the callback for that is due.
-    void tell(std::uint32_t pipe, bool came);
+    virtual void tell(std::uint32_t, bool) {}
     // The topic is given up: no callback is called any more.
-    void end();
-    void keep(const std::uint8_t *bytes, std::size_t size);
-
-    CallResult call() override;
+    virtual void end() {}
+    virtual void keep(const std::uint8_t *, std::size_t) {}
+    // Send what is kept to a pipe, or give it to the node's own subscription.
+    virtual void repeat(std::uint32_t, std::uint8_t) {}
+    virtual void give_kept(const boost::shared_ptr<Subscription> &) {}
 
     const boost::shared_ptr<Publication> publication_;
     const bool                           latch_;
-    bool                                 has_latched_ = false;
-    std::vector<std::uint8_t>            latched_; // the last message
-
-  private:
-    struct Peer
-    {
-        std::uint32_t pipe;
-        bool          came;
-    };
-
-    ros::SubscriberStatusCallback connect_, disconnect_;
-    ros::CallbackQueueInterface * callbacks_;
-    ros::VoidConstWPtr            tracked_;
-    bool                          has_tracked_;
-    bool                          is_over_ = false;
-    std::vector<Peer>             waiting_;
 };
 
 class Publication
@@ -66,27 +59,14 @@ class Publication
     {
     }
 
-    // Set memory aside for what is not written onto the bus itself: messages of so many bytes at most.
-    void set_aside(bool latch, std::size_t most_bytes);
-
     // Whether a message would reach anybody, now or later.
     bool is_wanted(bool latch) const;
-
-    // Whether a message is looked at though it reaches nobody, such as by a bag; on cfepy alone.
-    bool is_watched() const;
 
     // Memory for a message of so many bytes, on the Software Bus where it fits in a packet; null when it is refused.
     std::uint8_t *begin(std::size_t size, bool latch);
 
     // Send what was written there; a publisher that latches keeps it.
     void send(Advertised &by);
-
-    // Memory for a message that is not sent, and show what was written there to those who look on.
-    std::uint8_t *begin_unsent(std::size_t size) const;
-    void          show_unsent(std::uint8_t *at, std::size_t size) const;
-
-    // How many pipes get the topic's messages.
-    std::uint32_t subscribers() const;
 
     const std::string topic_;
     const std::string type_;
@@ -97,12 +77,18 @@ class Publication
     std::uint32_t     seq_    = 0;
     std::vector<boost::shared_ptr<Advertised>> advertised_; // of publishers that are not shut down
 
-  private:
     void write_number(std::uint8_t *at, std::size_t size) const;
 
+  private:
     std::size_t size_   = 0;       // of the message under way
     void *      buffer_ = nullptr; // of the Software Bus, or null when the message is long
 };
+
+// Whether messages are looked at though they reach nobody, such as by a bag; on cfepy alone. Then there is memory for a
+// message that is not sent, which is shown to those who look on (watched.cpp).
+__attribute__((weak, visibility("hidden"))) bool          is_watched(const Publication &publication);
+__attribute__((weak, visibility("hidden"))) std::uint8_t *begin_unsent(std::size_t size);
+__attribute__((weak, visibility("hidden"))) void          show_unsent(const Publication &publication, std::uint8_t *at, std::size_t size);
 
 // The publication of a topic, made when it is the first of the node.
 boost::shared_ptr<Publication> advertise(const std::string &topic, const char *type, const char *md5,

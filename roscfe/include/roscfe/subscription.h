@@ -9,6 +9,7 @@
 #include "ros/callback_queue_interface.h"
 #include "ros/message_event.h"
 #include "ros/serialization.h"
+#include "roscfe/parts.h"
 #include "roscfe/slots.h"
 #include "roscfe/wire.h"
 
@@ -67,6 +68,7 @@ class TypedSubscription final : public Subscription
           tracked_(tracked),
           has_tracked_(tracked != nullptr)
     {
+        parts::need_room<wire::most_bytes<M>()>();
     }
 
     bool receive(const std::uint8_t *bytes, std::size_t size) override

@@ -1,100 +1,12 @@
-// Names and their resolution (http://wiki.ros.org/Names), and ros::this_node.
-#include "internal.h"
+// Names and their resolution (http://wiki.ros.org/Names).
+#include "core.h"
 #include "ros/exceptions.h"
 #include "ros/names.h"
 #include "ros/node_handle.h"
-#include "ros/param.h"
-#include "ros/this_node.h"
 #include "roscfe/refuse.h"
-
-namespace roscfe
-{
-
-namespace
-{
-
-std::string g_key_of_handle, g_key;
-
-bool is_letter(char c)
-{
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-}
-
-// A name in a namespace, without a slash twice or at the end; false for one that is not as most names are.
-bool join(const std::string &ns, std::string_view name, std::string &full)
-{
-    if (name.empty() || name == "/" || !(is_letter(name[0]) || name[0] == '/'))
-    {
-        return false;
-    }
-    full = "/";
-    for (const std::string_view part : {std::string_view(name[0] == '/' ? "" : ns), std::string_view("/"), name})
-    {
-        for (const char c : part)
-        {
-            if (!is_letter(c) && !(c >= '0' && c <= '9') && c != '/' && c != '_')
-            {
-                return false;
-            }
-            if (c != '/' || full.back() != '/')
-            {
-                full += c;
-            }
-        }
-    }
-    if (full.back() == '/')
-    {
-        full.pop_back();
-    }
-    return !full.empty();
-}
-
-const std::string &remapped_key(const std::string &full)
-{
-    const auto found = g_node.remappings.find(full);
-    return found != g_node.remappings.end() ? found->second : full;
-}
-
-} // namespace
-
-const std::string &full_key(Name key)
-{
-    const std::string_view text       = key.view();
-    const bool             is_private = text.size() > 1 && text[0] == '~';
-    const bool is_plain = is_private ? join(g_node.name, text.substr(text[1] == '/' ? 2 : 1), g_key) : join(g_node.ns, text, g_key);
-    if (!is_plain)
-    {
-        g_key = ros::names::resolve(key.str());
-        return g_key;
-    }
-    return remapped_key(g_key);
-}
-
-void reserve_keys()
-{
-    g_key_of_handle.reserve(kLongestKey);
-    g_key.reserve(kLongestKey);
-}
-
-} // namespace roscfe
 
 namespace ros
 {
-
-namespace this_node
-{
-
-const std::string &getName()
-{
-    return roscfe::g_node.name;
-}
-
-const std::string &getNamespace()
-{
-    return roscfe::g_node.ns;
-}
-
-} // namespace this_node
 
 namespace names
 {
@@ -102,7 +14,10 @@ namespace names
 namespace
 {
 
-using roscfe::is_letter;
+bool is_letter(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
 
 [[noreturn]] void invalid(const std::string &what)
 {
@@ -161,13 +76,13 @@ std::string append(const std::string &left, const std::string &right)
 
 std::string remap(const std::string &name)
 {
-    const auto found = getRemappings().find(resolve(name, false));
-    return found != getRemappings().end() ? found->second : name;
+    const auto found = roscfe::g_node.remappings.find(resolve(name, false));
+    return found != roscfe::g_node.remappings.end() ? found->second : name;
 }
 
 std::string resolve(const std::string &name, bool remap)
 {
-    return resolve(this_node::getNamespace(), name, remap);
+    return resolve(roscfe::g_node.ns, name, remap);
 }
 
 std::string resolve(const std::string &ns, const std::string &name, bool remap)
@@ -184,7 +99,7 @@ std::string resolve(const std::string &ns, const std::string &name, bool remap)
     std::string full = name;
     if (full[0] == '~')
     {
-        full = append(this_node::getName(), full.substr(1));
+        full = append(roscfe::g_node.name, full.substr(1));
     }
     if (full[0] != '/')
     {
@@ -193,40 +108,13 @@ std::string resolve(const std::string &ns, const std::string &name, bool remap)
     full = clean(full);
     if (remap)
     {
-        const auto found = getRemappings().find(full);
-        if (found != getRemappings().end())
+        const auto found = roscfe::g_node.remappings.find(full);
+        if (found != roscfe::g_node.remappings.end())
         {
             full = found->second;
         }
     }
     return full;
-}
-
-std::string parentNamespace(const std::string &name)
-{
-    std::string error;
-    if (!validate(name, error))
-    {
-        invalid(error);
-    }
-    if (name.empty() || name == "/")
-    {
-        return name;
-    }
-    // roscpp takes a last slash away together with the character before it.
-    const std::string kept  = name.back() == '/' ? name.substr(0, name.size() - 2) : name;
-    const std::size_t slash = kept.rfind('/');
-    return slash == std::string::npos ? "" : slash == 0 ? "/" : kept.substr(0, slash);
-}
-
-const M_string &getRemappings()
-{
-    return roscfe::g_node.remappings;
-}
-
-const M_string &getUnresolvedRemappings()
-{
-    return roscfe::g_node.remappings;
 }
 
 } // namespace names
@@ -242,7 +130,7 @@ NodeHandle::NodeHandle(const std::string &ns, const M_string &remappings)
         given = names::resolve(given);
     }
     unresolved_namespace_ = given;
-    namespace_            = this_node::getNamespace();
+    namespace_            = roscfe::g_node.ns;
     namespace_            = resolveName(given, true);
     for (const auto &each : remappings)
     {
@@ -276,18 +164,6 @@ std::string NodeHandle::resolveName(const std::string &name, bool remap) const
         names::invalid(error);
     }
     return resolved(name, remap);
-}
-
-const std::string &NodeHandle::full_key(roscfe::Name key) const
-{
-    std::string &full = roscfe::g_key_of_handle;
-    if (key.view().substr(0, 1) == "~" || !roscfe::join(namespace_, key, full))
-    {
-        full = resolveName(key.str());
-        return full;
-    }
-    const auto found = remappings_.find(full);
-    return found != remappings_.end() ? found->second : roscfe::remapped_key(full);
 }
 
 std::string NodeHandle::resolved(const std::string &name, bool remap) const

@@ -1,40 +1,32 @@
-// Time and timers: the clock below OS_GetLocalTime, and waiting, which takes the node's messages over meanwhile.
+// Timers.
 #include <algorithm>
-#include <chrono>
 
 #include "internal.h"
 #include "ros/time.h"
+#include "roscfe/parts.h"
 
 namespace roscfe
 {
-
-std::int64_t now_ns()
-{
-    OS_time_t now;
-    OS_GetLocalTime(&now);
-    return OS_TimeGetTotalNanoseconds(now);
-}
 
 namespace
 {
 constexpr std::int64_t kNever = INT64_MAX; // when a timer that fires once is expected again
 
 // Whether a timer waits for /clock, and not for the processor's clock.
-bool is_simulated(const TimerState &timer)
+bool of_clock(const TimerState &timer)
 {
-    return timer.of_ros_time && is_sim_time();
+    return timer.of_ros_time && is_simulated();
 }
 
 std::int64_t now_of(const TimerState &timer)
 {
-    return is_simulated(timer) ? ros_now_ns() : now_ns();
+    return of_clock(timer) ? ros_now_ns() : now_ns();
 }
 } // namespace
 
-// -- timers ------------------------------------------------------------------------------------------------------------
-
 void add_timer(const boost::shared_ptr<TimerState> &timer)
 {
+    parts::need(parts::exact_waits); // of fast ones
     auto &all = g_node.timers;
     all.erase(std::remove_if(all.begin(), all.end(),
                              [](const boost::weak_ptr<TimerState> &each) {
@@ -139,7 +131,7 @@ ros::CallbackInterface::CallResult TimerState::call_now()
 
 void queue_due_timers(std::int64_t now)
 {
-    const std::int64_t simulated = is_sim_time() ? ros_now_ns() : now;
+    const std::int64_t simulated = is_simulated() ? ros_now_ns() : now;
     // In the order in which they are due, as roscpp's list of waiting timers is sorted.
     for (;;)
     {
@@ -186,112 +178,13 @@ NextTimer next_timer()
     {
         const boost::shared_ptr<TimerState> timer = each.lock();
         if (timer && timer->alive && timer->running && !timer->waiting && timer->next_expected_ns != kNever &&
-            !is_simulated(*timer) && (next.ns == kForever || timer->next_expected_ns < next.ns))
+            !of_clock(*timer) && (next.ns == kForever || timer->next_expected_ns < next.ns))
         {
             next.ns   = timer->next_expected_ns;
             next.fast = timer->period_ns <= kFastCycle;
         }
     }
     return next;
-}
-
-// -- waits of less than a millisecond ----------------------------------------------------------------------------------
-
-namespace
-{
-// Timeouts of the Software Bus are whole milliseconds from now on. A loop at 1 kHz that ended each cycle with one would
-// be late by its own work each time, and catch up by a cycle without a wait: two messages at once, for a subscriber that
-// keeps one. OSAL waits for a condition variable until a time of the clock, in ticks of 100 ns; nobody signals it.
-osal_id_t g_alarm     = OS_OBJECT_ID_UNDEFINED;
-bool      g_no_alarms = false;
-
-bool has_alarm()
-{
-    if (OS_ObjectIdDefined(g_alarm) || g_no_alarms)
-    {
-        return !g_no_alarms;
-    }
-    char name[OS_MAX_API_NAME];
-    own_name(name, "_WAIT", "_W");
-    // ES does not delete it with its application: one that was killed and started again finds it.
-    g_no_alarms = OS_CondVarCreate(&g_alarm, name, 0) != OS_SUCCESS &&
-                  OS_CondVarGetIdByName(&g_alarm, name) != OS_SUCCESS;
-    return !g_no_alarms;
-}
-} // namespace
-
-bool wait_exactly(std::int64_t until_ns)
-{
-    if (!has_alarm() || OS_CondVarLock(g_alarm) != OS_SUCCESS)
-    {
-        return false;
-    }
-    const OS_time_t until = OS_TimeFromTotalNanoseconds(until_ns + OS_TIME_TICK_RESOLUTION_NS - 1);
-    OS_CondVarTimedWait(g_alarm, &until);
-    OS_CondVarUnlock(g_alarm);
-    return true;
-}
-
-void end_exact_waits()
-{
-    if (OS_ObjectIdDefined(g_alarm))
-    {
-        OS_CondVarDelete(g_alarm);
-        g_alarm = OS_OBJECT_ID_UNDEFINED;
-    }
-}
-
-} // namespace roscfe
-
-// -- C's clocks of the host: the processor's is the time, for a node as for its messages (--wrap) -----------------------
-
-extern "C" {
-
-std::time_t __wrap_time(std::time_t *also)
-{
-    const auto now = static_cast<std::time_t>(roscfe::now_ns() / roscfe::kSecond);
-    if (also != nullptr)
-    {
-        *also = now;
-    }
-    return now;
-}
-
-int __wrap_gettimeofday(struct timeval *time, void *)
-{
-    const std::int64_t now = roscfe::now_ns();
-    time->tv_sec           = static_cast<decltype(time->tv_sec)>(now / roscfe::kSecond);
-    time->tv_usec          = static_cast<decltype(time->tv_usec)>(now % roscfe::kSecond / 1000);
-    return 0;
-}
-
-int __wrap_clock_gettime(clockid_t, struct timespec *time)
-{
-    const std::int64_t now = roscfe::now_ns();
-    time->tv_sec           = static_cast<decltype(time->tv_sec)>(now / roscfe::kSecond);
-    time->tv_nsec          = static_cast<decltype(time->tv_nsec)>(now % roscfe::kSecond);
-    return 0;
-}
-
-} // extern "C"
-
-// -- std::chrono's clocks, which libstdc++ would ask the computer for: these have the names of its functions ------------
-
-namespace roscfe
-{
-
-std::chrono::system_clock::time_point system_clock_now() noexcept __asm__("_ZNSt6chrono3_V212system_clock3nowEv");
-std::chrono::steady_clock::time_point steady_clock_now() noexcept __asm__("_ZNSt6chrono3_V212steady_clock3nowEv");
-
-std::chrono::system_clock::time_point system_clock_now() noexcept
-{
-    const std::chrono::nanoseconds now(now_ns());
-    return std::chrono::system_clock::time_point(std::chrono::duration_cast<std::chrono::system_clock::duration>(now));
-}
-
-std::chrono::steady_clock::time_point steady_clock_now() noexcept
-{
-    return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(now_ns()));
 }
 
 } // namespace roscfe

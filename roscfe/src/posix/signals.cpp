@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <csignal>
 
-#include "internal.h"
+#include "../core/core.h"
 
 namespace roscfe
 {

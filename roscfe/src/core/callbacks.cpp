@@ -1,7 +1,7 @@
-// Queues of callbacks, and the spinners that empty them.
+// The queue of callbacks, and the spinners that empty it.
 #include <algorithm>
 
-#include "internal.h"
+#include "core.h"
 #include "ros/init.h"
 #include "ros/spinner.h"
 #include "roscfe/heap.h"
@@ -10,11 +10,6 @@ namespace ros
 {
 
 CallbackQueue *getGlobalCallbackQueue()
-{
-    return &roscfe::g_node.queue;
-}
-
-CallbackQueue *getInternalCallbackQueue()
 {
     return &roscfe::g_node.queue;
 }
@@ -79,25 +74,19 @@ void CallbackQueue::removeByID(std::uint64_t owner_id)
     batch_ = kept_of_batch;
 }
 
-// Those that are being called are not among them.
-void CallbackQueue::clear()
-{
-    for (; count_ > batch_; --count_)
-    {
-        at(count_ - 1).callback.reset();
-    }
-}
-
 bool CallbackQueue::waitForCallback(WallDuration timeout)
 {
     const std::int64_t until = roscfe::now_ns() + timeout.toNSec();
-    roscfe::pump(0);
-    roscfe::run_async();
-    while (count_ == batch_ && !roscfe::g_node.shutting_down && roscfe::now_ns() < until)
+    std::int64_t       next  = 0; // at first what is there
+    do
     {
-        roscfe::pump(until);
-        roscfe::run_async();
-    }
+        roscfe::pump(next);
+        if (roscfe::run_async != nullptr)
+        {
+            roscfe::run_async();
+        }
+        next = until;
+    } while (count_ == batch_ && !roscfe::g_node.shutting_down && roscfe::now_ns() < until);
     return count_ > batch_ && enabled_;
 }
 
@@ -118,37 +107,6 @@ CallbackQueue::CallOneResult CallbackQueue::callFirst()
     return Called;
 }
 
-CallbackQueue::CallOneResult CallbackQueue::callOne(WallDuration timeout)
-{
-    if (!enabled_)
-    {
-        return Disabled;
-    }
-    if (!waitForCallback(timeout))
-    {
-        return enabled_ ? Empty : Disabled;
-    }
-    std::size_t ready = batch_;
-    while (ready < count_ && !at(ready).callback->ready())
-    {
-        ++ready;
-    }
-    if (ready == count_)
-    {
-        return TryAgain;
-    }
-    for (; ready > batch_; --ready)
-    {
-        std::swap(at(ready - 1), at(ready));
-    }
-    // In a callback it is another's turn: the one that was about to be called.
-    ++batch_;
-    ++calling_;
-    const CallOneResult result = callFirst();
-    --calling_;
-    return result;
-}
-
 void CallbackQueue::callAvailable(WallDuration timeout)
 {
     if (!enabled_ || !waitForCallback(timeout))
@@ -167,8 +125,6 @@ void CallbackQueue::callAvailable(WallDuration timeout)
     calling_ -= called;
 }
 
-// -- spinners ----------------------------------------------------------------------------------------------------------
-
 void spinOnce()
 {
     roscfe::heap::seal();
@@ -179,89 +135,18 @@ void spinOnce()
 void spin()
 {
     SingleThreadedSpinner spinner;
-    spin(spinner);
-}
-
-void spin(Spinner &spinner)
-{
     spinner.spin();
 }
 
 void SingleThreadedSpinner::spin_now(CallbackQueue *queue)
 {
     roscfe::heap::seal();
-    CallbackQueue &      of = queue != nullptr ? *queue : roscfe::g_node.queue;
-    const ros::WallDuration look(0.5); // how often ES is asked whether the application is to end
+    CallbackQueue &    of = queue != nullptr ? *queue : roscfe::g_node.queue;
+    const WallDuration look(0, 500000000); // how often ES is asked whether the application is to end
     while (ok())
     {
         of.callAvailable(look);
     }
 }
 
-AsyncSpinner::AsyncSpinner(std::uint32_t, CallbackQueue *queue) : queue_(queue) {}
-
-void AsyncSpinner::start()
-{
-    if (!started_)
-    {
-        started_ = true;
-        roscfe::start_async(queue_ != nullptr ? queue_ : &roscfe::g_node.queue);
-    }
-}
-
-void AsyncSpinner::stop()
-{
-    if (started_)
-    {
-        started_ = false;
-        roscfe::stop_async(queue_ != nullptr ? queue_ : &roscfe::g_node.queue);
-    }
-}
-
 } // namespace ros
-
-namespace roscfe
-{
-
-namespace
-{
-std::vector<ros::CallbackQueue *> g_async; // queues whose callbacks run while the node waits
-bool                              g_in_async = false;
-} // namespace
-
-void start_async(ros::CallbackQueue *queue)
-{
-    g_async.push_back(queue);
-}
-
-void stop_async(ros::CallbackQueue *queue)
-{
-    const auto found = std::find(g_async.begin(), g_async.end(), queue);
-    if (found != g_async.end())
-    {
-        g_async.erase(found);
-    }
-}
-
-void run_async()
-{
-    if (g_in_async)
-    {
-        return; // a callback that waits: in a thread of a spinner nothing else would run, either
-    }
-    g_in_async = true;
-    for (std::size_t i = 0; i < g_async.size(); ++i)
-    {
-        g_async[i]->callAvailable();
-    }
-    g_in_async = false;
-}
-
-bool wait_for_news(std::int64_t until_ns)
-{
-    const bool more = pump(until_ns);
-    run_async();
-    return more;
-}
-
-} // namespace roscfe
