@@ -44,13 +44,14 @@ def start(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone, settings: Tim
 
 
 def save(kept: dict[str, Any], clock: SpacecraftTime, tone: Tone) -> None:
-    """Save the present values; MET is saved without the tone's delay, which is separate."""
+    """Save the present values. The delay of the tone is separate, and NASA's TIME has it in MET as well."""
     reference = clock.reference
+    met = reference.met + clock.since_tone() if tone.settings.safe else clock.current_met()
     kept[KEPT] = RESET_VARS.pack(
         Signature=SIGNATURE,
         LeapSeconds=reference.leap_seconds,
         ClockSignal=tone.signal,
-        CurrentMET=fields_of(reference.met + clock.since_tone()),
+        CurrentMET=fields_of(met),
         CurrentSTCF=fields_of(reference.stcf),
         CurrentDelay=fields_of(reference.delay),
     )

@@ -22,7 +22,8 @@ class TimeSettings:
     `client` follows a server's time instead of keeping one. `fake_tone` makes tones from the local 1 Hz signal.
     `will_be` means that a message has the time of the next tone, not of the last one. `utc` makes UTC the spacecraft
     time. `can_select_signal` and `can_select_source` allow the two commands. `external` is the kind of external source:
-    "met", "gps", "time", or "" if there is none.
+    "met", "gps", "time", or "" if there is none. `safe` adds the delay of the tone once; NASA's TIME adds it again at a
+    reset and each time that it moves the reference in flywheel mode.
     """
 
     client: bool
@@ -43,6 +44,7 @@ class TimeSettings:
     tone_under_limit: int
     start_fly_secs: int
     latch_fly_secs: int
+    safe: bool
 
     @classmethod
     def of(cls, config: PlatformConfig) -> TimeSettings:
@@ -55,6 +57,7 @@ class TimeSettings:
         _check(config, external)
         return cls(
             client=config.time_cfg_client,
+            safe=config.safe,
             fake_tone=config.time_cfg_fake_tone,
             will_be=config.time_at_tone_will_be,
             utc=config.time_cfg_default_utc,

@@ -203,7 +203,8 @@ class Tone:
             self.fly()
             self.auto_start_fly = True
         elif reference.flying and elapsed >> 32 >= self.settings.latch_fly_secs:
-            clock.update(met=reference.met + elapsed, latch=reference.latch + elapsed)
+            met = reference.met + elapsed if self.settings.safe else clock.current_met()
+            clock.update(met=met, latch=reference.latch + elapsed)
 
     def fly(self) -> None:
         """Switch to flywheel mode."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
@@ -37,15 +38,19 @@ def time_command(world: World, code: int, seconds: int, micros: int = 0) -> None
     world.command(code, pk.TIME_COMMAND.pack(Seconds=seconds, MicroSeconds=micros))
 
 
-@pytest.fixture
-def client(make: Make) -> World:
-    """A client half a second before its first tone."""
-    world = make(time_cfg_client=True, time_cfg_fake_tone=False)
+def client_of(make: Make, **config: Any) -> World:
+    world = make(time_cfg_client=True, time_cfg_fake_tone=False, **config)
     world.start()
     world.run(0.5)
     world.events.clear()
     world.packets.clear()
     return world
+
+
+@pytest.fixture
+def client(make: Make) -> World:
+    """A client half a second before its first tone."""
+    return client_of(make)
 
 
 # -- clients -------------------------------------------------------------------------------------------------------
@@ -97,7 +102,11 @@ def test_client_corrects_for_the_delay_of_the_tone(client: World) -> None:
     assert client.diagnostic()["AtToneDelay"] == time_of(0, HALF)
 
 
-def test_client_without_tones_enters_flywheel_and_its_delay_counts_once(client: World) -> None:
+@pytest.mark.parametrize(("safe", "again"), [(False, 4), (True, 0)], ids=["as_nasas", "safe"])
+def test_client_without_tones_enters_flywheel_and_gains_its_delay_unless_safe(
+    make: Make, safe: bool, again: int
+) -> None:
+    client = client_of(make, safe=safe)
     tell(client, 5000)
     time_command(client, pk.ADD_DELAY_CC, 1)
     client.events.clear()
@@ -105,11 +114,22 @@ def test_client_without_tones_enters_flywheel_and_its_delay_counts_once(client: 
     assert client.events == [FLY_ON]
     assert client.time.get_clock_info() & 0x4800 == 0x4000
     client.run(29.9)
-    assert client.time.get_met() == (5034, HALF)
+    assert client.time.get_met() == (5034 + again, HALF), "the reference moves every 8 s"
     assert client.time.clock.since_tone() >> 32 < 9
     tell(client, 5040)
     assert client.events == [FLY_ON, FLY_OFF]
     assert client.time.get_met() == (5042, 0)
+
+
+@pytest.mark.parametrize(("safe", "again"), [(False, 2), (True, 0)], ids=["as_nasas", "safe"])
+def test_client_gains_its_delay_at_a_reset_unless_safe(make: Make, safe: bool, again: int) -> None:
+    client = client_of(make, safe=safe)
+    tell(client, 5000)
+    time_command(client, pk.ADD_DELAY_CC, 2)
+    before = client.time.get_met()
+    client.housekeeping()  # keeps the values for the next start
+    after = make(time_cfg_client=True, time_cfg_fake_tone=False, safe=safe, kept=client.kept, start_ns=0)
+    assert after.time.get_met()[0] == before[0] + again
 
 
 @pytest.mark.parametrize(
