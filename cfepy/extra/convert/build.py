@@ -239,7 +239,11 @@ class NodeBuild:
         if not made.is_file():
             archive = built_core(self._options, self._real_boost, self._types, self.sources.contents)
             told = compile_units(units, entry.name)
-            _link([*(str(each.object) for each in units), *WHOLE, str(archive), *NOT_WHOLE], made, link_flags(self._options.profile))
+            _link(
+                [*(str(each.object) for each in units), *WHOLE, str(archive), *NOT_WHOLE],
+                made,
+                link_flags(self._options.profile),
+            )
             with writing_cache(warnings.parent):
                 warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
         told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []

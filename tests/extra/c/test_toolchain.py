@@ -123,7 +123,9 @@ def test_cmake_lists_define_name_sources_and_tables(tmp_path: Path) -> None:
         endif()
         foreach(EXT_APP hs lc)
           list(FIND TGTSYS_APPS ${EXT_APP} HAVE_APP)
-          add_definitions(-DHAVE_${EXT_APP})
+          if (HAVE_APP GREATER_EQUAL 0)
+            add_definitions(-DHAVE_${EXT_APP})
+          endif()
         endforeach()
         aux_source_directory(fsw/more FILES)
         add_definitions(-DPROBE=1)
@@ -179,6 +181,39 @@ def test_headers_of_a_neighbouring_library_are_found(app: Path) -> None:
         build(app)
     write(app.parents[1] / "libs/my_lib", {"fsw/public_inc/my_lib.h": '#include "my_lib_cfg.h"\n'})
     write(app.parents[1] / "libs/my_lib", {"config/default_my_lib_cfg.h": "#define MY_LIB 7\n"})
+    build(app)
+
+
+def test_headers_of_the_missions_other_applications_are_taken_if_they_are_there(app: Path) -> None:
+    text = """
+        foreach(EXT_APP hs lc)
+          list (FIND TGTSYS_${SYSVAR}_APPS ${EXT_APP} HAVE_APP)
+          if (HAVE_APP GREATER_EQUAL 0)
+            include_directories($<TARGET_PROPERTY:${EXT_APP},INTERFACE_INCLUDE_DIRECTORIES>)
+            string(TOUPPER "HAVE_${EXT_APP}" APP_MACRO)
+            add_definitions(-D${APP_MACRO})
+          endif()
+        endforeach()
+        add_cfe_app(probe fsw/src/user.c)
+    """
+    source = """
+        #include "lc_msg.h"
+        #if LC != 7 || defined(HAVE_HS) || !defined(HAVE_LC)
+        #error wrong
+        #endif
+        int user;
+    """
+    write(app, {"CMakeLists.txt": text, "fsw/src/user.c": source})
+    (app.parent / "hs").mkdir()  # a submodule that was not fetched
+    with pytest.raises(CompilerError, match=r"lc_msg\.h: No such file or directory"):
+        build(app)
+    write(
+        app.parent / "lc",
+        {
+            "CMakeLists.txt": "add_cfe_app(lc lc.c)\ntarget_include_directories(lc PUBLIC fsw/headers)\n",
+            "fsw/headers/lc_msg.h": "#define LC 7\n",
+        },
+    )
     build(app)
 
 

@@ -92,10 +92,7 @@ class CMakeScript:
         folder: of the file that is being read.
         variables: by name, each a list.
         budget: the remaining budget.
-        follows_loops: whether loops are executed.
     """
-
-    follows_loops = True
 
     def __init__(
         self,
@@ -232,8 +229,6 @@ class CMakeScript:
             case "if":
                 with self.budget.inside():
                     return self._all(self._branch(each, body))
-            case "foreach" | "while" if not self.follows_loops:
-                pass
             case "foreach":
                 with self.budget.inside():
                     return self._loop(self._words(each), body)

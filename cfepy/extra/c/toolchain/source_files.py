@@ -7,7 +7,8 @@ and dependencies.
 
 Among the commands of such files, cFS's `add_cfe_app`, `add_cfe_tables` and `add_cfe_app_dependency` are defined here,
 and also include folders and definitions; `cmake_script` knows the language itself. A condition holds if its variable
-was set to a true value in the file itself: no EDS, no unit tests, no options, as in a plain build of the mission.
+was set to a true value in the file itself: no EDS, no unit tests, no options, as in a plain build of the mission. The
+list of the mission's applications, in which a file looks for those whose headers it takes, has the folders next to it.
 """
 
 from __future__ import annotations
@@ -34,6 +35,10 @@ NEIGHBOURS = (".", "apps", "libs")
 SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE", "BEFORE", "AFTER", "SYSTEM")
 _MISSION_DIR = re.compile(r"\$\{(\w+)_MISSION_DIR\}")
 """The folder of another application, in files that are older than `add_cfe_app_dependency`."""
+_APPS = re.compile(r"TGTSYS_\w*APPS")
+"""The list of a mission's applications in cFS's build."""
+_HEADERS_OF = re.compile(r"\$<TARGET_PROPERTY:(\w+),(?:INTERFACE_)?INCLUDE_DIRECTORIES>")
+"""The folders of another application's headers."""
 _FILE_LIST = re.compile(r"set\(\w{1,100}_FILE_LIST([^()]*+)\)")
 _LEGAL = re.compile(r"\w[\w.+-]*")
 _SHOWN = 100  # characters of a name that is wrong
@@ -219,8 +224,6 @@ class _Reader(CMakeScript):
         found: its contents.
     """
 
-    follows_loops = False  # loops go over the applications of a mission, which are not known here
-
     def __init__(self, folder: Path) -> None:
         super().__init__(folder, {"CMAKE_CURRENT_SOURCE_DIR": ["."], "CMAKE_CURRENT_LIST_DIR": ["."]})
         self.found = CMakeLists()
@@ -235,17 +238,33 @@ class _Reader(CMakeScript):
             case "add_cfe_app_dependency", [_, *names]:
                 found.dependencies += names
             case "target_include_directories", [_, *folders]:
-                found.includes += [each for each in folders if each not in SCOPES and "$" not in each]
+                self._include(folders)
             case "include_directories", folders:
-                found.includes += [each for each in folders if each not in SCOPES and "$" not in each]
+                self._include(folders)
+            case "list", ["FIND", variable, app, index] if _APPS.fullmatch(variable):
+                there = _neighbour(self.folder, app) if _LEGAL.fullmatch(app) else None
+                is_app = there is not None and os.path.isfile(there / FILE)  # not a submodule that was not fetched
+                self.variables[index] = ["0" if is_app else "-1"]
             case "add_definitions" | "add_compile_definitions", definitions:
                 found.definitions += [each.removeprefix("-D") for each in definitions]
             case _:
                 super().command(name, words)
 
+    def _include(self, folders: Sequence[str]) -> None:
+        for each in folders:
+            other = _HEADERS_OF.fullmatch(each)
+            if other is not None:
+                self._depend(other[1])
+            elif each not in SCOPES and "$" not in each:
+                self.found.includes.append(each)
+
+    def _depend(self, name: str) -> None:
+        if name not in self.found.dependencies:
+            self.found.dependencies.append(name)
+
     def expanded(self, words: Sequence[CMakeWord]) -> list[str]:
         """Expand words. A folder of another application also makes it a dependency."""
         for word in words:
             for name in _MISSION_DIR.findall(word.text):
-                self.found.dependencies += [name] if name not in self.found.dependencies else []
+                self._depend(name)
         return super().expanded(words)
