@@ -241,7 +241,7 @@ class CRuntime:
         return takes
 
     def close_image(self, image: Image) -> None:
-        """Close an image. What leaves memory with it is unloaded after a call of its end functions."""
+        """Close an image. The images that leave memory with it are unloaded after a call of their end functions."""
         for leaving in self.openings.end(image):
             self._leave_tables(leaving)
             for each in (leaving, *self._own.pop(leaving, ())[::-1]):
