@@ -168,7 +168,7 @@ def _message(node: Node, text: str, record: Any) -> Any:
     log.name = node.names.name
     log.msg = without_addresses(text)
     log.file, log.function, log.line = record.filename, record.funcName, record.lineno
-    if not node.params.get_param("/rosout_disable_topics_generation", False):
+    if not node.params.asked_by_rosout("/rosout_disable_topics_generation"):
         log.topics = list(dict.fromkeys([*node.links, *node.subscriptions]))
     return log
 

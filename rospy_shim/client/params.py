@@ -43,6 +43,7 @@ class Params:
         self._node = node
         self._tree = tree
         self.cache: Any = None  # its ParamServerCache, once the node has loaded the class
+        self.rosout_keys: list[str] = []  # parameters that the node is subscribed to because it logs
 
     def get_param(self, param_name: str, default: Any = UNSPECIFIED) -> Any:
         """Return the value of a parameter, or a namespace as a dictionary. The node's cache comes first.
@@ -95,6 +96,21 @@ class Params:
         if self.cache is None:
             raise KeyError(resolved_name)
         return self.cache.get(resolved_name)
+
+    def asked_by_rosout(self, key: str) -> Any:
+        """Return the value of a global parameter that rospy itself caches with each log message; {} if it is not set.
+
+        So `get_param("/")` has only this one after a node's first log message.
+        """
+        if not self.rosout_keys:
+            self._node.universe.importer.load("rospy.impl.paramserver")
+            self.rosout_keys.append(key)
+        try:
+            return self.cached(key)
+        except KeyError:
+            value = self._tree.find(key)
+            self.cache.set(key, {} if value is _MISSING else self.unpacked(value))
+            return {} if value is _MISSING else value
 
     def recache(self, resolved_name: str, value: Any) -> None:
         """Change a parameter in the node's cache, if it is there, to the value that the node set."""

@@ -134,13 +134,12 @@ class MasterApi:
 
         All other nodes read the parameters without a call.
         """
-        subscribers = self.registry.param_subscribers
-        if not subscribers:
-            return
         for node in self._graph.nodes.values():
-            if node.handler is None:
+            if node.handler is None and node.params.cache is None:
                 continue
-            keys = [key for key, uris in subscribers.items() if uri_of(node) in uris.values()]
+            subscribers = self.registry.param_subscribers.items()
+            keys = [key for key, uris in subscribers if uri_of(node) in uris.values()]
+            keys += node.params.rosout_keys
             is_own = self._params.changed_by == node.names.name
             found = list(_updates(keys, changed, self._params, is_own))
             if found:
@@ -152,6 +151,8 @@ class MasterApi:
     @staticmethod
     def _send_updates(node: Node, waiting: deque[tuple[str, Any]]) -> None:
         """Send the waiting changes to a node, one after the other."""
+        if node.handler is None:
+            node.universe.importer.load("rospy.impl.masterslave")
         while waiting:
             key, value = waiting[0]
             try:
