@@ -22,7 +22,7 @@ _ROSPY = tuple(
     os.path.join(os.path.dirname(_PACKAGE), "rospy_shim", each) for each in ("runtime.py", "client", "graph")
 )
 _HIDDEN = (
-    *(os.path.join(_PACKAGE, each, "") for each in ("nodes", "rtos", "schedules")),
+    *(os.path.join(_PACKAGE, each, "") for each in ("interpreter", "nodes", "rtos", "schedules")),
     _MESSAGES,
     "<frozen importlib",
 )
@@ -44,6 +44,8 @@ def traceback_parts(error: BaseException) -> list[str]:
 
     report = TracebackException(type(error), error, error.__traceback__)
     strip(report, is_hidden)
+    if isinstance(error, SyntaxError) and not report.stack:
+        report.stack = None  # type: ignore[assignment]  # of the program itself: Python prints no heading
     return list(report.format())
 
 

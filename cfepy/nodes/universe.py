@@ -495,7 +495,7 @@ def _status_of(universe: Universe, error: BaseException) -> int:
         raise error  # the end of the task, or a Ctrl-C of the host's user
     universe.error = error
     _show(universe, error)
-    return 130 if isinstance(error, NodeInterrupt) else 1
+    return 130 if type(error) is NodeInterrupt else 1  # not for classes derived from it, as in CPython
 
 
 def _exit_code(universe: Universe, code: Any) -> int:

@@ -156,7 +156,11 @@ class ServiceProxy:
             raise self.__send_in_vain()
         entry = node.graph.services.get(self.resolved_name)
         if entry is None:
-            raise ServiceException(f"service [{self.resolved_name}] unavailable")
+            master_error = node.universe.importer.load("rosgraph.masterapi").MasterError
+            try:
+                raise master_error("no provider")
+            except master_error:  # as in rospy, a traceback shows both
+                raise ServiceException(f"service [{self.resolved_name}] unavailable")  # noqa: B904
         self.__check_type(entry)
         body = self.__packed(request)
         try:

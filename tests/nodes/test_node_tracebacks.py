@@ -37,3 +37,35 @@ def test_stack_shows_only_lines_of_the_node(tasks: str, tmp_path: Path) -> None:
     assert count.startswith("2 ['show', '<module>']")
     assert second.rstrip("|").splitlines()[-1].endswith('.replace("\\n", "|"))')
     assert own_files(second.replace("|", "\n")) == []
+
+
+def test_syntax_error_of_a_program_has_no_heading_and_no_frame(tmp_path: Path) -> None:
+    script = tmp_path / "node.py"
+    script.write_text("if True:\n\tx = 1\n        y = 2\n", encoding="utf-8")
+    told = [line.partition("] ")[2] for line in cfepy.run(script, seconds=1).console if line.startswith("[NODE]")]
+    assert told == [
+        f'  File "{script}", line 3',
+        "    y = 2",
+        "TabError: inconsistent use of tabs and spaces in indentation",
+    ]
+
+
+def test_syntax_error_of_a_module_shows_its_import_only(tmp_path: Path) -> None:
+    script = tmp_path / "node.py"
+    script.write_text("import wrong\n", encoding="utf-8")
+    (tmp_path / "wrong.py").write_text("x = (\n", encoding="utf-8")
+    told = [line.partition("] ")[2] for line in cfepy.run(script, seconds=1).console if line.startswith("[NODE]")]
+    assert [line for line in told if "File" in line or "Trace" in line] == [
+        "Traceback (most recent call last):",
+        f'  File "{script}", line 1, in <module>',
+        f'  File "{tmp_path / "wrong.py"}", line 1',
+    ]
+
+
+@pytest.mark.parametrize(
+    ("error", "status"), [("KeyboardInterrupt", 130), ("rospy.ROSInterruptException", 1), ("ValueError", 1)]
+)
+def test_exit_status_of_an_interrupt_is_not_that_of_its_subclasses(error: str, status: int, tmp_path: Path) -> None:
+    script = tmp_path / "node.py"
+    script.write_text(f"import rospy\nrospy.init_node('node')\nraise {error}\n", encoding="utf-8")
+    assert any(f"ended with exit status {status};" in line for line in cfepy.run(script, seconds=1).console)

@@ -126,6 +126,19 @@ attempt(lambda: rospy.ServiceProxy("add", SetBool)(True))
     assert lines[6].startswith("ServiceException unable to connect to service: remote error reported: request from")
 
 
+def test_missing_service_has_the_masters_error_as_its_context(tmp_path: Path) -> None:
+    lines = run(
+        tmp_path,
+        """
+try:
+    rospy.ServiceProxy("nope", SetBool)(True)
+except rospy.ServiceException as error:
+    print(type(error.__context__).__module__, repr(error.__context__), error.__cause__, error.__suppress_context__)
+""",
+    )
+    assert lines == ["rosgraph.masterapi MasterError('no provider') None False"]
+
+
 def test_service_that_ends_during_a_call(tmp_path: Path) -> None:
     result = two(
         tmp_path,
