@@ -52,6 +52,8 @@ def parsed(source: str | bytes, file: str = "<unknown>", *, mode: Literal["exec"
             return ast.parse(source, file, mode)
     except (RecursionError, MemoryError):  # the parser raises MemoryError for thousands of brackets
         raise TooDeepError(f"{_TOO_DEEP} for Python; split it", (file, 1, 1, None)) from None
+    except SyntaxError as error:
+        raise error.with_traceback(None) from None  # without the frame of `ast`
 
 
 def compiled(source: str | bytes | ast.Module, file: str) -> CodeType:

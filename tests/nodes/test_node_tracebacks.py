@@ -39,9 +39,10 @@ def test_stack_shows_only_lines_of_the_node(tasks: str, tmp_path: Path) -> None:
     assert own_files(second.replace("|", "\n")) == []
 
 
-def test_syntax_error_of_a_program_has_no_heading_and_no_frame(tmp_path: Path) -> None:
+@pytest.mark.parametrize("word", ["if", "while"])
+def test_syntax_error_of_a_program_has_no_heading_and_no_frame(word: str, tmp_path: Path) -> None:
     script = tmp_path / "node.py"
-    script.write_text("if True:\n\tx = 1\n        y = 2\n", encoding="utf-8")
+    script.write_text(f"{word} True:\n\tx = 1\n        y = 2\n", encoding="utf-8")
     told = [line.partition("] ")[2] for line in cfepy.run(script, seconds=1).console if line.startswith("[NODE]")]
     assert told == [
         f'  File "{script}", line 3',
