@@ -102,6 +102,7 @@ def refused_modules() -> Mapping[str, Callable[[Universe], ModuleType]]:
         "subprocess": refused.subprocess_module,
         "ssl": refused.refused_import("ssl", refused.ENCRYPTION),
         "_ssl": refused.refused_import("_ssl", refused.ENCRYPTION),
+        "OpenSSL": refused.refused_import("OpenSSL", refused.ENCRYPTION),  # libraries such as requests fall back to it
     }
     named.update({f"multiprocessing.{part}": refused.multiprocessing_submodule for part in _MULTIPROCESSING})
     named["multiprocessing.pool"] = refused.pool_module

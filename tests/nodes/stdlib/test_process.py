@@ -225,6 +225,7 @@ def test_signals_are_the_nodes_own(run):
         "import os; os.kill(1, 9)",
         "import asyncio; asyncio.run(asyncio.open_connection('localhost', 1))",
         "import ssl",
+        "import OpenSSL",
         "import xmlrpc.client; xmlrpc.client.ServerProxy('http://localhost:1').f()",
     ],
 )
