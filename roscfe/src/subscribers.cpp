@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "internal.h"
+#include "roscfe/heap.h"
 #include "roscfe/parts.h"
 
 namespace roscfe
@@ -17,6 +18,11 @@ namespace
 {
 
 constexpr std::size_t   kMostKnown     = 512; // subscriptions that are kept, of the whole processor
+#if defined(ROSCFE_PROFILE_POOL) || defined(ROSCFE_PROFILE_STRICT)
+constexpr std::size_t   kKnownAtOnce   = 64;  // before memory is needed for more, which there is until the node spins
+#else
+constexpr std::size_t   kKnownAtOnce   = kMostKnown;
+#endif
 constexpr std::size_t   kOwnAtOnce     = 64;  // MsgIds that the node sends to, before memory is needed for more
 constexpr std::int64_t  kReportTimeout = kSecond;
 constexpr unsigned long kOutside       = 0xFF000000UL; // ids from here on are of subscribers outside of the processor
@@ -73,10 +79,15 @@ bool is_own(std::uint16_t msg_id)
     return std::find(g_own.begin(), g_own.end(), msg_id) != g_own.end();
 }
 
+std::size_t room_for_known()
+{
+    return heap::is_sealed() && kKnownAtOnce < kMostKnown ? std::min(g_known.capacity(), kMostKnown) : kMostKnown;
+}
+
 // Whether there is room for one more subscription. For one that concerns the node, one that does not is left out.
 bool has_room_for(std::uint16_t msg_id)
 {
-    if (g_known.size() < kMostKnown)
+    if (g_known.size() < room_for_known())
     {
         return true;
     }
@@ -84,7 +95,7 @@ bool has_room_for(std::uint16_t msg_id)
     {
         g_left_out = true;
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_INFORMATION, "%s: more than %lu subscriptions; others are left out",
-                          g_node.name.c_str(), static_cast<unsigned long>(kMostKnown));
+                          g_node.name.c_str(), static_cast<unsigned long>(g_known.size()));
     }
     const auto other = std::find_if(g_known.begin(), g_known.end(),
                                     [](const Known &known) { return !is_own(known.msg_id); });
@@ -305,7 +316,7 @@ void ask_for_reports(CFE_MSG_FcnCode_t code)
 
 void open_subscribers()
 {
-    g_known.reserve(kMostKnown);
+    g_known.reserve(kKnownAtOnce);
     g_own.reserve(kOwnAtOnce);
     send_from_now_on(kMasterMsgId | kCommandBit);
     send_from_now_on(kRosoutMsgId);

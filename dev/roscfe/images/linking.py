@@ -30,7 +30,8 @@ from rospy_shim.types.msgs import shipped
 
 FOLDER = Path(__file__).parent
 TOPICS = {"/chatter": (0x0A00, False)}
-SIZE_FLAGS = ("-Os", "-g0", "-ffunction-sections", "-fdata-sections", "-fno-threadsafe-statics", "-w")
+STAND_IN = ("start.cpp", "tasks.cpp", "stand_in.cpp", "apps.cpp")
+SIZE_FLAGS = ("-Os", "-g0", "-ffunction-sections", "-fdata-sections", "-fno-threadsafe-statics", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables", "-w")
 
 
 class Computer(NamedTuple):
@@ -130,10 +131,27 @@ class Linker:
         self.call("g++", *self._flags, *self._include, *more, "-c", str(source), "-o", str(made))
         return made
 
-    def sizes(self, *files: Path) -> Sizes:
-        """Return the bytes that files take together."""
-        rows = [list(map(int, line.split()[:3])) for line in self.call("size", *map(str, files)).splitlines()[1:]]
-        return Sizes(sum(row[0] for row in rows), sum(row[1] + row[2] for row in rows))
+    def image(self, nodes: Sequence[Path]) -> Path:
+        """Return an image of a bare computer: nodes, the applications in apps.cpp, and the stand-in for cFE."""
+        objects = [*nodes, *(self.compiled(FOLDER / name) for name in STAND_IN)]
+        formats = [self.compiled(each) for each in self.sources if each.name in ("formats.cpp", "floats.cpp")]
+        made = self._folder / "image.elf"
+        self._link_image(made, [*objects, *formats], f"-Wl,-T,{FOLDER / 'image.ld'}")
+        return made
+
+    def sizes(self, node: Path, symbol: str) -> Sizes:
+        """Return the bytes of a linked node; on a bare computer with the functions of libc that it alone would need."""
+        if self.computer.bare:
+            whole = node.with_suffix(".elf")
+            flags = ["-Wl,--unresolved-symbols=ignore-all", "-Wl,--defsym=__dso_handle=0", f"-Wl,-e,{symbol}"]
+            self._link_image(whole, [node], *flags)
+            node = whole
+        text, data, bss = map(int, self.call("size", str(node)).splitlines()[1].split()[:3])
+        return Sizes(text, data + bss)
+
+    def _link_image(self, made: Path, objects: Sequence[Path], *flags: str) -> None:
+        given = ["-nostartfiles", "--specs=nosys.specs", "-Wl,--gc-sections", "-Wl,--no-warn-rwx-segments", *flags]
+        self.call("g++", *self.computer.flags, *map(str, objects), *given, "-o", str(made))
 
     def call(self, name: str, *words: str) -> str:
         """Run a command of the compiler. Returns its output."""
@@ -149,11 +167,13 @@ class Linker:
         libstdc++ is part of it, since its functions allocate from the node's arena; libc and libgcc come with the image.
         """
         wrapped = [f"-Wl,--wrap={name}" for name in (*WRAPPED, *ALLOCATING)]
-        keep = [f"-Wl,-u,{symbol}", f"-Wl,-e,{symbol}", "-Wl,--gc-sections", "-Wl,--gc-keep-exported"][:3]
-        flags = ["-r", "-nostdlib", "-Wl,--force-group-allocation", "-fno-lto", *keep, *wrapped]
+        keep = [f"-Wl,-u,{symbol}", f"-Wl,-e,{symbol}", "-Wl,--gc-sections"]
+        flags = ["-r", "-nostdlib", "-Wl,--force-group-allocation", *keep, *wrapped]
         flags += [*map(str, objects), str(self._library), "-lstdc++"]
         self.call("g++", *self.computer.flags, *flags, "-o", str(made))
-        self.call("objcopy", f"--keep-global-symbol={symbol}", str(made))
+        # Nothing is thrown, so the tables for that are not needed, nor libgcc's reader of them.
+        tables = [f"--remove-section={name}" for name in (".ARM.exidx*", ".ARM.extab*", ".rel.ARM.ex*")]
+        self.call("objcopy", f"--keep-global-symbol={symbol}", "--strip-unneeded", *tables, str(made))
 
 
 def entry_of(name: str) -> NodeEntry:
