@@ -229,7 +229,7 @@ class NodeBuild:
         known = _digest(*made_for_it, *self.sources.contents.values())
         units = [CompileUnit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
         header = library_folder() / "include/roscfe/node.h"
-        around = known if entry.nodelet else _digest(header.read_bytes())
+        around = known if entry.nodelet else _digest(header.read_bytes(), header.with_name("parts.h").read_bytes())
         units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
         units += [self._support(each, flags, includes) for each in program.support]
         core = core_key(self._options, self._real_boost, self._types, self.sources.contents)

@@ -7,6 +7,7 @@ It has the node's names, arguments, remaps, MsgIds and the first contents of its
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -20,6 +21,7 @@ LONGEST_SYMBOL = 19
 ENTRY_SUFFIX = "_AppMain"
 MAIN_SYMBOL = "roscfe_node_main"
 LONGEST_QUEUE, PIPE_DEPTH = 64, 50
+PRIVATE_ARGUMENT = re.compile(r"_(?!_)[^:]*:=")
 FREE_ROWS = 16
 """Free rows of a table of parameters, for parameters that the node sets itself."""
 
@@ -98,6 +100,22 @@ def parameter_rows(params: Mapping[str, Any], node: str, others: Iterable[str] =
     return rows + [FREE] * FREE_ROWS
 
 
+def needed_parts(node: NodeEntry) -> list[str]:
+    """Return the parts of the interface library that a node needs although its code does not call them.
+
+    Args:
+        node: the entry point. Rows and arguments of a launch file need the code for parameters.
+    """
+    parts = ["subscribers"]
+    if any(name for name, _ in node.rows):
+        parts += ["parameters", "sim_time"]
+    if any(PRIVATE_ARGUMENT.match(each) for each in node.args):
+        parts += ["private_parameters"]
+    if any(raw for _, raw in node.topics.values()):
+        parts += ["long_messages"]
+    return parts
+
+
 def quoted(text: str) -> str:
     """Return a text as a C literal."""
     return '"' + "".join(_escaped(byte) for byte in text.encode()) + '"'
@@ -126,6 +144,7 @@ def _lines(node: NodeEntry) -> Iterator[str]:
     if node.nodelet:
         yield "#include <nodelet/nodelet.h>"
     yield '#include "roscfe/node.h"'
+    yield '#include "roscfe/parts.h"'
     yield ""
     if node.nodelet:
         yield "static int roscfe_main(int argc, char **argv)"
@@ -170,6 +189,7 @@ def _lines(node: NodeEntry) -> Iterator[str]:
     yield ""
     yield f'__attribute__((visibility("default"))) void {node.symbol}(void)'
     yield "{"
+    yield from (f"    roscfe::parts::need(roscfe::parts::{part});" for part in needed_parts(node))
     yield "    roscfe::run(roscfe_node, roscfe_main);"
     yield "}"
     yield "}"

@@ -124,7 +124,10 @@ def _cmake_of_library(sources: Iterable[str], options: BuildOptions) -> str:
     exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     flags = [*LANGUAGE, f"-DROSCFE_PROFILE_{profile.name}"]
     linked = " ".join(link_flags(profile)[1:])  # CMake adds -shared
-    listed = "".join(f"\n      ${{ROSCFE_DIR}}/{each}" for each in sources)
+    listed, hosted = (
+        "".join(f"\n      ${{ROSCFE_DIR}}/{each}" for each in sources if each.startswith("src/posix/") == is_hosted)
+        for is_hosted in (False, True)
+    )
     return f"""# The interface library for ROS nodes, and how a node is built with it; {MADE}.
 # A CMakeLists.txt includes this file before anything else.
 
@@ -146,6 +149,12 @@ set_property(DIRECTORY PROPERTY COMPILE_OPTIONS "${{ROSCFE_OPTIONS}}")
 if(NOT TARGET ${{ROSCFE_LIBRARY}})
     add_library(${{ROSCFE_LIBRARY}} STATIC{listed}
     )
+    # What a node does not need is left out of it: of the library, its sections, and functions of the C++ library.
+    target_compile_options(${{ROSCFE_LIBRARY}} PRIVATE -ffunction-sections -fdata-sections)
+    if(NOT CMAKE_SYSTEM_NAME STREQUAL "Generic") # a computer without an operating system has no POSIX, either
+        target_sources(${{ROSCFE_LIBRARY}} PRIVATE{hosted}
+        )
+    endif()
     target_include_directories(${{ROSCFE_LIBRARY}}
         PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
     target_include_directories(${{ROSCFE_LIBRARY}}
@@ -158,9 +167,10 @@ endif()
 function(roscfe_node NAME MAIN_HEADER ENTRY)
     add_cfe_app(${{NAME}} ${{ENTRY}} ${{ARGN}})
     target_compile_options(${{NAME}} PRIVATE ${{ROSCFE_FLAGS}} ${{ROSCFE_NODE_FLAGS}})
+    target_compile_options(${{NAME}} PRIVATE -ffunction-sections -fdata-sections)
     set_source_files_properties(${{ARGN}} PROPERTIES COMPILE_OPTIONS "-include;${{ROSCFE_DIR}}/${{MAIN_HEADER}}")
     target_link_libraries(${{NAME}} ${{ROSCFE_LIBRARY}})
-    target_link_options(${{NAME}} PRIVATE {linked} -Wl,--version-script=${{ROSCFE_DIR}}/{EXPORTS})
+    target_link_options(${{NAME}} PRIVATE {linked} -Wl,--gc-sections -Wl,--version-script=${{ROSCFE_DIR}}/{EXPORTS})
 endfunction()
 """
 

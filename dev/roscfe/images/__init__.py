@@ -1,1 +1,1 @@
-"""Images of nodes in C++ for computers that cfepy does not run on: what they take of memory, and a run in an emulator."""
+"""Images of nodes in C++ for computers that cfepy does not run on: their sizes, and runs in an emulator."""

@@ -31,7 +31,16 @@ from rospy_shim.types.msgs import shipped
 FOLDER = Path(__file__).parent
 TOPICS = {"/chatter": (0x0A00, False)}
 STAND_IN = ("start.cpp", "tasks.cpp", "stand_in.cpp", "apps.cpp")
-SIZE_FLAGS = ("-Os", "-g0", "-ffunction-sections", "-fdata-sections", "-fno-threadsafe-statics", "-fno-asynchronous-unwind-tables", "-fno-unwind-tables", "-w")
+SIZE_FLAGS = (
+    "-Os",
+    "-g0",
+    "-ffunction-sections",
+    "-fdata-sections",
+    "-fno-threadsafe-statics",
+    "-fno-asynchronous-unwind-tables",
+    "-fno-unwind-tables",
+    "-w",
+)
 
 
 class Computer(NamedTuple):
@@ -127,7 +136,7 @@ class Linker:
 
     def compiled(self, source: Path, *more: str) -> Path:
         """Return the object file of a source in C or C++."""
-        made = self._folder / f"{source.parent.name}-{source.stem}.o"
+        made = self._object(source)
         self.call("g++", *self._flags, *self._include, *more, "-c", str(source), "-o", str(made))
         return made
 
@@ -149,6 +158,15 @@ class Linker:
         text, data, bss = map(int, self.call("size", str(node)).splitlines()[1].split()[:3])
         return Sizes(text, data + bss)
 
+    def core_sizes(self) -> Sizes:
+        """Return the bytes of the core's object files."""
+        core = [self._object(each) for each in self.sources if each.parent.name == "core"]
+        rows = [list(map(int, line.split()[:3])) for line in self.call("size", *map(str, core)).splitlines()[1:]]
+        return Sizes(sum(row[0] for row in rows), sum(row[1] + row[2] for row in rows))
+
+    def _object(self, source: Path) -> Path:
+        return self._folder / f"{source.parent.name}-{source.stem}.o"
+
     def _link_image(self, made: Path, objects: Sequence[Path], *flags: str) -> None:
         given = ["-nostartfiles", "--specs=nosys.specs", "-Wl,--gc-sections", "-Wl,--no-warn-rwx-segments", *flags]
         self.call("g++", *self.computer.flags, *map(str, objects), *given, "-o", str(made))
@@ -164,7 +182,7 @@ class Linker:
     def _link_part(self, made: Path, objects: Sequence[Path], symbol: str) -> None:
         """Link a node into one object whose names are its own.
 
-        libstdc++ is part of it, since its functions allocate from the node's arena; libc and libgcc come with the image.
+        It contains libstdc++, whose functions allocate from the node's arena. libc and libgcc come with the image.
         """
         wrapped = [f"-Wl,--wrap={name}" for name in (*WRAPPED, *ALLOCATING)]
         keep = [f"-Wl,-u,{symbol}", f"-Wl,-e,{symbol}", "-Wl,--gc-sections"]
