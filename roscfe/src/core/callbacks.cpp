@@ -125,9 +125,27 @@ void CallbackQueue::callAvailable(WallDuration timeout)
     calling_ -= called;
 }
 
+namespace
+{
+
+// The node has begun: what its arena has given until now is all that a node of the profile strict gets.
+void begin_to_spin()
+{
+    const bool is_first = !roscfe::heap::is_sealed();
+    roscfe::heap::seal();
+    if (is_first && roscfe::heap::capacity() > 0)
+    {
+        CFE_EVS_SendEvent(roscfe::kMemoryEid, CFE_EVS_EventType_INFORMATION, "%s: %lu of %lu bytes of the arena are used",
+                          roscfe::g_node.name.c_str(), static_cast<unsigned long>(roscfe::heap::used()),
+                          static_cast<unsigned long>(roscfe::heap::capacity()));
+    }
+}
+
+} // namespace
+
 void spinOnce()
 {
-    roscfe::heap::seal();
+    begin_to_spin();
     ok();
     roscfe::g_node.queue.callAvailable();
 }
@@ -140,7 +158,7 @@ void spin()
 
 void SingleThreadedSpinner::spin_now(CallbackQueue *queue)
 {
-    roscfe::heap::seal();
+    begin_to_spin();
     CallbackQueue &    of = queue != nullptr ? *queue : roscfe::g_node.queue;
     const WallDuration look(0, 500000000); // how often ES is asked whether the application is to end
     while (ok())

@@ -18,6 +18,7 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.user_notes import check_writable
 from cfepy.extra.convert import RULES, CheckReport, Level, Profile, check_program, programs_of, sarif_of
 from cfepy.extra.convert.commands import cpp_nodes_config
+from cfepy.extra.convert.node_check import arena_size
 from cfepy.status import UsageError
 
 _ONLY_TO_CONVERT = {"output": "-o", "ids": "--ids", "force": "--force", "no_check": "--no-check"}
@@ -67,6 +68,8 @@ def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
                 f"{report.name}: {memory.topic} ({memory.type}): {memory.slots} x {memory.size:,} = "
                 f"{memory.total:,} bytes"
             )
+        if profile is not Profile.HOST:
+            print(f"{report.name}: {arena_size(report.memory, profile)}")
     refused = sum(each.is_refused for each in reports)
     nodes = f"{len(reports)} node{'s' if len(reports) > 1 else ''}"
     print(f"{profile.value}: {nodes}, {refused} refused; {', '.join(counts) or 'nothing'} found")

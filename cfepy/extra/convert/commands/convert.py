@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from cfepy.cli.json_output import check_json, write_json
@@ -22,6 +23,7 @@ from cfepy.extra.convert import (
     write_files,
 )
 from cfepy.extra.convert.commands import check, cpp_nodes_config
+from cfepy.extra.convert.node_check import ArenaSize, arena_size
 from cfepy.mission import LOCK_FILE, CppNodesConfig, read_lock, read_mission
 from cfepy.nodes import RosConfig
 from cfepy.status import UsageError
@@ -44,10 +46,11 @@ def run(arguments: argparse.Namespace) -> int:
     config = cpp_nodes_config(arguments)
     task = task_of(arguments.words, dict(os.environ))
     folder = Path(arguments.output or task.made_from.stem).resolve()
-    made = converted(task, _ids(arguments, folder), (lambda program: "") if arguments.no_check else _Judge(config))
+    judge = _Judge(config)
+    made = converted(task, _ids(arguments, folder), (lambda program: "") if arguments.no_check else judge)
     if not made.nodes:
         raise UsageError(f"has no node that can be converted: {'; '.join(made.refused.values())}", file=task.made_from)
-    files = project_files(made, config, folder)
+    files = project_files(made, judge.sized(), folder)
     with writing(folder, "--output"):
         written = write_files(folder, files, arguments.force)
     tell([*task.notes, *(f"{name} is not converted: {why}" for name, why in made.refused.items())])
@@ -65,14 +68,27 @@ class _Judge:
 
     def __init__(self, config: CppNodesConfig) -> None:
         self._config = config
+        self._arenas: dict[str, ArenaSize] = {}
 
     def __call__(self, program: Program) -> str:
         """Return why a program is not converted; empty if it can be."""
         report = check_program(program, Profile(self._config.profile), dict(os.environ), self._config)
+        self._arenas[report.name] = arena_size(report.memory, report.profile)
         errors = report.at(Level.ERROR)
         tell([each.line(Level.ERROR) for each in errors])
         count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"
         return f"{count}, see above; --no-check converts it all the same" if errors else ""
+
+    def sized(self) -> CppNodesConfig:
+        """Return the settings, with the arena that the largest checked node needs if the mission file sets none.
+
+        Prints the size of each node's arena and its reasons.
+        """
+        config = self._config
+        if Profile(config.profile) is Profile.HOST or "arena_bytes" in config.places or not self._arenas:
+            return config
+        tell([f"{name}: {size}" for name, size in sorted(self._arenas.items())])
+        return replace(config, arena_bytes=max(each.total for each in self._arenas.values()))
 
 
 def _ids(arguments: argparse.Namespace, folder: Path) -> RosConfig:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.extra.convert.node_check.arena import ArenaSize, arena_size
     from cfepy.extra.convert.node_check.checking import check_program
     from cfepy.extra.convert.node_check.compiler import ABOUT_HEADERS, rule_of
     from cfepy.extra.convert.node_check.findings import (
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = [
     "ABOUT_HEADERS",
     "RULES",
+    "ArenaSize",
     "CheckReport",
     "CheckRule",
     "GraphName",
@@ -38,6 +40,7 @@ __all__ = [
     "RuleFinding",
     "SourcePlace",
     "SubscriptionMemory",
+    "arena_size",
     "check_program",
     "programs_of",
     "read_source",
@@ -50,6 +53,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".arena": ("ArenaSize", "arena_size"),
             ".checking": ("check_program",),
             ".findings": ("RuleFinding", "GraphName", "SubscriptionMemory", "SourcePlace", "CheckReport"),
             ".compiler": ("ABOUT_HEADERS", "rule_of"),
