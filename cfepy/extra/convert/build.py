@@ -33,6 +33,7 @@ from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.cpp_sources import SourceSet, collect, message_types
 from cfepy.extra.convert.entry import NodeEntry, main_header
 from cfepy.extra.convert.message_headers import Profile, write_headers
+from cfepy.extra.convert.undefined_names import ASK, undefined_names
 from cfepy.mission import ARENA_BYTES
 from cfepy.reading.contained_files import write_contained
 from cfepy.reading.resources import shipped
@@ -484,7 +485,12 @@ def _call(command: Sequence[str]) -> str:
 def _link(parts: Sequence[str], made: Path, flags: Iterable[str]) -> None:
     with _scratch() as scratch:
         linked = scratch / made.name
-        _call([*cpp_compiler(), *flags, "-o", str(linked), *parts])
+        said = _call([*cpp_compiler(), *flags, *ASK, "-o", str(linked), *parts])
+        undefined = [each.name for each in undefined_names(said, with_library=True)]
+        if undefined:
+            more = f" and {len(undefined) - 4} more" if len(undefined) > 4 else ""
+            text = f"uses {', '.join(undefined[:4])}{more}, which no source of the node defines [undefined-name]"
+            raise UsageError(text, file=made.name)
         shared = unique_symbols(linked)
         if shared:
             text = f"has {', '.join(shared[:4])}, which all nodes would share [unique-symbol]"

@@ -30,8 +30,8 @@ class Subscriber : public SubscriberBase, public SimpleFilter<M>
     typedef ros::MessageEvent<M const> EventType;
 
     Subscriber() = default;
-    Subscriber(ros::NodeHandle &node, const std::string &topic, std::uint32_t queue_size,
-               const ros::TransportHints &hints = ros::TransportHints(), ros::CallbackQueueInterface *queue = nullptr)
+    ROSCFE_SUBSCRIBES Subscriber(ros::NodeHandle &node, const std::string &topic, std::uint32_t queue_size,
+                                 const ros::TransportHints &hints = ros::TransportHints(), ros::CallbackQueueInterface *queue = nullptr)
     {
         subscribe(node, topic, queue_size, hints, queue);
     }
@@ -39,9 +39,9 @@ class Subscriber : public SubscriberBase, public SimpleFilter<M>
     Subscriber(const Subscriber &) = delete;
     Subscriber &operator=(const Subscriber &) = delete;
 
-    void subscribe(ros::NodeHandle &node, const std::string &topic, std::uint32_t queue_size,
-                   const ros::TransportHints &  hints = ros::TransportHints(),
-                   ros::CallbackQueueInterface *queue = nullptr) override
+    ROSCFE_SUBSCRIBES void subscribe(ros::NodeHandle &node, const std::string &topic, std::uint32_t queue_size,
+                                     const ros::TransportHints &  hints = ros::TransportHints(),
+                                     ros::CallbackQueueInterface *queue = nullptr) override
     {
         unsubscribe();
         if (topic.empty())

@@ -78,19 +78,19 @@ class NodeHandle
     // A method of an object, of one behind a shared pointer, or a function; first with any parameter, then with a
     // pointer to the message named, for calls such as subscribe<std_msgs::String>(...).
     template <class P, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P), T *object,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P), T *object,
                          const TransportHints &hints = TransportHints())
     {
         return hear<P>(topic, queue_size, [function, object](P message) { (object->*function)(message); }, hints);
     }
     template <class P, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P) const, T *object,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P) const, T *object,
                          const TransportHints &hints = TransportHints())
     {
         return hear<P>(topic, queue_size, [function, object](P message) { (object->*function)(message); }, hints);
     }
     template <class M, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
                          void (T::*function)(const boost::shared_ptr<M const> &), T *object,
                          const TransportHints &hints = TransportHints())
     {
@@ -98,7 +98,7 @@ class NodeHandle
         return hear<P>(topic, queue_size, [function, object](P message) { (object->*function)(message); }, hints);
     }
     template <class M, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
                          void (T::*function)(const boost::shared_ptr<M const> &) const, T *object,
                          const TransportHints &hints = TransportHints())
     {
@@ -106,21 +106,21 @@ class NodeHandle
         return hear<P>(topic, queue_size, [function, object](P message) { (object->*function)(message); }, hints);
     }
     template <class P, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P),
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P),
                          const boost::shared_ptr<T> &object, const TransportHints &hints = TransportHints())
     {
         T *raw = object.get();
         return hear<P>(topic, queue_size, [function, raw](P message) { (raw->*function)(message); }, hints, object);
     }
     template <class P, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P) const,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (T::*function)(P) const,
                          const boost::shared_ptr<T> &object, const TransportHints &hints = TransportHints())
     {
         T *raw = object.get();
         return hear<P>(topic, queue_size, [function, raw](P message) { (raw->*function)(message); }, hints, object);
     }
     template <class M, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
                          void (T::*function)(const boost::shared_ptr<M const> &), const boost::shared_ptr<T> &object,
                          const TransportHints &hints = TransportHints())
     {
@@ -129,7 +129,7 @@ class NodeHandle
         return hear<P>(topic, queue_size, [function, raw](P message) { (raw->*function)(message); }, hints, object);
     }
     template <class M, class T>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
                          void (T::*function)(const boost::shared_ptr<M const> &) const,
                          const boost::shared_ptr<T> &object, const TransportHints &hints = TransportHints())
     {
@@ -138,7 +138,7 @@ class NodeHandle
         return hear<P>(topic, queue_size, [function, raw](P message) { (raw->*function)(message); }, hints, object);
     }
     template <class P>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (*function)(P),
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, void (*function)(P),
                          const TransportHints &hints = TransportHints())
     {
         return hear<P>(topic, queue_size, function, hints);
@@ -146,13 +146,13 @@ class NodeHandle
     // A lambda is no function, although it may become one: it is for the next overload.
     template <class M, class F,
               typename std::enable_if<std::is_same<F, void (*)(const boost::shared_ptr<M const> &)>::value, int>::type = 0>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, F function,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, F function,
                          const TransportHints &hints = TransportHints())
     {
         return hear<const boost::shared_ptr<M const> &>(topic, queue_size, function, hints);
     }
     template <class M>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size,
                          const boost::function<void(const boost::shared_ptr<M const> &)> &callback,
                          const VoidConstPtr &  tracked_object = VoidConstPtr(),
                          const TransportHints &hints          = TransportHints())
@@ -160,7 +160,7 @@ class NodeHandle
         return hear<const boost::shared_ptr<M const> &>(topic, queue_size, callback, hints, tracked_object);
     }
     template <class M, class P>
-    Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, const boost::function<void(P)> &callback,
+    ROSCFE_SUBSCRIBES Subscriber subscribe(const std::string &topic, std::uint32_t queue_size, const boost::function<void(P)> &callback,
                          const VoidConstPtr &  tracked_object = VoidConstPtr(),
                          const TransportHints &hints          = TransportHints())
     {

@@ -9,6 +9,13 @@
 #include "ros/transport_hints.h"
 #include "roscfe/subscription.h"
 
+// The check asks the compiler for the types of all calls that subscribe.
+#ifdef ROSCFE_IS_CHECKED
+#define ROSCFE_SUBSCRIBES [[deprecated("roscfe: it subscribes")]]
+#else
+#define ROSCFE_SUBSCRIBES
+#endif
+
 namespace ros
 {
 
@@ -22,7 +29,7 @@ struct SubscribeOptions
 
     // P is the callback's parameter.
     template <class P>
-    void initByFullCallbackType(const std::string &_topic, std::uint32_t _queue_size,
+    ROSCFE_SUBSCRIBES void initByFullCallbackType(const std::string &_topic, std::uint32_t _queue_size,
                                 const boost::function<void(P)> &_callback)
     {
         typedef ParameterAdapter<P>       Adapter;
@@ -42,14 +49,14 @@ struct SubscribeOptions
     }
 
     template <class M>
-    void init(const std::string &_topic, std::uint32_t _queue_size,
+    ROSCFE_SUBSCRIBES void init(const std::string &_topic, std::uint32_t _queue_size,
               const boost::function<void(const boost::shared_ptr<M const> &)> &_callback)
     {
         initByFullCallbackType<const boost::shared_ptr<M const> &>(_topic, _queue_size, _callback);
     }
 
     template <class M>
-    static SubscribeOptions create(const std::string &topic, std::uint32_t queue_size,
+    ROSCFE_SUBSCRIBES static SubscribeOptions create(const std::string &topic, std::uint32_t queue_size,
                                    const boost::function<void(const boost::shared_ptr<M const> &)> &callback,
                                    const VoidConstPtr &tracked_object, CallbackQueueInterface *queue)
     {

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 
-from cfepy.extra.convert.build import library_includes
+from cfepy.extra.convert.build import library_folder, library_includes
 from cfepy.extra.convert.capacities import Capacities, capacities_of
 from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.message_headers import Profile, write_headers
-from cfepy.extra.convert.node_check.compiler import Compiler, tell
+from cfepy.extra.convert.node_check.compiler import Compiler, Diagnostic, tell
 from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace, SubscriptionMemory
 from cfepy.extra.convert.node_check.headers import write_refusal, write_refusals
 from cfepy.extra.convert.node_check.program import ProgramSources, subscriptions
@@ -83,6 +84,7 @@ def _compile(
     folders = [*program.includes, messages, *library_includes(real_boost), refusals]
     compiler = Compiler(report.profile, folders, program.definitions)
     accepted = True
+    calls: list[tuple[Diagnostic, SourcePlace]] = []
     known = [each for each in program.sources if each in sources.files]
     with WorkProgress(Stopwatch().elapsed_ns) as progress:
         for number, source in enumerate(known, 1):
@@ -90,8 +92,35 @@ def _compile(
             compiled = compiler.compile(source, scratch, progress.refresh)
             accepted = accepted and compiled.ok
             tell(report, source, compiled, partial(_shown, sources, source, (refusals, messages)))
+            calls += _calls_of_program(compiled.subscriptions, source, sources)
     if accepted and program.sources:
+        report.names[:] = sources.with_types(report.names, calls)
         _measure(report, compiler, sources, scratch)
+        _find_undefined(report, compiler, known, scratch)
+
+
+def _calls_of_program(
+    calls: Sequence[Diagnostic], source: Path, sources: ProgramSources
+) -> Iterator[tuple[Diagnostic, SourcePlace]]:
+    """Yield calls with their places; the source stands for a header that is not the program's.
+
+    Calls in the interface library itself are left out, because the program made them.
+    """
+    for each in calls:
+        file = Path(os.path.normpath(each.place.file))
+        if file in sources.files:
+            yield each, each.place._replace(file=file)
+        elif not file.is_relative_to(library_folder()):
+            yield each, SourcePlace(source)
+
+
+def _find_undefined(report: CheckReport, compiler: Compiler, files: Sequence[Path], scratch: Path) -> None:
+    names: dict[SourcePlace, list[str]] = {}
+    for each in compiler.undefined(scratch):
+        file = Path(os.path.normpath(each.file)) if each.file else files[0]
+        names.setdefault(SourcePlace(file, each.line), []).append(each.name)
+    for place, missing in names.items():
+        report.add("undefined-name", place, f"nothing defines {', '.join(missing)}")
 
 
 def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, scratch: Path) -> None:

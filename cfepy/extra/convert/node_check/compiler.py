@@ -18,6 +18,7 @@ from cfepy.extra.convert.message_headers import Profile
 from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace
 from cfepy.extra.convert.node_check.headers import SYSTEM, is_of_ros
 from cfepy.extra.convert.node_check.rules import RULES
+from cfepy.extra.convert.undefined_names import ASK, UndefinedName, undefined_names
 
 _SAID = re.compile(r"^#error \"?(?:roscfe: )?(.*?) ?\[([a-z-]+)\]\"?$")
 _MOST = 50  # reported errors of a source; GCC's own -fmax-errors drops all of them with this format
@@ -35,6 +36,7 @@ _MISSING = re.compile(
 )
 _EXCEPTIONS = re.compile(r"exception handling disabled")
 _TYPES = re.compile(r"'(?:dynamic_cast|typeid)'|-fno-rtti")
+_MARK = "is deprecated: roscfe: it subscribes"
 _TOLD = re.compile(r"Told<(\d+), (\d+)>")
 
 
@@ -58,12 +60,14 @@ class Compiled(NamedTuple):
         errors: its errors.
         problem: why it did not finish, if it did not.
         used: all files that it read.
+        subscriptions: the calls that subscribe, each with the text of the compiler about its types.
     """
 
     ok: bool
     errors: list[Diagnostic]
     problem: str = ""
     used: Sequence[str] = ()
+    subscriptions: Sequence[Diagnostic] = ()
 
 
 class Compiler:
@@ -76,10 +80,11 @@ class Compiler:
     """
 
     def __init__(self, profile: Profile, folders: Sequence[Path], definitions: Iterable[str] = ()) -> None:
-        self.command = [*cpp_compiler(), "-std=c++17", "-fsyntax-only", "-w", "-x", "c++"]
-        self.command += ["-fdiagnostics-format=json", *profile_flags(profile)]
+        self.command = [*cpp_compiler(), "-std=c++17", "-fPIC", "-fvisibility=hidden", "-g1", "-DROSCFE_IS_CHECKED"]
+        self.command += ["-fdiagnostics-format=json", "-fdiagnostics-column-unit=byte", *profile_flags(profile)]
         self.command += [f"-D{each}" for each in definitions]
         self.command += [word for place in folders for word in ("-I", str(place))]
+        self.objects: list[Path] = []
 
     def compile(self, source: Path, scratch: Path, while_waiting: Callable[[], object] = lambda: None) -> Compiled:
         """Compile a file.
@@ -94,15 +99,27 @@ class Compiler:
         """
         listed = scratch / "used.d"
         listed.unlink(missing_ok=True)
-        status, said = _call([*self.command, "-MD", "-MF", str(listed), str(source)], while_waiting)
+        made = scratch / f"{len(self.objects)}.o"
+        writes = ["-MD", "-MF", str(listed), "-c", "-x", "c++", str(source), "-o", str(made)]
+        status, said = _call([*self.command, *writes], while_waiting)
         errors, problem = _diagnostics(said)
+        self.objects.append(made)
         if status < 0 or (status and not errors):
             problem = problem or f"the compiler ended with {status}"
         try:
             used = listed.read_text(encoding="utf-8", errors="replace").replace("\\\n", " ").split()
         except OSError:
             used = []
-        return Compiled(status == 0 and not errors, errors, "" if status == 0 else problem, used)
+        return Compiled(status == 0 and not errors, errors, "" if status == 0 else problem, used, _subscriptions(said))
+
+    def undefined(self, scratch: Path) -> list[UndefinedName]:
+        """Link all files that were compiled, and return the names that nothing defines.
+
+        Raises:
+            UsageError: there is no such compiler.
+        """
+        command = [*cpp_compiler(), "-shared", *ASK, "-o", str(scratch / "linked.so"), *map(str, self.objects)]
+        return undefined_names(_call(command)[1], with_library=False)
 
     def sizes(self, types: Sequence[str], scratch: Path) -> dict[str, int]:
         """Return the bytes of messages, by type; empty if the compiler does not report them."""
@@ -112,7 +129,7 @@ class Compiler:
         names = [each.replace("/", "::") for each in types]
         lines += [f"Told<{at}, sizeof({name})> told_{at};" for at, name in enumerate(names)]
         asked.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        errors, _ = _diagnostics(_call([*self.command, str(asked)])[1])
+        errors, _ = _diagnostics(_call([*self.command, "-fsyntax-only", str(asked)])[1])
         told = [_TOLD.search(each.message) for each in errors]
         return {types[int(match[1])]: int(match[2]) for match in told if match is not None}
 
@@ -167,19 +184,32 @@ def _call(command: list[str], while_waiting: Callable[[], object] = lambda: None
         return -1, str(error)
 
 
-def _diagnostics(said: str) -> tuple[list[Diagnostic], str]:
-    """Return the errors in the compiler's output, and its first other problem."""
-    errors: list[Diagnostic] = []
+def _subscriptions(said: str) -> list[Diagnostic]:
+    """Return the calls of functions that the interface library marks, because they subscribe."""
+    found, _ = _told(said)
+    return [_diagnostic(each, "start") for each in found if str(each.get("message")).endswith(_MARK)]
+
+
+def _told(said: str) -> tuple[list[dict[str, Any]], list[str]]:
+    """Return the diagnostics in the compiler's output, and its other lines."""
+    told: list[dict[str, Any]] = []
     other: list[str] = []
     for line in said.splitlines():
         try:
             found: Any = json.loads(line) if line.startswith("[") else None
         except ValueError:
             found = None
-        if not isinstance(found, list):
+        if isinstance(found, list):
+            told += [each for each in found if isinstance(each, dict)]
+        else:
             other.append(line)
-            continue
-        errors += [_diagnostic(each) for each in found if isinstance(each, dict) and each.get("kind") in _BAD]
+    return told, other
+
+
+def _diagnostics(said: str) -> tuple[list[Diagnostic], str]:
+    """Return the errors in the compiler's output, and its first other problem."""
+    told, other = _told(said)
+    errors = [_diagnostic(each) for each in told if each.get("kind") in _BAD]
     problem = next((line for line in other if "error" in line or "compilation terminated" not in line), "")
     return errors, problem[:300]
 
@@ -194,7 +224,8 @@ _SEEN_BEFORE = ("throw", "catch", "rtti")
 _BAD = ("error", "fatal error", "internal compiler error", "sorry, unimplemented")
 
 
-def _diagnostic(found: dict[str, Any]) -> Diagnostic:
-    caret: dict[str, Any] = next((each["caret"] for each in found.get("locations", ()) if "caret" in each), {})
+def _diagnostic(found: dict[str, Any], where: str = "caret") -> Diagnostic:
+    places = found.get("locations", ())
+    caret: dict[str, Any] = next((each.get(where, each["caret"]) for each in places if "caret" in each), {})
     place = SourcePlace(Path(caret.get("file", "")), max(caret.get("line", 0), 0), max(caret.get("column", 0), 0))
     return Diagnostic(" ".join(str(found.get("message", "")).split()), place)

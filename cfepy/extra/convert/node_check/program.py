@@ -11,6 +11,7 @@ from cfepy.extra.convert.configurations import configuration_headers
 from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.entry import LONGEST_QUEUE
 from cfepy.extra.convert.message_headers import Profile
+from cfepy.extra.convert.node_check.compiler import Diagnostic
 from cfepy.extra.convert.node_check.findings import CheckReport, GraphName, SourcePlace
 from cfepy.extra.convert.node_check.headers import (
     OURS,
@@ -41,6 +42,7 @@ _MOST_FILES = 2000
 _MOST_BYTES = 4_000_000  # of all files of a program
 _NODELET = re.compile(rb"\bPLUGINLIB_(?:EXPORT|DECLARE)_CLASS\b|\bNODELET_EXPORT\b")
 _PARTS = ("Request", "Response")
+_TWO_NAMES = re.compile(r"\b([A-Za-z]\w*)::([A-Za-z]\w*)")
 
 
 class ProgramSources:
@@ -130,6 +132,40 @@ class ProgramSources:
                 name = constants.get(each.text.rpartition("::")[2]) if each.name is None else each.name
                 found.append(each._replace(type=kind, name=name))
         return found
+
+    def with_types(
+        self, names: Sequence[GraphName], calls: Sequence[tuple[Diagnostic, SourcePlace]]
+    ) -> list[GraphName]:
+        """Return names with the message types that the compiler knows of calls that subscribe.
+
+        Args:
+            names: of the sources.
+            calls: calls that subscribe, each with its place in a file of the program.
+
+        Returns:
+            The names. A call in a template has one for each type. A call that is in no source has a name without a
+            text.
+        """
+        types: dict[SourcePlace, list[str]] = {}
+        for call, place in calls:
+            kind = self._type_in(call.message)
+            known = types.setdefault(place, [])
+            known += [kind] if kind and kind not in known else []
+        found = []
+        for each in names:
+            kinds = types.pop(each.place, []) if each.kind == "subscribe" else []
+            found += [each._replace(type=kind) for kind in kinds] or [each]
+        there = {(each.place[:2], each.type) for each in found if each.kind == "subscribe"}
+        for place, kinds in types.items():
+            new = (kind for kind in kinds if (place[:2], kind) not in there)
+            found += [GraphName("subscribe", None, "a topic", place, kind) for kind in new]
+        return found
+
+    def _type_in(self, told: str) -> str:
+        """Return the first message type in a text of the compiler about a call."""
+        _, _, given = told.rpartition("[with ")
+        pairs = _TWO_NAMES.findall(given)
+        return next((f"{one}/{other}" for one, other in pairs if self._is_message(f"{one}/{other}")), "")
 
     def _agreed(self, found: dict[str, str], what: str) -> dict[str, str]:
         """Return the values of names in all files; a name with different values is left out."""

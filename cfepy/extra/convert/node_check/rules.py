@@ -103,6 +103,12 @@ RULES: dict[str, CheckRule] = {
             "use another call; docs/how_to/convertor.md lists the available calls",
         ),
         CheckRule(
+            *("undefined-name", _E, _E, _E),
+            "a function or a variable that is declared and used, and that no source of the node defines",
+            "the application cannot be loaded",
+            "name the source that defines it in CMakeLists.txt; a library from outside has no build for cFE",
+        ),
+        CheckRule(
             *("message-definition", _E, _E, _E),
             "a message whose definition is wrong, or names a missing message",
             "its header cannot be generated",

@@ -1,0 +1,118 @@
+"""The check asks the compiler for the types of subscriptions, and the linker for names that nothing defines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.extra.convert.message_headers import Profile
+from cfepy.extra.convert.node_check import CheckReport, check_program, programs_of
+from cfepy.extra.convert.undefined_names import undefined_names
+from dev.roscfe.building import needs_cpp
+
+FORMS = """
+#include <message_filters/subscriber.h>
+#include <ros/ros.h>
+#include <sensor_msgs/Imu.h>
+#include <std_msgs/Int32.h>
+#include <std_msgs/String.h>
+
+struct Functor
+{
+    void operator()(const std_msgs::Int32ConstPtr &) const {}
+};
+
+class Node
+{
+  public:
+    Node() : filter_(nh_, "filtered", 3)
+    {
+        boost::function<void(const sensor_msgs::ImuConstPtr &)> call = boost::bind(&Node::imu, this, _1, 2);
+        hold(nh_.subscribe<sensor_msgs::Imu>("bound", 2, boost::bind(&Node::imu, this, _1, 1)));
+        hold(nh_.subscribe("held", 2, call));
+        hold(nh_.subscribe<std_msgs::Int32>("functor", 5, Functor()));
+\tauto other = nh_.subscribe("method", 1, &Node::text, this);
+        auto handler = [](const std_msgs::StringConstPtr &) {};
+        hold(nh_.subscribe<std_msgs::String>("kept", 7, handler));
+        hear<std_msgs::Int32>("wrapped");
+        hold(other);
+    }
+    template <class M>
+    void hear(const char *name)
+    {
+        hold(nh_.subscribe<M>(name, 9, [](const boost::shared_ptr<M const> &) {}));
+    }
+    void imu(const sensor_msgs::ImuConstPtr &, int) {}
+    void text(std_msgs::String) {}
+    void hold(const ros::Subscriber &made) { made_.push_back(made); }
+
+  private:
+    ros::NodeHandle                               nh_;
+    std::vector<ros::Subscriber>                  made_;
+    message_filters::Subscriber<sensor_msgs::Imu> filter_;
+};
+
+int main(int argc, char **argv)
+{
+    ros::init(argc, argv, "forms");
+    Node node;
+    ros::spin();
+}
+"""
+LOST = """
+#include <ros/ros.h>
+double filtered(double value);
+extern int count;
+extern "C" void CFE_ES_ExitApp(unsigned);
+int main(int argc, char **argv)
+{
+    ros::init(argc, argv, "lost");
+    CFE_ES_ExitApp(0);
+    return filtered(count);
+}
+"""
+
+
+def checked(tmp_path: Path, text: str) -> CheckReport:
+    source = tmp_path / "node.cpp"
+    source.write_text(text, encoding="utf-8")
+    return check_program(programs_of([str(source)], {})[0], Profile.HOST, {})
+
+
+@needs_cpp
+@pytest.mark.slow
+def test_memory_is_known_of_callbacks_of_any_form(tmp_path: Path) -> None:
+    report = checked(tmp_path, FORMS)
+    assert not report.is_refused
+    assert [(each.topic, each.type, each.slots) for each in report.memory] == [
+        ("bound", "sensor_msgs/Imu", 6),
+        ("held", "sensor_msgs/Imu", 6),
+        ("functor", "std_msgs/Int32", 9),
+        ("method", "std_msgs/String", 5),
+        ("kept", "std_msgs/String", 11),
+        ("name", "std_msgs/Int32", 13),
+        ("a topic", "sensor_msgs/Imu", 68),
+    ]
+
+
+@needs_cpp
+@pytest.mark.slow
+def test_name_that_nothing_defines_is_an_error_before_flight(tmp_path: Path) -> None:
+    errors = [each for each in checked(tmp_path, LOST).findings if each.rule == "undefined-name"]
+    assert [(each.place.line, each.message) for each in errors] == [(10, "nothing defines count, filtered(double)")]
+
+
+def test_undefined_names_are_read_from_the_linker() -> None:
+    said = """/usr/bin/ld: node.o: in function `main':
+/home/a/node.cpp:7: warning: undefined reference to `help(int)'
+/usr/bin/ld: /home/a/node.cpp:8: undefined reference to `help(int)'
+/usr/bin/ld: node.o:(.data.rel+0x0): undefined reference to `vtable for Own'
+/usr/bin/ld: /home/a/node.cpp:9: undefined reference to `CFE_ES_ExitApp'
+/usr/bin/ld: /home/a/node.cpp:9: undefined reference to `vtable for ros::Thing'
+"""
+    assert [tuple(each) for each in undefined_names(said, with_library=False)] == [
+        ("/home/a/node.cpp", 7, "help(int)"),
+        ("", 0, "vtable for Own"),
+    ]
+    assert undefined_names(said, with_library=True)[-1].name == "vtable for ros::Thing"
