@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from cfepy.ground.bag import BagReader, header_of, is_bag
     from cfepy.ground.command_trial import CommandTrial
     from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, table_type, table_types
+    from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS, ForeignDeclarations
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
     from cfepy.ground.json_messages import message_from_json
@@ -59,6 +60,7 @@ __all__ = [
     "EVENTS",
     "EVENT_IDS",
     "EVENT_TYPES",
+    "FOREIGN_DECLARATIONS",
     "LOOK_S",
     "PACKAGE",
     "PACKETS",
@@ -73,6 +75,7 @@ __all__ = [
     "Decoded",
     "DecodedEvent",
     "Dictionary",
+    "ForeignDeclarations",
     "GroundConsole",
     "GroundLink",
     "LiveNames",
@@ -162,6 +165,10 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "dictionary_of",
                 "table_type",
                 "table_types",
+            ),
+            ".foreign_declarations": (
+                "FOREIGN_DECLARATIONS",
+                "ForeignDeclarations",
             ),
             ".events": (
                 "EVENT_IDS",

@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 from cfepy import msg, tbl
 from cfepy.es import NODE_SYMBOL
 from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
+from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS
 from cfepy.ground.mission_names import CORE_PACKETS
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import flat, int_of, line_of, measured_fields, texts_of, violations_of
@@ -244,6 +245,10 @@ def dictionary_of(spec: MissionSpec | None) -> Dictionary:
         items = declared(each, (*DECLARATIONS, TABLES), found.problems)
         found.add(item for item in items if not isinstance(item, TableType))
         if each is not None:
+            for read in FOREIGN_DECLARATIONS.all():
+                foreign = read(each)
+                found.add(foreign.packets)
+                found.problems += foreign.problems
             tables += [(each, kind) for kind in items if isinstance(kind, TableType) and kind.telemetry is not None]
     if spec is not None:
         found.add(Topic(topic.name, topic.msg_id, raw=topic.raw) for topic in spec.ros.topics.values())
@@ -299,8 +304,15 @@ def table_types(mission: str | None, problems: list[str]) -> dict[str, TableType
     Raises:
         UsageError: if there is no such mission.
     """
-    own = declared(read_mission(mission), ("TABLES",), problems) if mission is not None else []
-    return {kind.name: kind for kind in [*declared(None, ("TABLES",), problems), *own]}
+    found = {kind.name: kind for kind in declared(None, ("TABLES",), problems)}
+    if mission is None:
+        return found
+    spec = read_mission(mission)
+    for read in FOREIGN_DECLARATIONS.all():
+        foreign = read(spec)
+        found = {kind.name: kind for kind in foreign.tables} | found
+        problems += foreign.problems
+    return found | {kind.name: kind for kind in declared(spec, ("TABLES",), problems)}
 
 
 def table_type(name: str, mission: str | None) -> TableType:

@@ -17,6 +17,7 @@ from typing import Any
 from cfepy.es import NODE_SYMBOL
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
+from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS
 from cfepy.interpreter.syntax_trees import parsed_input
 from cfepy.mission import Mission, MissionSpec, find_declarations
 from cfepy.msg import is_valid_msg_id, topics
@@ -41,6 +42,9 @@ def names_of(spec: MissionSpec) -> dict[int, str]:
         if entry.symbol != NODE_SYMBOL:
             for name, msg_id in constants_in(find_declarations(entry.path, spec.folder)):
                 names.setdefault(msg_id, _with_prefix(name, entry.name))
+    for read in FOREIGN_DECLARATIONS.all():
+        for msg_id, name in read(spec).names.items():
+            names.setdefault(msg_id, name)
     if spec.has_nodes:
         from rospy_shim.parameters import table
 

@@ -42,7 +42,7 @@ def packet_of(declared: Command, words: Iterable[str]) -> bytes:
             raise UsageError("is given twice; remove one", field=path)
         given.add(path)
         for cell, item in _targets(declared.name, cells, path, text):
-            payload[cell.offset : cell.offset + cell.size] = _packed(cell, item)
+            declared.payload.put(cell, parse_cell(cell, item), payload)
 
     each_of(partial(set_field, word) for word in words)
     return bytes(command(declared.msg_id, declared.code or 0, bytes(payload)))
@@ -77,14 +77,6 @@ def unknown_field(owner: str, paths: Iterable[str], path: str) -> UsageError:
     if not known:
         return UsageError(f"{owner} has no fields", field=path)
     return UsageError(f"unknown field of {owner}; {expected(path, known)}", field=path)
-
-
-def _packed(cell: Cell, text: str) -> bytes:
-    value = parse_cell(cell, text)
-    try:
-        return Layout(cell.path, [("value", cell.type)]).pack(value=value)
-    except UsageError as error:
-        raise UsageError(error.text, field=cell.path) from None
 
 
 def parse_cell(cell: Cell, text: str) -> int | float | str:

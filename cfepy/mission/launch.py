@@ -153,6 +153,7 @@ def _with_sections(spec: MissionSpec, path: Path, said: MissionSections) -> Miss
         cpp_nodes=said.cpp_nodes,
         demands=said.demands,
         sweep=said.sweep,
+        dictionary=said.dictionary,
     )
 
 

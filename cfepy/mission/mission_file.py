@@ -45,7 +45,7 @@ class MissionSections:
 
     Attributes:
         name, board, memory, cfe_version, safe, scheduling, epoch, compiled, cpp_nodes, limits, nodes, topics, params,
-            params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep: the values of these sections;
+            params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep, dictionary: the values of these sections;
             `name`, `board`, `memory` and `epoch` are None if missing.
         demands: the sections of `DEMANDS`, unread.
         places: all known sections in the file, unread.
@@ -70,6 +70,7 @@ class MissionSections:
     ros_bridge: RosBridge = field(default_factory=RosBridge)
     launch: tuple[LaunchFile, ...] = ()
     sweep: SweepConfig = field(default_factory=SweepConfig)
+    dictionary: tuple[Path, ...] = ()
     demands: Mapping[str, Marked] = field(default_factory=dict)
     places: Mapping[str, Marked] = field(default_factory=dict)
 
@@ -121,6 +122,24 @@ def read_launches(section: Marked, mistakes: Mistakes) -> tuple[LaunchFile, ...]
     """
     found = (mistakes.attempt(partial(_launch, item)) for item in mistakes.items(section))
     return tuple(each for each in found if each is not None)
+
+
+def read_dictionary(section: Marked, mistakes: Mistakes) -> tuple[Path, ...]:
+    """Return the files and folders under `dictionary:`, which declare packets and tables of applications.
+
+    Args:
+        section: the list; paths are relative to the folder of its file.
+        mistakes: collects missing files.
+    """
+    found = (mistakes.attempt(partial(_dictionary, item)) for item in mistakes.items(section))
+    return tuple(each for each in found if each is not None)
+
+
+def _dictionary(item: Marked) -> Path:
+    path = Path(os.path.normpath(item.file.parent / item.text()))
+    if not os.path.exists(path):
+        raise item.fail(f"file not found: {path}; give a file or folder relative to the mission's folder")
+    return path
 
 
 def _launch(item: Marked) -> LaunchFile:
@@ -396,6 +415,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "ros_bridge": read_bridge,
     "launch": read_launches,
     "sweep": read_sweep,
+    "dictionary": read_dictionary,
 }
 """The readers of the sections, which return the attributes of `MissionSections`, or None for an invalid section."""
 

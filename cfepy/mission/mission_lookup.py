@@ -171,6 +171,7 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
         cpp_nodes=said.cpp_nodes,
         demands=said.demands,
         sweep=said.sweep,
+        dictionary=said.dictionary,
     )
     if not said.launch:
         if spec.startup is not None:

@@ -109,6 +109,7 @@ class MissionSpec:
         sweep: the meaning of a rate, for `cfepy sweep`.
         ids: the identities of `cfepy.config.platform.IDENTITIES` that the run overrides.
         epoch_ns: date at which the computer is switched on, as Unix time in ns; None for the time of cFE's defaults.
+        dictionary: files and folders that declare packets and tables of its applications, from its mission file.
         beside: the missions that fly together with it; this one can see the declarations of their applications.
     """
 
@@ -133,6 +134,7 @@ class MissionSpec:
     epoch_ns: int | None = None
     beside: tuple[MissionSpec, ...] = ()
     memory: str | None = None
+    dictionary: tuple[Path, ...] = ()
 
     @property
     def startup_script(self) -> bytes:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.msg.bit_layout import BitLayout, Place
     from cfepy.msg.dictionary import NO_PAYLOAD, Command, Telemetry
     from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, DONE, CommandTable, Dispatch, Handler
     from cfepy.msg.header import (
@@ -109,6 +110,7 @@ __all__ = [
     "SYS_TIME",
     "TLM_HEADER_SIZE",
     "YELLOW",
+    "BitLayout",
     "Cell",
     "Command",
     "CommandTable",
@@ -118,6 +120,7 @@ __all__ = [
     "Measurement",
     "MsgType",
     "Packet",
+    "Place",
     "SegmentationFlag",
     "Telemetry",
     "ValueNames",
@@ -184,6 +187,10 @@ if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".bit_layout": (
+                "BitLayout",
+                "Place",
+            ),
             ".dictionary": (
                 "NO_PAYLOAD",
                 "Command",

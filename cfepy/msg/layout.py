@@ -60,6 +60,14 @@ class ValueNames:
         self.values: Mapping[str, int] = values
         self._texts = {number: name for name, number in values.items()}
 
+    @classmethod
+    def of(cls, type: str, values: Mapping[str, int]) -> ValueNames:
+        """Return an integer whose names, such as "flags" or "On/Off", may be any text."""
+        made = cls(type)
+        made.values = dict(values)
+        made._texts = {number: name for name, number in values.items()}
+        return made
+
     def number(self, text: str) -> int:
         """Return the value of a name, in upper or lower case.
 
@@ -68,9 +76,12 @@ class ValueNames:
         """
         total = 0
         for part in text.split("+") if self.flags else [text]:
-            if part.upper() not in self.values:
+            number = self.values.get(part.upper(), self.values.get(part))
+            if number is None:
+                number = next((value for name, value in self.values.items() if name.upper() == part.upper()), None)
+            if number is None:
                 raise UsageError(f"unknown value {part!r}; {self._expected(part)}")
-            total |= self.values[part.upper()]
+            total |= number
         return total
 
     def _expected(self, name: str) -> str:
@@ -195,7 +206,11 @@ class Measurement:
 
 
 class Cell(NamedTuple):
-    """A number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` is "u16" or "char[20]"."""
+    """A number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` is "u16" or "char[20]".
+
+    A number of a `cfepy.msg.BitLayout` may have any number of bits, such as "u3". Then `bit` counts the bits before it
+    in the byte at `offset`, and `size` is the number of bytes that it touches. `big_endian` is its byte order.
+    """
 
     path: str
     type: str
@@ -203,6 +218,8 @@ class Cell(NamedTuple):
     size: int
     names: ValueNames | None = None
     measurement: Measurement | None = None
+    bit: int = 0
+    big_endian: bool = False
 
 
 class _Scalar:
@@ -419,6 +436,23 @@ class Layout:
         prefix = f"{path}." if path else ""
         for field, kind in self._fields.items():
             yield from kind.cells(prefix + field, at + self.offsets[field])
+
+    def put(self, cell: Cell, value: Any, payload: bytearray) -> None:
+        """Write the value of one cell into a payload of this struct.
+
+        Args:
+            cell: one of `cells`.
+            value: its value.
+            payload: the bytes of the whole struct.
+
+        Raises:
+            UsageError: for a value that does not fit; `field` is the cell's path.
+        """
+        try:
+            data = Layout(cell.path, [("value", cell.type)], on_the_wire=self.on_the_wire).pack(value=value)
+        except UsageError as error:
+            raise UsageError(error.text, field=cell.path) from None
+        payload[cell.offset : cell.offset + cell.size] = data
 
     def zero(self) -> dict[str, Any]:
         """Return the value of an all-zero struct."""

@@ -184,6 +184,7 @@ def mission_schema() -> Schema:
             {"anyOf": [TEXT, record(mission_file.LAUNCH_FIELDS, {"file": TEXT, "args": TEXTS}, needed=["file"])]}
         ),
         "sweep": _sweep(),
+        "dictionary": _list(TEXT),
         "invariants": named(_invariant()),
         "results": named(_result()),
         "deadlines": _deadlines(),

@@ -1,0 +1,237 @@
+"""Commands, telemetry and tables of electronic data sheets, as NASA's EdsLib finds them.
+
+A component of a package requires interfaces of the Software Bus: `CFE_SB/Telecommand`, `CFE_SB/Telemetry`, and
+`CFE_TBL/Table`. Each names the type of its packets, and a topic. The commands of an interface are the containers derived
+from that type with a function code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from importlib.resources import as_file, files
+from pathlib import Path
+from typing import NamedTuple
+
+from cfepy.extra.dictionaries.document import XmlTag, read_document
+from cfepy.extra.dictionaries.eds_defaults import DEFAULTS
+from cfepy.extra.dictionaries.eds_types import EdsTypes
+from cfepy.extra.dictionaries.names import command_name, packet_name, snake
+from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, Problem, SourceContent
+from cfepy.extra.dictionaries.parameters import Parameters
+from cfepy.extra.dictionaries.types import Array, Struct, Type, without_wrapper
+from cfepy.msg import cmd_topic_id_to_msg_id
+from cfepy.status import UsageError
+
+COMMANDS, TELEMETRY, TABLES = "CFE_SB/Telecommand", "CFE_SB/Telemetry", "CFE_TBL/Table"
+_CODE = "Sec.FunctionCode"
+_HEADERS = {COMMANDS: "CFE_HDR/CommandHeader", TELEMETRY: "CFE_HDR/TelemetryHeader"}
+_BITS = {COMMANDS: 0x1800, TELEMETRY: 0x0800}
+_GLOBAL_BITS = 0x60
+_RANGES = {
+    COMMANDS: (("TELECOMMAND", 0), ("GLOBAL_CMD", _GLOBAL_BITS)),
+    TELEMETRY: (("TELEMETRY", 0), ("GLOBAL_TLM", _GLOBAL_BITS)),
+}
+ROOTS = ("PackageFile", "DesignParameters")
+"""The outermost tags of electronic data sheets."""
+
+
+class Interface(NamedTuple):
+    """An interface of a component: its tag, its package, `COMMANDS`, `TELEMETRY` or `TABLES`, and the tags of its
+    parameters by name.
+    """
+
+    tag: XmlTag
+    package: str
+    kind: str
+    parameters: dict[str, XmlTag]
+
+
+class DataSheets:
+    """All electronic data sheets of a mission.
+
+    Args:
+        roots: the outermost tags of the files.
+
+    Attributes:
+        problems: a problem for each file or package that could not be read.
+    """
+
+    def __init__(self, roots: Iterable[XmlTag]) -> None:
+        self.parameters = Parameters(DEFAULTS)
+        self.types = EdsTypes(self.parameters)
+        self.problems: list[Problem] = []
+        packages: list[XmlTag] = []
+        for root in roots:
+            if root.name == "DesignParameters":
+                self._attempt(root, lambda root=root: self.parameters.read(root))
+            else:
+                packages += root.all("Package")
+        known = {each.attributes.get("name") for each in packages}
+        packages += [each for each in _base_packages() if each.attributes["name"] not in known]
+        for package in packages:
+            self._attempt(package, lambda package=package: self.types.read(package))
+        self.types.link()
+        self.packages = packages
+
+    def content(self) -> SourceContent:
+        """Return the packets and tables of all components."""
+        content = SourceContent("EDS", problems=self.problems)
+        for interface in self._interfaces():
+            try:
+                self._add(interface, content)
+            except UsageError as error:
+                self._say(error)
+        return content
+
+    def _attempt(self, tag: XmlTag, read: object) -> None:
+        try:
+            assert callable(read)
+            read()
+        except UsageError as error:
+            self._say(error)
+
+    def _say(self, error: UsageError) -> None:
+        text = error.text if error.field is None else f"{error.field}: {error.text}"
+        self.problems.append(Problem(Path(error.file or ""), error.line or 0, text))
+
+    def _interfaces(self) -> Iterator[Interface]:
+        for package in self.packages:
+            name = package.attributes.get("name", "")
+            for component in package.inside("ComponentSet", "Component"):
+                variables = {
+                    each.attributes.get("name", ""): each
+                    for each in component.inside("Implementation", "VariableSet", "Variable")
+                }
+                maps = list(component.inside("Implementation", "ParameterMapSet", "ParameterMap"))
+                for tag in component.inside("RequiredInterfaceSet", "Interface"):
+                    kind = tag.attributes.get("type", "")
+                    if kind in (COMMANDS, TELEMETRY, TABLES):
+                        mine = [each for each in maps if each.attributes.get("interface") == tag.attributes.get("name")]
+                        found = {
+                            each.attributes.get("parameter", ""): variables[each.attributes.get("variableRef", "")]
+                            for each in mine
+                            if each.attributes.get("variableRef", "") in variables
+                        }
+                        yield Interface(tag, name, kind, found)
+
+    def _add(self, interface: Interface, content: SourceContent) -> None:
+        generic = next(iter(interface.tag.inside("GenericTypeMapSet", "GenericTypeMap")), None)
+        if generic is None:
+            raise interface.tag.fail("missing <GenericTypeMap>; add it with the type of its packets")
+        full = self.types.find(self.parameters.text(generic, "type"), interface.package, generic)
+        if interface.kind == TABLES:
+            self._add_table(interface, full, content)
+            return
+        msg_id = self._msg_id(interface)
+        name = packet_name(interface.package, interface.tag.need("name"))
+        content.names.setdefault(msg_id, name)
+        if interface.kind == TELEMETRY:
+            content.packets.append(self._packet(interface, full, name, msg_id))
+            return
+        derived = list(self._commands_of(full))
+        for each, code in derived:
+            own = command_name(interface.package, each.partition("/")[2])
+            try:
+                content.packets.append(self._packet(interface, each, own, msg_id, code))
+            except UsageError as error:
+                self._say(error)
+        if not derived:
+            content.packets.append(self._packet(interface, full, name, msg_id))
+
+    def _commands_of(self, base: str) -> Iterator[tuple[str, int]]:
+        """Yield the containers that are derived from a container with a function code, and their codes."""
+        for name in self.types.derived_from(base):
+            code = self.types.constraints(name).get(_CODE)
+            if code is None:
+                yield from self._commands_of(name)
+                continue
+            tag = self.types.tag(name)
+            try:
+                number = int(code, 0)
+            except ValueError:
+                raise tag.fail(f"the function code must be a number, not {code!r}") from None
+            yield name, number
+
+    def _packet(
+        self, interface: Interface, full: str, name: str, msg_id: int, code: int | None = None
+    ) -> DeclaredPacket:
+        whole = self.types.type(full)
+        tag = self.types.tag(full)
+        header = self._header_of(full, _HEADERS[interface.kind])
+        if header is None or not isinstance(whole, Struct):
+            raise tag.fail(f"must be derived from {_HEADERS[interface.kind]}; correct its baseType")
+        payload = without_wrapper(Struct(whole.name, whole.fields[len(header.fields) :]))
+        text = tag.attributes.get("shortDescription", "") or interface.tag.attributes.get("shortDescription", "")
+        structs = tuple(dict.fromkeys((whole.name, payload.name)))
+        is_command = interface.kind == COMMANDS
+        return DeclaredPacket(name, msg_id, payload, is_command, tag.file, tag.line, code, text, whole, structs)
+
+    def _header_of(self, full: str, header: str) -> Struct | None:
+        """Return the header from which a container is derived, or None."""
+        name: str | None = full
+        while name is not None:
+            if name == header:
+                found = self.types.type(name)
+                assert isinstance(found, Struct)
+                return found
+            name = self.types.base_of(name)
+        return None
+
+    def _msg_id(self, interface: Interface) -> int:
+        if "TopicId" not in interface.parameters:
+            raise interface.tag.fail("has no TopicId; add a <ParameterMap> with a <Variable> for it")
+        variable = interface.parameters["TopicId"]
+        topic = self.parameters.number(variable, "initialValue")
+        for name, bits in _RANGES[interface.kind]:
+            first, end = (self._number_of(f"CFE_MISSION/{name}_{word}_TOPICID") for word in ("BASE", "MAX"))
+            if first <= topic < end:
+                return _BITS[interface.kind] ^ bits ^ (topic - first)
+        what = "commands" if interface.kind == COMMANDS else "telemetry"
+        raise variable.fail(f"the topic {topic} is not one of {what}; correct the mission's cfe-topicids.xml")
+
+    def _number_of(self, name: str) -> int:
+        tag = XmlTag("Define", {"name": name, "value": f"${{{name}}}"}, Path(), 0)
+        return self.parameters.number(tag, "value")
+
+    def _add_table(self, interface: Interface, full: str, content: SourceContent) -> None:
+        name = interface.tag.need("name")
+        row, rows = _rows_of(self.types.type(full))
+        if row is None:
+            return
+        own = name if name != name.lower() else full.partition("/")[2]
+        own = own.removeprefix(f"{interface.package}_") if snake(own) == own else own
+        text = interface.tag.attributes.get("shortDescription", "")
+        table = f"{interface.package}.{name}"
+        content.tables.append(
+            DeclaredTable(table, row, rows, interface.tag.file, interface.tag.line, text, (row.name,))
+        )
+
+    def table(self, name: str) -> DeclaredTable | None:
+        """Return a table by its full name, if a type of that name is declared: HS.AppMon_Tbl is HS/AppMon_Tbl."""
+        full = name.replace(".", "/", 1)
+        if full not in self.types.names():
+            return None
+        row, rows = _rows_of(self.types.type(full))
+        tag = self.types.tag(full)
+        if row is None:
+            return None
+        return DeclaredTable(
+            name, row, rows, tag.file, tag.line, tag.attributes.get("shortDescription", ""), (row.name,)
+        )
+
+
+def _rows_of(kind: Type) -> tuple[Struct | None, int]:
+    """Return the row of a table and the number of rows."""
+    rows = 1
+    while isinstance(kind, Array):
+        kind, rows = kind.item, rows * kind.count
+    if isinstance(kind, Struct) and len(kind.fields) == 1 and rows == 1:
+        only = kind.fields[0].type
+        if isinstance(only, Array) and isinstance(only.item, Struct):
+            return only.item, only.count
+    return (kind, rows) if isinstance(kind, Struct) else (None, 0)
+
+
+def _base_packages() -> list[XmlTag]:
+    with as_file(files("cfepy.extra.dictionaries") / "base_types.xml") as path:
+        return list(read_document(path).all("Package"))

@@ -1,0 +1,102 @@
+"""The sources of a mission's dictionary: which there are, what they declare, and which of them names a packet.
+
+A mission names them under `dictionary:` of its mission file, and has them in a folder `dictionary` beside its startup
+script. The content of a file tells its kind. Where two sources declare a packet of the same MsgId and function code, the
+first of electronic data sheets, COSMOS, XTCE and debug data is used.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+
+from cfepy.extra.dictionaries.document import XmlTag, read_document
+from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
+from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, Problem, SourceContent
+from cfepy.extra.dictionaries.types import memory_layout
+from cfepy.ground import ForeignDeclarations
+from cfepy.mission import MissionSpec
+from cfepy.msg import Command, Telemetry
+from cfepy.status import UsageError
+from cfepy.tbl import TableType
+
+FOLDER = "dictionary"
+"""The folder of a mission with the files of its dictionary."""
+MOST_FILES = 2_000
+_SUFFIXES = (".xml", ".txt")
+
+
+def declarations_of(spec: MissionSpec) -> ForeignDeclarations:
+    """Return what the sources of a mission declare, each packet once."""
+    contents = contents_of(spec)
+    packets: dict[tuple[int, int | None], Command | Telemetry] = {}
+    tables: dict[str, TableType] = {}
+    names: dict[int, str] = {}
+    for content in contents:
+        for packet in content.packets:
+            packets.setdefault((packet.msg_id, packet.code), _as_packet(packet))
+        for table in content.tables:
+            tables.setdefault(table.name, _as_table(table))
+        for msg_id, name in content.names.items():
+            names.setdefault(msg_id, name)
+    problems = [str(problem) for content in contents for problem in content.problems]
+    return ForeignDeclarations(list(packets.values()), list(tables.values()), names, problems)
+
+
+def contents_of(spec: MissionSpec) -> tuple[SourceContent, ...]:
+    """Return the content of each kind of source of a mission, the one with precedence first."""
+    places = [*spec.dictionary, spec.folder / FOLDER]
+    files = tuple(dict.fromkeys(file for place in places for file in _files_at(place)))
+    return _contents(tuple((file, *_stamp(file)) for file in files))
+
+
+def _files_at(place: Path) -> Iterator[Path]:
+    """Yield the files of a place that may be a source: the file itself, or those in the folder, in order."""
+    if os.path.isfile(place):
+        yield place
+        return
+    found = sorted(each for each in place.rglob("*") if each.suffix.lower() in _SUFFIXES)
+    yield from (each for each in found[:MOST_FILES] if os.path.isfile(each))
+
+
+def _stamp(file: Path) -> tuple[int, int]:
+    try:
+        found = os.stat(file)
+    except OSError:
+        return 0, 0
+    return found.st_mtime_ns, found.st_size
+
+
+@lru_cache(8)  # a mission is read for each of its tools
+def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, ...]:
+    """Read files; their times and sizes distinguish them from earlier versions."""
+    problems: list[Problem] = []
+    sheets: list[XmlTag] = []
+    for file, *_ in files:
+        try:
+            if file.suffix.lower() == ".xml":
+                root = read_document(file)
+                if root.name in ROOTS:
+                    sheets.append(root)
+        except UsageError as error:
+            text = error.text if error.field is None else f"{error.field}: {error.text}"
+            problems.append(Problem(file, error.line or 0, text))
+    found: list[SourceContent] = []
+    if sheets:
+        found.append(DataSheets(sheets).content())
+    if problems:
+        found.append(SourceContent("files", problems=problems))
+    return tuple(found)
+
+
+def _as_packet(packet: DeclaredPacket) -> Command | Telemetry:
+    layout = memory_layout(packet.payload)
+    if packet.is_command:
+        return Command(packet.name, packet.msg_id, packet.code, layout, packet.text)
+    return Telemetry(packet.name, packet.msg_id, layout, packet.text)
+
+
+def _as_table(table: DeclaredTable) -> TableType:
+    return TableType(table.name, memory_layout(table.row), table.rows, description=table.text[:31])
