@@ -18,9 +18,9 @@ if TYPE_CHECKING:
     from cfepy.ground.bag import BagReader, header_of, is_bag
     from cfepy.ground.command_trial import CommandTrial
     from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, table_type, table_types
-    from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS, ForeignDeclarations
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
+    from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS, ForeignDeclarations
     from cfepy.ground.json_messages import message_from_json
     from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
     from cfepy.ground.layout_sources import DeclaredField, DeclaredLayout, declared_layouts

@@ -45,8 +45,8 @@ class MissionSections:
 
     Attributes:
         name, board, memory, cfe_version, safe, scheduling, epoch, compiled, cpp_nodes, limits, nodes, topics, params,
-            params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep, dictionary: the values of these sections;
-            `name`, `board`, `memory` and `epoch` are None if missing.
+            params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep, dictionary: the values of these
+            sections; `name`, `board`, `memory` and `epoch` are None if missing.
         demands: the sections of `DEMANDS`, unread.
         places: all known sections in the file, unread.
     """

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 from cfepy.msg.layout import Cell, Layout, Measurement, ValueNames
 from cfepy.reading.suggestions import expected
 from cfepy.reading.texts import from_bytes, to_bytes
-from cfepy.status import CFE_STATUS_WRONG_MSG_LENGTH, CfeError, UsageError
+from cfepy.status import UsageError
 
 Step = str | int
 """A step from a struct to a field: the name of a field, or the index in an array."""

@@ -72,14 +72,14 @@ _SIZES: Mapping[str, object] = {
     "SAMPLE_APP/STRING_VAL_LEN": 10,
 }
 
+
+def _topics(first: str, numbers: Mapping[str, int]) -> dict[str, str]:
+    base = f"${{CFE_MISSION/{first}_BASE_TOPICID}}"
+    return {f"CFE_MISSION/{name}_TOPICID": f"{base} + {number}" for name, number in numbers.items()}
+
+
 DEFAULTS: Mapping[str, str] = {
     **{name: str(value) for name, value in _SIZES.items()},
-    **{
-        f"CFE_MISSION/{name}_TOPICID": f"${{CFE_MISSION/TELECOMMAND_BASE_TOPICID}} + {n}"
-        for name, n in _COMMANDS.items()
-    },
-    **{
-        f"CFE_MISSION/{name}_TOPICID": f"${{CFE_MISSION/TELEMETRY_BASE_TOPICID}} + {n}"
-        for name, n in _TELEMETRY.items()
-    },
+    **_topics("TELECOMMAND", _COMMANDS),
+    **_topics("TELEMETRY", _TELEMETRY),
 }

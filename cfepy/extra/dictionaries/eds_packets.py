@@ -1,13 +1,13 @@
 """Commands, telemetry and tables of electronic data sheets, as NASA's EdsLib finds them.
 
 A component of a package requires interfaces of the Software Bus: `CFE_SB/Telecommand`, `CFE_SB/Telemetry`, and
-`CFE_TBL/Table`. Each names the type of its packets, and a topic. The commands of an interface are the containers derived
-from that type with a function code.
+`CFE_TBL/Table`. Each names the type of its packets, and a topic. The commands of an interface are the containers
+derived from that type with a function code.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from importlib.resources import as_file, files
 from pathlib import Path
 from typing import NamedTuple
@@ -15,11 +15,10 @@ from typing import NamedTuple
 from cfepy.extra.dictionaries.document import XmlTag, read_document
 from cfepy.extra.dictionaries.eds_defaults import DEFAULTS
 from cfepy.extra.dictionaries.eds_types import EdsTypes
-from cfepy.extra.dictionaries.names import command_name, packet_name, snake
-from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, Problem, SourceContent
+from cfepy.extra.dictionaries.names import command_name, packet_name
+from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
 from cfepy.extra.dictionaries.parameters import Parameters
 from cfepy.extra.dictionaries.types import Array, Struct, Type, without_wrapper
-from cfepy.msg import cmd_topic_id_to_msg_id
 from cfepy.status import UsageError
 
 COMMANDS, TELEMETRY, TABLES = "CFE_SB/Telecommand", "CFE_SB/Telemetry", "CFE_TBL/Table"
@@ -51,48 +50,39 @@ class DataSheets:
 
     Args:
         roots: the outermost tags of the files.
-
-    Attributes:
-        problems: a problem for each file or package that could not be read.
     """
 
     def __init__(self, roots: Iterable[XmlTag]) -> None:
         self.parameters = Parameters(DEFAULTS)
         self.types = EdsTypes(self.parameters)
-        self.problems: list[Problem] = []
+        self._content = SourceContent("EDS")
         packages: list[XmlTag] = []
         for root in roots:
             if root.name == "DesignParameters":
-                self._attempt(root, lambda root=root: self.parameters.read(root))
+                self._attempt(root, self.parameters.read)
             else:
                 packages += root.all("Package")
         known = {each.attributes.get("name") for each in packages}
         packages += [each for each in _base_packages() if each.attributes["name"] not in known]
         for package in packages:
-            self._attempt(package, lambda package=package: self.types.read(package))
+            self._attempt(package, self.types.read)
         self.types.link()
         self.packages = packages
 
     def content(self) -> SourceContent:
         """Return the packets and tables of all components."""
-        content = SourceContent("EDS", problems=self.problems)
         for interface in self._interfaces():
             try:
-                self._add(interface, content)
+                self._add(interface, self._content)
             except UsageError as error:
-                self._say(error)
-        return content
+                self._content.add_problem(error, interface.tag.file)
+        return self._content
 
-    def _attempt(self, tag: XmlTag, read: object) -> None:
+    def _attempt(self, tag: XmlTag, read: Callable[[XmlTag], None]) -> None:
         try:
-            assert callable(read)
-            read()
+            read(tag)
         except UsageError as error:
-            self._say(error)
-
-    def _say(self, error: UsageError) -> None:
-        text = error.text if error.field is None else f"{error.field}: {error.text}"
-        self.problems.append(Problem(Path(error.file or ""), error.line or 0, text))
+            self._content.add_problem(error, tag.file)
 
     def _interfaces(self) -> Iterator[Interface]:
         for package in self.packages:
@@ -134,7 +124,7 @@ class DataSheets:
             try:
                 content.packets.append(self._packet(interface, each, own, msg_id, code))
             except UsageError as error:
-                self._say(error)
+                content.add_problem(error, interface.tag.file)
         if not derived:
             content.packets.append(self._packet(interface, full, name, msg_id))
 
@@ -194,42 +184,30 @@ class DataSheets:
         return self.parameters.number(tag, "value")
 
     def _add_table(self, interface: Interface, full: str, content: SourceContent) -> None:
-        name = interface.tag.need("name")
-        row, rows = _rows_of(self.types.type(full))
-        if row is None:
-            return
-        own = name if name != name.lower() else full.partition("/")[2]
-        own = own.removeprefix(f"{interface.package}_") if snake(own) == own else own
+        name = f"{interface.package}.{interface.tag.need('name')}"
         text = interface.tag.attributes.get("shortDescription", "")
-        table = f"{interface.package}.{name}"
-        content.tables.append(
-            DeclaredTable(table, row, rows, interface.tag.file, interface.tag.line, text, (row.name,))
-        )
+        table = self._table(name, full, text)
+        if table is not None:
+            content.tables.append(table)
 
-    def table(self, name: str) -> DeclaredTable | None:
-        """Return a table by its full name, if a type of that name is declared: HS.AppMon_Tbl is HS/AppMon_Tbl."""
-        full = name.replace(".", "/", 1)
-        if full not in self.types.names():
-            return None
+    def _table(self, name: str, full: str, text: str) -> DeclaredTable | None:
+        """Return a table of a type; None if the type is not made of structs."""
         row, rows = _rows_of(self.types.type(full))
         tag = self.types.tag(full)
-        if row is None:
-            return None
-        return DeclaredTable(
-            name, row, rows, tag.file, tag.line, tag.attributes.get("shortDescription", ""), (row.name,)
-        )
+        return None if row is None else DeclaredTable(name, row, rows, tag.file, tag.line, text, (row.name,))
 
 
 def _rows_of(kind: Type) -> tuple[Struct | None, int]:
     """Return the row of a table and the number of rows."""
-    rows = 1
-    while isinstance(kind, Array):
-        kind, rows = kind.item, rows * kind.count
-    if isinstance(kind, Struct) and len(kind.fields) == 1 and rows == 1:
-        only = kind.fields[0].type
-        if isinstance(only, Array) and isinstance(only.item, Struct):
-            return only.item, only.count
-    return (kind, rows) if isinstance(kind, Struct) else (None, 0)
+    if isinstance(kind, Array):
+        row, rows = _rows_of(kind.item)
+        return row, rows * kind.length
+    if not isinstance(kind, Struct):
+        return None, 0
+    only = kind.fields[0].type if len(kind.fields) == 1 else None
+    if isinstance(only, Array) and isinstance(only.item, Struct):
+        return only.item, only.length
+    return kind, 1
 
 
 def _base_packages() -> list[XmlTag]:

@@ -264,7 +264,7 @@ class EdsTypes:
                 raise encoding.fail(f"the encoding {precision!r} is not supported; expected {known}")
             return number._replace(kind="f", bits=_FLOATS[precision], big_endian=big_endian)
         bits = self._parameters.count(encoding, "sizeInBits", 64)
-        rule = self._parameters.text_or(encoding, "encoding", "unsigned")
+        rule = self._parameters.text_or(encoding, "encoding", _SIGNED)  # as EdsLib reads it
         if rule not in ("unsigned", _SIGNED):
             raise encoding.fail(f"the encoding {rule!r} is not supported; expected unsigned or {_SIGNED}")
         if not big_endian and bits % 8:

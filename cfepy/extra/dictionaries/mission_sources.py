@@ -1,8 +1,8 @@
 """The sources of a mission's dictionary: which there are, what they declare, and which of them names a packet.
 
 A mission names them under `dictionary:` of its mission file, and has them in a folder `dictionary` beside its startup
-script. The content of a file tells its kind. Where two sources declare a packet of the same MsgId and function code, the
-first of electronic data sheets, COSMOS, XTCE and debug data is used.
+script. The content of a file tells its kind. Where two sources declare a packet of the same MsgId and function code,
+the first of electronic data sheets, COSMOS, XTCE and debug data is used.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from pathlib import Path
 
 from cfepy.extra.dictionaries.document import XmlTag, read_document
 from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
-from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, Problem, SourceContent
+from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
 from cfepy.extra.dictionaries.types import memory_layout
 from cfepy.ground import ForeignDeclarations
 from cfepy.mission import MissionSpec
@@ -72,7 +72,7 @@ def _stamp(file: Path) -> tuple[int, int]:
 @lru_cache(8)  # a mission is read for each of its tools
 def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, ...]:
     """Read files; their times and sizes distinguish them from earlier versions."""
-    problems: list[Problem] = []
+    unread = SourceContent("files")
     sheets: list[XmlTag] = []
     for file, *_ in files:
         try:
@@ -81,14 +81,11 @@ def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, 
                 if root.name in ROOTS:
                     sheets.append(root)
         except UsageError as error:
-            text = error.text if error.field is None else f"{error.field}: {error.text}"
-            problems.append(Problem(file, error.line or 0, text))
+            unread.add_problem(error, file)
     found: list[SourceContent] = []
     if sheets:
         found.append(DataSheets(sheets).content())
-    if problems:
-        found.append(SourceContent("files", problems=problems))
-    return tuple(found)
+    return (*found, unread) if unread.problems else tuple(found)
 
 
 def _as_packet(packet: DeclaredPacket) -> Command | Telemetry:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.extra.dictionaries.types import Struct
+from cfepy.status import UsageError
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +65,18 @@ class SourceContent:
     tables: list[DeclaredTable] = field(default_factory=list)
     names: dict[int, str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
+
+    def add_problem(self, error: UsageError, file: Path) -> None:
+        """Add an error, once.
+
+        Args:
+            error: the error.
+            file: the file that was read, for an error without one.
+        """
+        text = error.text if error.field is None else f"{error.field}: {error.text}"
+        problem = Problem(Path(error.file or file), error.line or 0, text)
+        if problem not in self.problems:
+            self.problems.append(problem)
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,7 +55,7 @@ class Array(NamedTuple):
     """A fixed number of equal items."""
 
     item: Type
-    count: int
+    length: int
 
 
 class Field(NamedTuple):
@@ -83,7 +83,7 @@ def bits_of(kind: Type) -> int:
     if isinstance(kind, Text):
         return 8 * kind.size
     if isinstance(kind, Array):
-        return kind.count * bits_of(kind.item)
+        return kind.length * bits_of(kind.item)
     if isinstance(kind, Struct):
         return sum(bits_of(field.type) for field in kind.fields)
     return kind.bits
@@ -92,7 +92,7 @@ def bits_of(kind: Type) -> int:
 def cells_of(kind: Type) -> int:
     """Return how many numbers and texts a type has."""
     if isinstance(kind, Array):
-        return kind.count * cells_of(kind.item)
+        return kind.length * cells_of(kind.item)
     if isinstance(kind, Struct):
         return sum(cells_of(field.type) for field in kind.fields)
     return 0 if isinstance(kind, Padding) else 1
@@ -152,7 +152,7 @@ def _alignment(kind: Type) -> int:
 
 def _parts(kind: Type, steps: tuple[str | int, ...]) -> Iterator[tuple[Type, tuple[str | int, ...]]]:
     if isinstance(kind, Array):
-        yield from ((kind.item, (*steps, number)) for number in range(kind.count))
+        yield from ((kind.item, (*steps, number)) for number in range(kind.length))
     elif isinstance(kind, Struct):
         yield from ((field.type, (*steps, field.name)) for field in kind.fields)
 
@@ -188,7 +188,7 @@ def _word(kind: Type) -> object | None:
         return _plain(kind)
     if isinstance(kind, Array):
         item = _word(kind.item)
-        return None if item is None else (item, kind.count)
+        return None if item is None else (item, kind.length)
     return None
 
 
