@@ -16,9 +16,9 @@ from cfepy.extra.dictionaries.document import XmlTag, read_document
 from cfepy.extra.dictionaries.eds_defaults import DEFAULTS
 from cfepy.extra.dictionaries.eds_types import EdsTypes
 from cfepy.extra.dictionaries.names import command_name, packet_name
-from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
+from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent, lines_of
 from cfepy.extra.dictionaries.parameters import Parameters
-from cfepy.extra.dictionaries.types import Array, Struct, Type, without_wrapper
+from cfepy.extra.dictionaries.types import Array, Struct, Type, memory_layout, without_wrapper
 from cfepy.status import UsageError
 
 COMMANDS, TELEMETRY, TABLES = "CFE_SB/Telecommand", "CFE_SB/Telemetry", "CFE_TBL/Table"
@@ -154,7 +154,19 @@ class DataSheets:
         text = tag.attributes.get("shortDescription", "") or interface.tag.attributes.get("shortDescription", "")
         structs = tuple(dict.fromkeys((whole.name, payload.name)))
         is_command = interface.kind == COMMANDS
-        return DeclaredPacket(name, msg_id, payload, is_command, tag.file, tag.line, code, text, whole, structs)
+        return DeclaredPacket(
+            name,
+            msg_id,
+            memory_layout(payload),
+            is_command,
+            tag.file,
+            tag.line,
+            code,
+            text,
+            whole,
+            lines_of(payload),
+            structs,
+        )
 
     def _header_of(self, full: str, header: str) -> Struct | None:
         """Return the header from which a container is derived, or None."""
@@ -194,7 +206,10 @@ class DataSheets:
         """Return a table of a type; None if the type is not made of structs."""
         row, rows = _rows_of(self.types.type(full))
         tag = self.types.tag(full)
-        return None if row is None else DeclaredTable(name, row, rows, tag.file, tag.line, text, (row.name,))
+        if row is None:
+            return None
+        layout = memory_layout(row)
+        return DeclaredTable(name, layout, rows, tag.file, tag.line, text, lines_of(row), (row.name,))
 
 
 def _rows_of(kind: Type) -> tuple[Struct | None, int]:

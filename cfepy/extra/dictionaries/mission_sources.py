@@ -12,13 +12,15 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
+from cfepy.extra.dictionaries.cosmos_reader import is_cosmos, read_cosmos
 from cfepy.extra.dictionaries.document import XmlTag, read_document
 from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
 from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
-from cfepy.extra.dictionaries.types import memory_layout
 from cfepy.ground import ForeignDeclarations
 from cfepy.mission import MissionSpec
 from cfepy.msg import Command, Telemetry
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.status import UsageError
 from cfepy.tbl import TableType
 
@@ -74,26 +76,37 @@ def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, 
     """Read files; their times and sizes distinguish them from earlier versions."""
     unread = SourceContent("files")
     sheets: list[XmlTag] = []
+    texts: list[Path] = []
     for file, *_ in files:
         try:
-            if file.suffix.lower() == ".xml":
-                root = read_document(file)
-                if root.name in ROOTS:
-                    sheets.append(root)
+            if file.suffix.lower() != ".xml":
+                texts += [file] if _is_cosmos(file) else []
+                continue
+            root = read_document(file)
+            if root.name in ROOTS:
+                sheets.append(root)
         except UsageError as error:
             unread.add_problem(error, file)
     found: list[SourceContent] = []
     if sheets:
         found.append(DataSheets(sheets).content())
+    if texts:
+        found.append(read_cosmos(texts))
     return (*found, unread) if unread.problems else tuple(found)
 
 
+def _is_cosmos(file: Path) -> bool:
+    try:
+        return is_cosmos(read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace"))
+    except OSError as error:
+        raise UsageError(f"cannot be read: {error.strerror}; correct the path", file=file) from None
+
+
 def _as_packet(packet: DeclaredPacket) -> Command | Telemetry:
-    layout = memory_layout(packet.payload)
     if packet.is_command:
-        return Command(packet.name, packet.msg_id, packet.code, layout, packet.text)
-    return Telemetry(packet.name, packet.msg_id, layout, packet.text)
+        return Command(packet.name, packet.msg_id, packet.code, packet.payload, packet.text)
+    return Telemetry(packet.name, packet.msg_id, packet.payload, packet.text)
 
 
 def _as_table(table: DeclaredTable) -> TableType:
-    return TableType(table.name, memory_layout(table.row), table.rows, description=table.text[:31])
+    return TableType(table.name, table.row, table.rows, description=table.text[:31])

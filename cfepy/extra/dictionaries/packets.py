@@ -1,11 +1,13 @@
-"""What a source of a dictionary declares: packets and tables with their types, and where."""
+"""What a source of a dictionary declares: packets and tables with their layouts, and where."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.extra.dictionaries.types import Struct
+from cfepy.extra.dictionaries.types import Array, Struct
+from cfepy.msg import Layout
 from cfepy.status import UsageError
 
 
@@ -16,48 +18,68 @@ class DeclaredPacket:
     Attributes:
         name: its name in ground tools.
         msg_id: its MsgId.
-        payload: the type of everything after the header.
-        whole: the type with its header, if the source describes it.
-        code: the function code of a command; None without one.
+        payload: the layout of everything after the header, in the memory of the flight computer.
         is_command: whether it is a command.
-        text: description.
         file: where it is declared.
         line: the line there.
+        code: the function code of a command; None without one.
+        text: description.
+        whole: the type with its header as it is on the wire, if the source describes it.
+        lines: the lines of fields, by path without indices.
         structs: names that its struct may have in C.
     """
 
     name: str
     msg_id: int
-    payload: Struct
+    payload: Layout
     is_command: bool
     file: Path
     line: int
     code: int | None = None
     text: str = ""
     whole: Struct | None = None
+    lines: Mapping[str, int] = field(default_factory=dict)
     structs: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class DeclaredTable:
-    """A table of a source: full name, row type, number of rows, and where."""
+    """A table of a source: full name, layout of a row, number of rows, where, description, and names in C of a row."""
 
     name: str
-    row: Struct
+    row: Layout
     rows: int
     file: Path
     line: int
     text: str = ""
+    lines: Mapping[str, int] = field(default_factory=dict)
     structs: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """An error of a source: file, line (0 for the whole file), and text."""
+
+    file: Path
+    line: int
+    text: str
+
+    def __str__(self) -> str:
+        """Return the error with its place."""
+        place = f"{self.file}:{self.line}" if self.line else str(self.file)
+        return f"{place}: {self.text}"
 
 
 @dataclass(slots=True)
 class SourceContent:
-    """Everything that a source declares, with a text for each thing that it could not read.
+    """Everything that a source declares, with a problem for each thing that it could not read.
 
     Attributes:
-        kind: "EDS", "COSMOS", "XTCE" or "debug data".
+        kind: the kind of source, such as "EDS".
+        packets: its packets.
+        tables: its tables.
         names: names of MsgIds.
+        problems: its problems.
     """
 
     kind: str
@@ -79,14 +101,17 @@ class SourceContent:
             self.problems.append(problem)
 
 
-@dataclass(frozen=True, slots=True)
-class Problem:
-    """An error of a source: file, line (0 for the whole file), and text."""
-
-    file: Path
-    line: int
-    text: str
-
-    def __str__(self) -> str:
-        place = f"{self.file}:{self.line}" if self.line else str(self.file)
-        return f"{place}: {self.text}"
+def lines_of(struct: Struct, path: str = "") -> dict[str, int]:
+    """Return the lines of the fields of a struct, by path without indices."""
+    found: dict[str, int] = {}
+    for each in struct.fields:
+        if not each.name:
+            continue
+        inner = f"{path}.{each.name}" if path else each.name
+        found[inner] = each.line
+        kind = each.type
+        while isinstance(kind, Array):
+            kind = kind.item
+        if isinstance(kind, Struct):
+            found |= lines_of(kind, inner)
+    return found
