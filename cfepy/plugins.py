@@ -132,7 +132,10 @@ OWN = (
             "telemetry_package": ".message_package:telemetry_package",
         },
     ),
-    _own("dictionaries", hooks={"declarations": ".mission_sources:declarations_of"}),
+    _own(
+        "dictionaries",
+        hooks={"declarations": ".mission_sources:declarations_of", "dictionary_formats": ".formats:FORMATS"},
+    ),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
     _own("attach", hooks={"realtime_flights": ".attach_door:AttachDoor"}),
     _own("viewers", hooks={"flight_options": ".viewer_options:Viewers"}),

@@ -20,7 +20,12 @@ if TYPE_CHECKING:
     from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, table_type, table_types
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
-    from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS, ForeignDeclarations
+    from cfepy.ground.foreign_declarations import (
+        DICTIONARY_FORMATS,
+        FOREIGN_DECLARATIONS,
+        ForeignDeclarations,
+        WriteDictionary,
+    )
     from cfepy.ground.json_messages import message_from_json
     from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
     from cfepy.ground.layout_sources import DeclaredField, DeclaredLayout, declared_layouts
@@ -57,6 +62,7 @@ __all__ = [
     "APPLICATIONS",
     "CI_PORT",
     "CLOCK",
+    "DICTIONARY_FORMATS",
     "EVENTS",
     "EVENT_IDS",
     "EVENT_TYPES",
@@ -92,6 +98,7 @@ __all__ = [
     "ShownPackets",
     "Survey",
     "Topic",
+    "WriteDictionary",
     "bag_series",
     "candidates",
     "check_message_type",
@@ -167,8 +174,10 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "table_types",
             ),
             ".foreign_declarations": (
+                "DICTIONARY_FORMATS",
                 "FOREIGN_DECLARATIONS",
                 "ForeignDeclarations",
+                "WriteDictionary",
             ),
             ".events": (
                 "EVENT_IDS",

@@ -67,12 +67,16 @@ def cells_with_padding(layout: Layout) -> Iterator[Cell]:
     """Yield the cells of a layout, and one of type "padding" for every gap."""
     at = 0
     for cell in layout.cells():
-        if cell.offset > at:
-            yield Cell("", "padding", at, cell.offset - at)
+        yield from _gap(at, cell.start)
         yield cell
-        at = cell.offset + cell.size
-    if layout.size > at:
-        yield Cell("", "padding", at, layout.size - at)
+        at = cell.start + cell.width
+    yield from _gap(at, 8 * layout.size)
+
+
+def _gap(at: int, end: int) -> Iterator[Cell]:
+    if end > at:
+        offset, bit = divmod(at, 8)
+        yield Cell("", "padding", offset, -(-end // 8) - offset, bit=bit, bits=end - at)
 
 
 def add(parent: Element, tag: str, **attributes: str) -> Element:
@@ -110,15 +114,40 @@ class TypeSet:
             return self._float(kind, bits)
         return self._integer(kind, bits, "unsigned" if kind[0] == "u" else "twosComplement")
 
-    def named(self, kind: str, names: ValueNames) -> str:
-        """Add an integer with named values; bit masks are plain numbers, because XTCE cannot name combinations."""
+    def big_endian(self, kind: str, bits: int) -> str:
+        """Add a number with its highest bit first, of any number of bits."""
+        if kind[0] == "u":
+            return self.bits(bits)
+        name = f"{kind}_big_endian_{bits}"
+        if not self._is_new(name):
+            return name
+        if kind[0] == "f":
+            found = add(self._set, f"Float{self._what}Type", name=name, sizeInBits=str(bits))
+            add(found, "FloatDataEncoding", sizeInBits=str(bits), encoding="IEEE754_1985")
+        elif kind == "bool":
+            found = add(self._set, f"Boolean{self._what}Type", name=name)
+            add(found, "IntegerDataEncoding", sizeInBits=str(bits), encoding="unsigned")
+        else:
+            found = add(self._set, f"Integer{self._what}Type", name=name, signed="true", sizeInBits=str(bits))
+            add(found, "IntegerDataEncoding", sizeInBits=str(bits), encoding="twosComplement")
+        return name
+
+    def named(self, kind: str, names: ValueNames, big_endian: bool = False) -> str:
+        """Add an integer with named values; bit masks are plain numbers, because XTCE cannot name combinations.
+
+        Args:
+            kind: its kind.
+            names: the names of its values.
+            big_endian: whether it has its highest bit first.
+        """
         if names.flags:
-            return self.number(kind)
-        name = "_".join([kind, *names.values])
+            return self.big_endian(kind, int(kind[1:])) if big_endian else self.number(kind)
+        name = "_".join([kind, *map(xtce_name, names.values), *(["big_endian"] if big_endian else [])])
         if self._is_new(name):
             found = self._type("Enumerated", name)
             encoding = "unsigned" if kind[0] == "u" else "twosComplement"
-            add(found, "IntegerDataEncoding", sizeInBits=kind[1:], encoding=encoding, byteOrder=LITTLE)
+            order = "" if big_endian else LITTLE
+            add(found, "IntegerDataEncoding", sizeInBits=kind[1:], encoding=encoding, byteOrder=order)
             values = add(found, "EnumerationList")
             for label, number in names.values.items():
                 add(values, "Enumeration", value=str(number), label=label)
@@ -132,10 +161,14 @@ class TypeSet:
             on_the_wire: as in its layout, whose numbers are unsigned then.
         """
         if cell.names is not None:
-            return self.named(cell.type, cell.names)
+            return self.named(cell.type, cell.names, cell.big_endian or cell.width % 8 > 0 or cell.bit > 0)
         if cell.measurement is not None and self._what == "Parameter":
-            return self.measured(cell.type, cell.measurement, on_the_wire)
-        return self.text(cell.size) if cell.type.startswith("char") else self.number(cell.type, on_the_wire)
+            return self.measured(cell.type, cell.measurement, on_the_wire or cell.big_endian)
+        if cell.type.startswith("char"):
+            return self.text(cell.size)
+        if cell.big_endian or cell.width % 8 or cell.bit:
+            return self.big_endian(cell.type, cell.width)
+        return self.number(cell.type, on_the_wire)
 
     def measured(self, kind: str, measurement: Measurement, big_endian: bool) -> str:
         """Add a number with a unit, a calibration and limits; a calibrated integer is a float on the ground."""
@@ -151,7 +184,7 @@ class TypeSet:
         if measurement.unit:
             add(add(found, "UnitSet"), "Unit").text = printable(measurement.unit)
         encoding = "IEEE754_1985" if is_float else "unsigned" if kind[0] == "u" else "twosComplement"
-        tag, order = ("Float" if is_float else "Integer"), "" if big_endian and kind[0] == "u" else LITTLE
+        tag, order = ("Float" if is_float else "Integer"), "" if big_endian else LITTLE
         data = add(found, f"{tag}DataEncoding", sizeInBits=bits, encoding=encoding, byteOrder=order)
         if measurement.is_calibrated:
             _add_calibrator(add(data, "DefaultCalibrator"), measurement)
@@ -177,12 +210,14 @@ class TypeSet:
             add(bits, "TerminationChar").text = UTF_8_NUL
         return name
 
-    def padding(self, size: int) -> str:
-        """Add bytes without meaning."""
-        name = f"padding{size}"
+    def padding(self, bits: int) -> str:
+        """Add bits without meaning."""
+        if bits % 8:
+            return self.bits(bits)
+        name = f"padding{bits // 8}"
         if self._is_new(name):
             encoding = add(self._type("Binary", name), "BinaryDataEncoding")
-            add(add(encoding, "SizeInBits"), "FixedValue").text = str(8 * size)
+            add(add(encoding, "SizeInBits"), "FixedValue").text = str(bits)
         return name
 
     def counted_text(self, count: str) -> str:
@@ -302,7 +337,7 @@ class _Telemetry:
             self._entry(entries, name, self._types.bits(bits))
         entries = self._container(TELEMETRY, "cFE's telemetry header", is_abstract=True)
         self._entry(entries, "TIME", self._types.time(zero_s))
-        self._padding(entries, 4)
+        self._padding(entries, 32)
         self._base(ROOT, TYPE="0", SEC_HDR_FLG="1")
 
     def add_packets(self, packets: Iterable[Telemetry | Topic]) -> None:
@@ -346,7 +381,7 @@ class _Telemetry:
     def _add_cells(self, entries: Element, name: str, cells: Iterable[Cell], packet: Telemetry) -> None:
         for cell in cells:
             if cell.type == "padding":
-                self._padding(entries, cell.size)
+                self._padding(entries, cell.width)
             else:
                 kind = self._types.cell(cell, packet.payload.on_the_wire)
                 self._entry(entries, self._unique(f"{name}_{xtce_name(cell.path)}"), kind)
@@ -374,13 +409,14 @@ class _Telemetry:
         add(self._parameters, "Parameter", name=name, parameterTypeRef=kind)
         add(entries, "ParameterRefEntry", parameterRef=name)
 
-    def _padding(self, entries: Element, size: int) -> None:
+    def _padding(self, entries: Element, bits: int) -> None:
         """Use one padding parameter of each size for all packets."""
-        kind = self._types.padding(size)
-        if kind not in self._names:
-            self._names.add(kind)
-            add(self._parameters, "Parameter", name=kind, parameterTypeRef=kind)
-        add(entries, "ParameterRefEntry", parameterRef=kind)
+        kind = self._types.padding(bits)
+        name = kind if kind.startswith("padding") else f"padding_{kind}"
+        if name not in self._names:
+            self._names.add(name)
+            add(self._parameters, "Parameter", name=name, parameterTypeRef=kind)
+        add(entries, "ParameterRefEntry", parameterRef=name)
 
 
 class XtceParameter(NamedTuple):
@@ -502,7 +538,7 @@ def _add_command(metas: Element, types: TypeSet, command: Command) -> None:
         _fixed(entries, value.to_bytes(size, "big"), field)
     for cell in cells_with_padding(command.payload):
         if cell.type == "padding":
-            _fixed(entries, bytes(cell.size))
+            _fixed(entries, bytes(cell.size), bits=cell.width)
         else:
             add(entries, "ArgumentRefEntry", argumentRef=xtce_name(cell.path))
 
@@ -518,5 +554,6 @@ def _command_header(command: Command) -> Iterable[tuple[str, int, int]]:
     )
 
 
-def _fixed(entries: Element, value: bytes, name: str = "") -> None:
-    add(entries, "FixedValueEntry", name=name, binaryValue=value.hex(), sizeInBits=str(8 * len(value)))
+def _fixed(entries: Element, value: bytes, name: str = "", bits: int = 0) -> None:
+    size = str(bits or 8 * len(value))
+    add(entries, "FixedValueEntry", name=name, binaryValue=value.hex(), sizeInBits=size)

@@ -205,7 +205,8 @@ class BitLayout(Layout):
             offset, bit = divmod(place.start, 8)
             size = -(-(bit + place.bits) // 8)
             big = place.kind != "char" and not place.is_swapped and place.bits > 8
-            yield Cell(prefix + place.path, place.type, at + offset, size, place.names, place.measurement, bit, big)
+            more = (place.names, place.measurement, bit, place.bits, big)
+            yield Cell(prefix + place.path, place.type, at + offset, size, *more)
 
     def put(self, cell: Cell, value: Any, payload: bytearray) -> None:
         """Write the value of one cell into a payload; see `Layout.put`."""

@@ -209,7 +209,8 @@ class Cell(NamedTuple):
     """A number or text of a struct: `path` is "PacketID.AppName" or "Counts[3]", `type` is "u16" or "char[20]".
 
     A number of a `cfepy.msg.BitLayout` may have any number of bits, such as "u3". Then `bit` counts the bits before it
-    in the byte at `offset`, and `size` is the number of bytes that it touches. `big_endian` is its byte order.
+    in the byte at `offset`, `bits` are its own, and `size` is the number of bytes that it touches. `big_endian` is its
+    byte order.
     """
 
     path: str
@@ -219,7 +220,18 @@ class Cell(NamedTuple):
     names: ValueNames | None = None
     measurement: Measurement | None = None
     bit: int = 0
+    bits: int = 0
     big_endian: bool = False
+
+    @property
+    def width(self) -> int:
+        """Its number of bits."""
+        return self.bits or 8 * self.size
+
+    @property
+    def start(self) -> int:
+        """Its first bit in the struct."""
+        return 8 * self.offset + self.bit
 
 
 class _Scalar:
@@ -380,6 +392,15 @@ class Layout:
         """The names of the fields, in order."""
         return tuple(self._fields)
 
+    @property
+    def is_packed(self) -> bool:
+        """Whether it has no padding although its fields would have some in C."""
+        return self.align == 1 and not self.on_the_wire and any(kind.align > 1 for kind in self._fields.values())
+
+    def types(self) -> Iterator[tuple[str, Any]]:
+        """Yield the fields as a declaration has them: names with types."""
+        return ((name, _declared_type(kind)) for name, kind in self._fields.items())
+
     def pack(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
         """Return the struct's bytes; a field not given is zero.
 
@@ -494,6 +515,15 @@ def _parse_type(kind: Any, path: str) -> _Type:
     for count in reversed(counts):
         parsed = _Array(parsed, count)
     return parsed
+
+
+def _declared_type(kind: _Type) -> Any:
+    """Return what a declaration has for a type."""
+    if isinstance(kind, _Array):
+        return _declared_type(kind.item), kind.count
+    if isinstance(kind, _Scalar):
+        return kind.measurement or kind.names or _name_of_code(kind.code)
+    return f"char[{kind.size}]" if isinstance(kind, _Text) else kind
 
 
 def _leaves(kind: _Type, value: Any, path: str) -> Iterator[tuple[str, str, Any]]:

@@ -195,6 +195,32 @@ def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
     )
     add_mission(xtce)
     add_output(xtce, "standard output", "-")
+    cosmos = formats.add_parser(
+        "cosmos",
+        help="commands and telemetry of a mission as text for COSMOS and OpenC3",
+        description="Write a mission's packets as command and telemetry text, a file for the folder `cmd_tlm` of a "
+        "target of COSMOS or OpenC3.",
+        examples=("cfepy export cosmos lab -o lab.txt",),
+    )
+    add_mission(cosmos)
+    add_output(cosmos, "standard output", "-")
+    ctf = formats.add_parser(
+        "ctf",
+        help="commands and telemetry of a mission as JSON for NASA's cFS Test Framework (CTF)",
+        description="Write a mission's packets as JSON files for NASA's cFS Test Framework (CTF), one for each MsgId.",
+        examples=("cfepy export ctf lab -o ccdd",),
+    )
+    add_mission(ctf)
+    add_output(ctf, "a folder", "ccdd")
+    python = formats.add_parser(
+        "python",
+        help="commands and telemetry of a mission as a Python module",
+        description="Write a module with the layouts, commands and telemetry of a mission, for your programs, or as "
+        "the ground names of an application.",
+        examples=("cfepy export python lab -o lab_packets.py",),
+    )
+    add_mission(python)
+    add_output(python, "standard output", "-")
     ros = formats.add_parser(
         "ros",
         help="telemetry of a mission as ROS messages: a catkin package, for programs beside `--ros-master`",

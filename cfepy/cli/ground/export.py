@@ -16,8 +16,8 @@ from cfepy.cli.json_output import STDOUT, write_text
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.user_notes import check_writable, writing
 from cfepy.cli.viewed_runs import look_at_series
-from cfepy.ground import Series, dictionary_of, surveyed_topics
-from cfepy.mission import read_mission
+from cfepy.ground import DICTIONARY_FORMATS, Dictionary, Series, dictionary_of, surveyed_topics
+from cfepy.mission import MissionSpec, read_mission
 from cfepy.msg import Telemetry
 from cfepy.pilot import booting
 from cfepy.plugins import Hook
@@ -46,37 +46,60 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such run, mission, message or field, it cannot boot, or a file cannot be written.
     """
-    formats = {"xtce": _xtce, "ros": _ros}
+    formats = {"xtce": _xtce, "ros": _ros, "cosmos": _text_of_dictionary, "python": _text_of_dictionary}
+    formats["ctf"] = _files_of_dictionary
     return formats.get(arguments.format, _values)(arguments)
 
 
 def _xtce(arguments: argparse.Namespace) -> int:
     from cfepy.ground.xtce import xtce_of
 
-    spec = read_mission(arguments.mission)
-    dictionary = dictionary_of(spec)
+    spec, dictionary = _known(arguments)
     with booting(spec.script):
         dictionary.learn(surveyed_topics(spec))
-    for problem in dictionary.problems:
-        print(f"cfepy: {problem}", file=sys.stderr)
     document = xtce_of(spec.name, dictionary, spec.zero_s(spec.config(load_profile(spec.board))))
     write_text(arguments.output, document, "--output", arguments)
     return ENDED_WELL
 
 
-def _ros(arguments: argparse.Namespace) -> int:
-    make = TELEMETRY_PACKAGE.need("the format ros")
+def _known(arguments: argparse.Namespace) -> tuple[MissionSpec, Dictionary]:
+    """Return the mission and its dictionary, and print the problems of the dictionary."""
     spec = read_mission(arguments.mission)
     dictionary = dictionary_of(spec)
     for problem in dictionary.problems:
         print(f"cfepy: {problem}", file=sys.stderr)
-    declared = [each for each in dictionary.telemetry.values() if isinstance(each, Telemetry)]
-    files = make(declared, spec.name)
+    return spec, dictionary
+
+
+def _text_of_dictionary(arguments: argparse.Namespace) -> int:
+    text = DICTIONARY_FORMATS.need(f"the format {arguments.format}")[arguments.format](*_known(arguments))
+    assert isinstance(text, str)
+    write_text(arguments.output, text, "--output", arguments)
+    return ENDED_WELL
+
+
+def _files_of_dictionary(arguments: argparse.Namespace) -> int:
+    files = DICTIONARY_FORMATS.need(f"the format {arguments.format}")[arguments.format](*_known(arguments))
+    assert not isinstance(files, str)
+    _write_files(files, arguments)
+    print(f"{arguments.output}: {len(files)} files")
+    return ENDED_WELL
+
+
+def _write_files(files: Mapping[str, str], arguments: argparse.Namespace) -> None:
     for name, text in files.items():
         path = Path(arguments.output) / name
         with writing(str(path), "--output"):
             path.parent.mkdir(parents=True, exist_ok=True)
             write_contained(Path(arguments.output), f"/{name}", text.encode())
+
+
+def _ros(arguments: argparse.Namespace) -> int:
+    make = TELEMETRY_PACKAGE.need("the format ros")
+    spec, dictionary = _known(arguments)
+    declared = [each for each in dictionary.telemetry.values() if isinstance(each, Telemetry)]
+    files = make(declared, spec.name)
+    _write_files(files, arguments)
     print(f"{arguments.output}: {len(files) - 2} message types of {len(declared)} packets")
     return ENDED_WELL
 
