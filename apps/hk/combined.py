@@ -55,7 +55,8 @@ def _pieces(entry: CopyEntry, source: Telemetry | None) -> Iterator[_Piece]:
     layout = None if source is None or source.payload.on_the_wire else source.payload
     for cell in () if layout is None else layout.cells():
         begin = TLM_HEADER_SIZE + cell.offset
-        if begin < at or begin + cell.size > entry.input_end:
+        is_odd = cell.bit or cell.width % 8 or cell.big_endian
+        if is_odd or begin < at or begin + cell.size > entry.input_end:
             continue
         if begin > at:
             yield _bytes(at, begin, shift, name)

@@ -104,6 +104,12 @@ class Dictionary:
                 self.telemetry.setdefault(each.name, each)
                 self._by_id.setdefault(each.msg_id, each)
 
+    def knows(self, packet: Command | Telemetry) -> bool:
+        """Return whether a packet of the same MsgId and function code is declared."""
+        if isinstance(packet, Command):
+            return (packet.msg_id, packet.code or 0) in self._by_code
+        return isinstance(self._by_id.get(packet.msg_id), Telemetry)
+
     def add_from_table(self, kind: TableType, image: bytes | None) -> None:
         """Add the packets that depend on a table; a topic known by name from the mission file stays.
 
@@ -241,19 +247,23 @@ def dictionary_of(spec: MissionSpec | None) -> Dictionary:
     for packets in CORE_PACKETS.values():
         found.add([*packets.COMMANDS, *packets.TELEMETRY])
     tables: list[tuple[MissionSpec, TableType]] = []
+    without_fields: list[Command | Telemetry] = []
     for each in (spec, *(() if spec is None else spec.beside)):
         items = declared(each, (*DECLARATIONS, TABLES), found.problems)
         found.add(item for item in items if not isinstance(item, TableType))
         if each is not None:
             for read in FOREIGN_DECLARATIONS.all():
                 foreign = read(each)
-                found.add(foreign.packets)
                 found.problems += foreign.problems
+                new = [packet for packet in foreign.packets if not found.knows(packet)]
+                found.add(packet for packet in new if packet.payload.size)
+                without_fields += [packet for packet in new if not packet.payload.size]
             tables += [(each, kind) for kind in items if isinstance(kind, TableType) and kind.telemetry is not None]
     if spec is not None:
         found.add(Topic(topic.name, topic.msg_id, raw=topic.raw) for topic in spec.ros.topics.values())
     for owner, kind in tables:
         found.add_from_table(kind, _default_image(owner, kind, found.problems))
+    found.add(packet for packet in without_fields if not found.knows(packet))  # a table may tell their fields
     return found
 
 

@@ -43,6 +43,8 @@ _IGNORED = (
     *("LIMITS_GROUP", "LIMITS_GROUP_ITEM", "LANGUAGE", "SELECT_TARGET"),
 )
 _BIT_KINDS = ("u", "i", "bool")
+PADDING = "PADDING_AT_THE_END"
+"""The item that makes a packet as long as its struct."""
 _MID_BITS, _CODE_START, _CODE_BITS, _HAS_CODE = 16, 48, 8, 0x1800
 
 
@@ -346,7 +348,7 @@ def _declared(packet: _Packet, file: Path) -> DeclaredPacket:
         at_code = [(place, value) for place, value in known if place.start < _CODE_START + _CODE_BITS]
         has_code = any(place.start + place.bits > _CODE_START for place, _ in at_code)
         code = header_value(at_code, _CODE_START, _CODE_BITS) & 0x7F if has_code else None
-    places = [place for each in items for place in each.places()]
+    places = [place for each in items if each.name != PADDING for place in each.places()]
     name = f"{snake(packet.target)}_{snake(packet.name)}"
     payload = payload_of(name, places, packet.end, packet.is_command)
     lines = {each.name: each.line for each in items}

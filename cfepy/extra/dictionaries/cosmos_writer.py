@@ -10,11 +10,12 @@ import re
 from collections.abc import Iterable, Iterator
 from itertools import groupby
 
+from cfepy.extra.dictionaries.cosmos_reader import PADDING
 from cfepy.extra.dictionaries.names import snake
 from cfepy.ground import Dictionary
 from cfepy.ground.xtce import xtce_name
 from cfepy.mission import MissionSpec
-from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Cell, Command, Measurement, Telemetry
+from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Cell, Command, Layout, Measurement, Telemetry
 
 BIG, LITTLE = "BIG_ENDIAN", "LITTLE_ENDIAN"
 _ITEM = re.compile(r"(.*)\[(\d+)\]")
@@ -49,6 +50,7 @@ def _command(target: str, command: Command) -> Iterator[str]:
     yield f'  {word} CCSDS_FC 48 8 UINT MIN MAX {command.code or 0} "Function code" {BIG}'
     yield f'  PARAMETER CCSDS_CHECKSUM 56 8 UINT MIN MAX 0 "Checksum" {BIG}'
     yield from _items(command.payload.cells(), "PARAMETER", 8 * CMD_HEADER_SIZE)
+    yield from _end(command.payload, "PARAMETER", 8 * CMD_HEADER_SIZE)
 
 
 def _telemetry(target: str, packet: Telemetry) -> Iterator[str]:
@@ -59,6 +61,7 @@ def _telemetry(target: str, packet: Telemetry) -> Iterator[str]:
     yield f'  ITEM CCSDS_SECONDS 48 32 UINT "Time, in s" {BIG}'
     yield f'  ITEM CCSDS_SUBSECONDS 80 16 UINT "Time, in 1/65536 s" {BIG}'
     yield from _items(packet.payload.cells(), "ITEM", 8 * TLM_HEADER_SIZE)
+    yield from _end(packet.payload, "ITEM", 8 * TLM_HEADER_SIZE)
 
 
 def _items(cells: Iterable[Cell], word: str, header: int) -> Iterator[str]:
@@ -76,6 +79,16 @@ def _items(cells: Iterable[Cell], word: str, header: int) -> Iterator[str]:
                 continue
             yield f'  {word} {name} {start} {cell.width} {kind}{_range(word, kind)} "" {order}'
             yield from _details(cell)
+
+
+def _end(layout: Layout, word: str, header: int) -> Iterator[str]:
+    """Yield the padding at the end of a packet, without which it would be too short."""
+    end = max((cell.start + cell.width for cell in layout.cells()), default=0)
+    if end < 8 * layout.size:
+        start, bits = header + end, 8 * layout.size - end
+        value = ' ""' if word == "PARAMETER" else ""
+        kind = "BLOCK" if bits % 8 == 0 else f"UINT{_range(word, 'UINT')}"
+        yield f'  {word} {PADDING} {start} {bits} {kind}{value if bits % 8 == 0 else ""} "Padding" {BIG}'
 
 
 def _range(word: str, kind: str) -> str:

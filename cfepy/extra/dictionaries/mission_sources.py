@@ -16,6 +16,8 @@ from cfepy.extra.dictionaries.cosmos_reader import is_cosmos, read_cosmos
 from cfepy.extra.dictionaries.document import XmlTag, read_document
 from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
 from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
+from cfepy.extra.dictionaries.xtce_reader import ROOT as XTCE_ROOT
+from cfepy.extra.dictionaries.xtce_reader import read_xtce
 from cfepy.ground import ForeignDeclarations
 from cfepy.mission import MissionSpec
 from cfepy.msg import Command, Telemetry
@@ -33,12 +35,12 @@ _SUFFIXES = (".xml", ".txt")
 def declarations_of(spec: MissionSpec) -> ForeignDeclarations:
     """Return what the sources of a mission declare, each packet once."""
     contents = contents_of(spec)
-    packets: dict[tuple[int, int | None], Command | Telemetry] = {}
+    packets: dict[tuple[int, int], Command | Telemetry] = {}
     tables: dict[str, TableType] = {}
     names: dict[int, str] = {}
     for content in contents:
         for packet in content.packets:
-            packets.setdefault((packet.msg_id, packet.code), _as_packet(packet))
+            packets.setdefault((packet.msg_id, packet.code or 0), _as_packet(packet))
         for table in content.tables:
             tables.setdefault(table.name, _as_table(table))
         for msg_id, name in content.names.items():
@@ -77,6 +79,7 @@ def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, 
     unread = SourceContent("files")
     sheets: list[XmlTag] = []
     texts: list[Path] = []
+    systems: list[XmlTag] = []
     for file, *_ in files:
         try:
             if file.suffix.lower() != ".xml":
@@ -85,6 +88,8 @@ def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, 
             root = read_document(file)
             if root.name in ROOTS:
                 sheets.append(root)
+            elif root.name == XTCE_ROOT:
+                systems.append(root)
         except UsageError as error:
             unread.add_problem(error, file)
     found: list[SourceContent] = []
@@ -92,6 +97,8 @@ def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, 
         found.append(DataSheets(sheets).content())
     if texts:
         found.append(read_cosmos(texts))
+    if systems:
+        found.append(read_xtce(systems))
     return (*found, unread) if unread.problems else tuple(found)
 
 
