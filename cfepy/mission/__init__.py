@@ -17,11 +17,13 @@ if TYPE_CHECKING:
     from cfepy.mission.cpp_nodes import (
         ARENA_BYTES,
         ARRAY,
+        GROUND_SERVICE,
         MOST_ITEMS,
         PROFILES,
         TEXT,
         CppNodesConfig,
         CppNodesError,
+        NodeGround,
     )
     from cfepy.mission.drawn_parameters import CHOICE, INTEGERS, ParameterDistribution
     from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
@@ -84,6 +86,7 @@ __all__ = [
     "CORE_APPS",
     "FILE",
     "FIRST_PIECE_NS",
+    "GROUND_SERVICE",
     "HOST",
     "INTEGERS",
     "KEPT_ENVIRONMENT",
@@ -113,6 +116,7 @@ __all__ = [
     "MissionSections",
     "MissionSpec",
     "NodeBuilder",
+    "NodeGround",
     "OutsideStream",
     "Overwrite",
     "PacketWatch",
@@ -183,11 +187,13 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".cpp_nodes": (
                 "ARENA_BYTES",
                 "ARRAY",
+                "GROUND_SERVICE",
                 "MOST_ITEMS",
                 "PROFILES",
                 "TEXT",
                 "CppNodesConfig",
                 "CppNodesError",
+                "NodeGround",
             ),
             ".drawn_parameters": ("CHOICE", "INTEGERS", "ParameterDistribution"),
             ".endless_wait": (

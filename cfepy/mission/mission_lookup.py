@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cfepy.mission.cpp_nodes import PROFILES, CppNodesConfig
+from cfepy.mission.cpp_nodes import GROUND_SERVICE, PROFILES, CppNodesConfig
 from cfepy.mission.launch_names import (
     LAUNCH_FILES,
     MISSION_FILE,
@@ -135,7 +135,8 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
     if script.suffix in LAUNCH_FILES:
         from cfepy.mission.launch import read_launch
 
-        return read_launch(script, args, build)
+        spec = read_launch(script, args, build)
+        return _with_ground(spec, spec.folder / LOCK_FILE) if spec.cpp_nodes.ground else spec
     if args:
         raise UsageError("is not a launch file, so it takes no arguments", file=mission, field="--arg")
     alone = is_alone(script)
@@ -147,7 +148,28 @@ def read_mission(mission: str, args: Mapping[str, str] | None = None, build: Nod
     if spec.has_nodes:
         spec = replace(spec, ros=replace(spec.ros, params={**ROSCORE_PARAMS, **spec.ros.params}))
     lock = spec.folder / LOCK_FILE
-    return replace(spec, ros=read_lock(lock, spec.ros)) if os.path.isfile(lock) else spec
+    if os.path.isfile(lock):
+        spec = replace(spec, ros=read_lock(lock, spec.ros))
+    return _with_ground(spec, lock) if spec.cpp_nodes.ground else spec
+
+
+def _with_ground(spec: MissionSpec, lock: Path) -> MissionSpec:
+    """Return a mission in which no topic or service gets a MsgId that the ground has of a node."""
+    of_services = dict(spec.ros.locked_services)
+    topics = {each.msg_id: name for name, each in spec.ros.topics.items()}
+    locked = topics | {msg_id: name for name, msg_id in spec.ros.locked_topics.items()}
+    for node, ground in spec.cpp_nodes.ground.items():
+        name = f"{node}{GROUND_SERVICE}"
+        others = locked | {msg_id: other for other, msg_id in of_services.items() if other != name}
+        if ground.msg_id in others:
+            where = lock if ground.msg_id not in topics and os.path.isfile(lock) else spec.mission_file
+            raise UsageError(
+                f"the MsgId 0x{ground.msg_id:04X} of {node} belongs to {others[ground.msg_id]}; choose another one",
+                file=where,
+                field="cpp_nodes.ground",
+            )
+        of_services[name] = ground.msg_id
+    return replace(spec, ros=replace(spec.ros, locked_services=of_services))
 
 
 def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None) -> MissionSpec:

@@ -230,10 +230,19 @@ def _cpp_nodes() -> Schema:
         "patternProperties": {"^[^/]+/[^/]+$": named(capacity)},
         "additionalProperties": False,
     }
+    ground: dict[str, Schema] = {
+        "msg_id": integer(cpp_nodes.LOWEST_GROUND_ID, cpp_nodes.HIGHEST_GROUND_ID),
+        "performance_id": integer(0, cpp_nodes.MOST_PERFORMANCE_ID),
+    }
     shapes = {
         "profile": one_of(cpp_nodes.PROFILES),
         "arena_bytes": integer(cpp_nodes.SMALLEST_ARENA, cpp_nodes.LARGEST_ARENA),
         "capacities": capacities,
+        "ground": {
+            "type": ["object", "null"],
+            "propertyNames": GLOBAL_NAME,
+            "additionalProperties": record(cpp_nodes.GROUND_FIELDS, ground, needed=["msg_id"]),
+        },
     }
     return record(cpp_nodes.FIELDS, shapes)
 

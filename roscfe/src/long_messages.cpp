@@ -121,6 +121,7 @@ bool receive_raw(Subscription &subscription, const std::uint8_t *packet, std::si
     if (!has_room(g_raw, kRawLead + size))
     {
         ++subscription.bad_; // longer than any message of the type
+        ++g_counters.bad;
         return false;
     }
     g_raw.assign(kRawLead, 0);

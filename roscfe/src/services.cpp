@@ -109,6 +109,7 @@ bool Service::receive(std::uint32_t number, const std::uint8_t *bytes, std::size
     if (count_ == waiting_.size())
     {
         ++dropped_;
+        ++g_counters.dropped;
         return false;
     }
     Request &place = waiting_[(head_ + count_) % waiting_.size()];

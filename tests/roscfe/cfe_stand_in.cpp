@@ -141,6 +141,8 @@ void CFE_ES_ExitApp(uint32 status)
     end(status == CFE_ES_RunStatus_APP_EXIT ? 0 : 3);
 }
 
+void CFE_ES_PerfLogAdd(uint32, uint32) {}
+
 CFE_Status_t CFE_EVS_Register(const void *, uint16, uint16)
 {
     return CFE_SUCCESS;
@@ -220,6 +222,12 @@ CFE_Status_t CFE_MSG_SetFcnCode(CFE_MSG_Message_t *message, CFE_MSG_FcnCode_t co
     return CFE_SUCCESS;
 }
 
+CFE_Status_t CFE_MSG_GetFcnCode(const CFE_MSG_Message_t *message, CFE_MSG_FcnCode_t *code)
+{
+    *code = static_cast<CFE_MSG_FcnCode_t>(word(message, 6) >> 8 & 0x7F);
+    return CFE_SUCCESS;
+}
+
 CFE_Status_t CFE_MSG_GetSegmentationFlag(const CFE_MSG_Message_t *message, CFE_MSG_SegmentationFlag_t *flag)
 {
     static const CFE_MSG_SegmentationFlag_t kFlags[] = {CFE_MSG_SegFlag_Continue, CFE_MSG_SegFlag_First,
@@ -275,6 +283,8 @@ CFE_Status_t CFE_SB_Unsubscribe(CFE_SB_MsgId_t id, CFE_SB_PipeId_t)
     }
     return CFE_SUCCESS;
 }
+
+void CFE_SB_TimeStampMsg(CFE_MSG_Message_t *) {}
 
 CFE_SB_Buffer_t *CFE_SB_AllocateMessageBuffer(size_t size)
 {

@@ -15,7 +15,7 @@ from cfepy.extra.convert.cpp_sources import SourceSet, collect, main_form, messa
 from cfepy.extra.convert.entry import NodeEntry, parameter_rows
 from cfepy.extra.convert.packages import MANIFEST, program_of, read_package
 from cfepy.extra.convert.source_names import NodeNames, SourceNames, names_of, texts_below
-from cfepy.mission import launch_file
+from cfepy.mission import GROUND_SERVICE, NodeGround, launch_file
 from cfepy.nodes import ROSCORE_PARAMS, CppNode, RosConfig
 from cfepy.status import UsageError
 from rospy_shim.graph.msg_ids import MsgIds, locked
@@ -150,7 +150,10 @@ def _of_launch(file: Path, args: Mapping[str, str], environ: Mapping[str, str]) 
 
 
 def converted(
-    task: ConversionTask, config: RosConfig, judge: Callable[[Program], str] = lambda program: ""
+    task: ConversionTask,
+    config: RosConfig,
+    judge: Callable[[Program], str] = lambda program: "",
+    ground: Mapping[str, NodeGround] | None = None,
 ) -> Conversion:
     """Convert the nodes of a task.
 
@@ -158,6 +161,7 @@ def converted(
         task: the task.
         config: MsgIds of a mission and its lock file.
         judge: returns why a program is not converted; an empty text if it is.
+        ground: what the ground has of nodes, by full name. Others get a free MsgId for their housekeeping.
 
     Raises:
         UsageError: two names have one MsgId, or there are no more.
@@ -177,9 +181,16 @@ def converted(
             refused[node.full_name] = why
         else:
             found.append(made)
-    ids = _with_ids(config, found)
+    pinned = ground or {}
+    labels = {each.node.full_name: f"{each.node.full_name}{GROUND_SERVICE}" for each in found}
+    taken = {labels[name]: pinned[name].msg_id for name in labels if name in pinned}
+    config = replace(config, locked_services={**config.locked_services, **taken})
+    ids = _with_ids(config, found, labels.values())
     for each in found:
         each.entry = _with_names(each, ids)
+        name = each.node.full_name
+        marks = pinned[name].performance_id if name in pinned else None
+        each.entry = replace(each.entry, ground=NodeGround(ids.locked_services[labels[name]], marks))
     return Conversion(task, found, refused, ids, library)
 
 
@@ -210,10 +221,16 @@ def _node(
     return ConvertedNode(node, program, sources, list(seen.contents), types, names, entry, configurations)
 
 
-def _with_ids(config: RosConfig, nodes: Iterable[ConvertedNode]) -> RosConfig:
-    """Return MsgIds for all names. Without locked MsgIds of a mission, each name gets a free one."""
+def _with_ids(config: RosConfig, nodes: Iterable[ConvertedNode], more: Iterable[str]) -> RosConfig:
+    """Return MsgIds for all names. Without locked MsgIds of a mission, each name gets a free one.
+
+    Args:
+        config: MsgIds of a mission and its lock file.
+        nodes: nodes with topics and services.
+        more: names that get MsgIds as services do.
+    """
     topics: dict[str, bool] = {}
-    services: dict[str, bool] = {}
+    services: dict[str, bool] = dict.fromkeys(more, True)
     for each in nodes:
         topics |= each.names.topics
         services |= each.names.services

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+from cfepy.mission import NodeGround
 from rospy_shim.parameters.table import FREE, NAME_BYTES, VALUE_BYTES, Row, rows_for
 from rospy_shim.parameters.values import leaves_of
 from rospy_shim.types.names import SEP
@@ -22,6 +23,7 @@ ENTRY_SUFFIX = "_AppMain"
 MAIN_SYMBOL = "roscfe_node_main"
 LONGEST_QUEUE, PIPE_DEPTH = 64, 50
 PRIVATE_ARGUMENT = re.compile(r"_(?!_)[^:]*:=")
+NO_MARKS = "roscfe::kNoMarks"
 FREE_ROWS = 16
 """Free rows of a table of parameters, for parameters that the node sets itself."""
 
@@ -42,6 +44,7 @@ class NodeEntry:
         takes_arguments: whether main has parameters.
         nodelet: the C++ class of the node, if it is a nodelet.
         params_are_given: cfepy's parameter server has the parameters before the node starts.
+        ground: MsgId of its housekeeping and number of its performance marks; None without both.
     """
 
     app: str
@@ -55,6 +58,7 @@ class NodeEntry:
     takes_arguments: bool = True
     nodelet: str = ""
     params_are_given: bool = False
+    ground: NodeGround | None = None
 
     @property
     def symbol(self) -> str:
@@ -113,6 +117,8 @@ def needed_parts(node: NodeEntry) -> list[str]:
         parts += ["private_parameters"]
     if any(raw for _, raw in node.topics.values()):
         parts += ["long_messages"]
+    if node.ground is not None:
+        parts += ["ground"]
     return parts
 
 
@@ -185,7 +191,9 @@ def _lines(node: NodeEntry) -> Iterator[str]:
         ("kParams", rows),
     ):
         yield f"    {name if table else 'nullptr'}, {len(table)},"
-    yield f"    {LONGEST_QUEUE}, {PIPE_DEPTH}, {str(node.params_are_given).lower()}}};"
+    msg_id, marks = (0, None) if node.ground is None else (node.ground.msg_id, node.ground.performance_id)
+    yield f"    {LONGEST_QUEUE}, {PIPE_DEPTH}, {str(node.params_are_given).lower()},"
+    yield f"    0x{msg_id:04X}, {NO_MARKS if marks is None else marks}}};"
     yield ""
     yield f'__attribute__((visibility("default"))) void {node.symbol}(void)'
     yield "{"

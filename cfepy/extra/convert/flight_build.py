@@ -73,6 +73,7 @@ def build_for_flight(
         takes_arguments=bool(program.nodelet) or main_form(program.sources, package.folder),
         nodelet=program.nodelet,
         params_are_given=True,
+        ground=config.ground.get(name),
     )
     library = message_library(packages)
     options = BuildOptions(Profile(config.profile), capacities_of(config, library), config.arena_bytes)

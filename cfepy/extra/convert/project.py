@@ -276,7 +276,7 @@ def _mission(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str
     if args:
         said["args"] = dict(args)
     text = f"# {_line(made.task.title)} as a mission of cfepy; {MADE}.\nlaunch:\n  - {json.dumps(said)}\n"
-    text += "".join(_cpp_nodes(config))
+    text += "".join(_cpp_nodes(config, made))
     pins = dict(made.ids.topics)
     if pins:
         text += "topics:\n"
@@ -287,12 +287,18 @@ def _mission(made: Conversion, config: CppNodesConfig, folder: Path) -> dict[str
     return {STARTUP_SCRIPT: "!\n", "mission.yaml": text, LOCK_FILE: _lock(made)}
 
 
-def _cpp_nodes(config: CppNodesConfig) -> Iterator[str]:
+def _cpp_nodes(config: CppNodesConfig, made: Conversion) -> Iterator[str]:
     """Yield the section `cpp_nodes:`, without default values."""
     usual = CppNodesConfig()
+    yield "cpp_nodes:\n  ground:\n"
+    for node in made.nodes:
+        ground = node.entry.ground
+        assert ground is not None  # a conversion gives each node one
+        marks = "" if ground.performance_id is None else f", performance_id: {ground.performance_id}"
+        yield f"    {json.dumps(node.node.full_name)}: {{msg_id: 0x{ground.msg_id:04X}{marks}}}\n"
     if config.profile == usual.profile:
         return
-    yield f"cpp_nodes:\n  profile: {config.profile}\n  arena_bytes: {config.arena_bytes}\n"
+    yield f"  profile: {config.profile}\n  arena_bytes: {config.arena_bytes}\n"
     by_type: dict[str, dict[str, int]] = {}
     for place, number in sorted(config.capacities.items()):
         kind, _, name = place.partition(".")
@@ -304,7 +310,7 @@ def _cpp_nodes(config: CppNodesConfig) -> Iterator[str]:
 
 
 def _lock(made: Conversion) -> str:
-    lines = [f"# MsgIds of topics, and of the answers of services; {MADE}."]
+    lines = [f"# MsgIds of topics, of the answers of services, and of housekeeping; {MADE}."]
     for title, ids in (("topics", made.ids.locked_topics), ("services", made.ids.locked_services)):
         lines += [f"{title}:"] if ids else []
         lines += [f"  {json.dumps(name)}: 0x{ids[name]:04X}" for name in sorted(ids)]
@@ -362,6 +368,7 @@ def _row(node: ConvertedNode) -> dict[str, Any]:
         "sources": [_place(node, each) for each in node.program.sources],
         "topics": sorted(node.entry.topics),
         "services": sorted(node.entry.services),
+        "housekeeping": "" if node.entry.ground is None else f"0x{node.entry.ground.msg_id:04X}",
         "guessed": sorted(name for name, sure in (node.names.topics | node.names.services).items() if not sure),
         "unknown_names": node.names.open,
         "remaps": dict(sorted(node.entry.remaps.items())),
@@ -408,12 +415,13 @@ def _node_lines(row: Mapping[str, Any]) -> Iterator[str]:
     for title, key in (
         ("topics", "topics"),
         ("services", "services"),
+        ("housekeeping", "housekeeping"),
         ("names that a variable holds", "guessed"),
         ("names that are computed, and have no MsgId: write them under `topics:` of a mission file", "unknown_names"),
         ("message types", "message_types"),
         ("libraries from outside, which must be built for cFE", "libraries_from_outside"),
     ):
         if row[key]:
-            yield f"- {title}: {', '.join(row[key])}"
+            yield f"- {title}: {row[key] if isinstance(row[key], str) else ', '.join(row[key])}"
     yield from (f"- remap: {one} is {other}" for one, other in row["remaps"].items())
     yield ""

@@ -40,6 +40,7 @@ class CallbackQueue : public CallbackQueueInterface
     // emptied it for the others, or has removed one of those that were about to be called.
     bool empty() const { return count_ == batch_ && calling_ == 0; }
     bool isEmpty() const { return empty(); }
+    std::size_t waiting() const { return count_; } // callbacks
     void clear();
     void enable() { enabled_ = true; }
     void disable() { enabled_ = false; }

@@ -37,6 +37,8 @@ struct ParamRow
     char value[80];
 };
 
+constexpr std::uint16_t kNoMarks = 0xFFFF;
+
 // What is generated has it as `extern "C" const roscfe::NodeDescription roscfe_node`, which marks the shared object as a
 // ROS node: cfepy starts its application ROS before it.
 //
@@ -59,6 +61,8 @@ struct NodeDescription
     std::uint16_t     longest_queue; // messages that a subscription keeps at most, whatever the node asks for
     std::uint16_t     pipe_depth;    // packets that wait in the node's pipe while it computes
     bool              params_are_given; // cfepy's parameter server has them before the node starts, as of a launch file
+    std::uint16_t     housekeeping_msg_id; // commands have the command bit (0x1000) added; 0: the node has neither
+    std::uint16_t     performance_id;      // marks its work in the performance log of ES, or kNoMarks
 };
 
 // Run a node: the application's entry point calls this, which does not return.

@@ -18,6 +18,7 @@ extern const char parameters;         // the table, with what a launch file has 
 extern const char private_parameters; // "_name:=value"
 extern const char parameter_server;   // that of cfepy
 extern const char sim_time;           // /use_sim_time
+extern const char ground;             // commands, housekeeping, marks in the performance log
 
 // The linker adds a part to the image.
 inline void need(const char &part)

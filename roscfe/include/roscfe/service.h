@@ -31,6 +31,7 @@ class Service : public ros::CallbackInterface
 
     CallResult call() override { return call_now(); }
     CallResult call_now();
+    std::size_t waiting() const { return count_; } // requests
     bool       receive(std::uint32_t number, const std::uint8_t *bytes, std::size_t size);
 
     const std::string            name_;

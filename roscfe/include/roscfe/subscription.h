@@ -9,6 +9,7 @@
 #include "ros/callback_queue_interface.h"
 #include "ros/message_event.h"
 #include "ros/serialization.h"
+#include "roscfe/ground.h"
 #include "roscfe/parts.h"
 #include "roscfe/slots.h"
 #include "roscfe/wire.h"
@@ -77,6 +78,7 @@ class TypedSubscription final : public Subscription
         if (!more || !slots_->any())
         {
             ++dropped_;
+            ++g_counters.dropped;
             if (count_ == 0)
             {
                 return false; // the node holds all messages that there are
@@ -88,10 +90,12 @@ class TypedSubscription final : public Subscription
         if (!wire::read(*message, bytes, size))
         {
             ++bad_;
+            ++g_counters.bad;
             return false;
         }
         ring_[(head_ + count_) % queue_] = Event(message, ros::Time::now());
         ++count_;
+        ++g_counters.received;
         return more;
     }
 

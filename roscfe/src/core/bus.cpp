@@ -8,6 +8,8 @@
 namespace roscfe
 {
 
+Counters g_counters;
+
 namespace
 {
 
@@ -37,6 +39,7 @@ bool take_other(std::uint16_t msg_id, const CFE_SB_Buffer_t *buffer, std::size_t
 {
     const std::uint8_t *packet = reinterpret_cast<const std::uint8_t *>(buffer);
     return (take_report != nullptr && take_report(msg_id, buffer, size)) ||
+           (take_command != nullptr && take_command(msg_id, buffer, size)) ||
            (take_request != nullptr && take_request(msg_id, packet, size)) ||
            (take_answer != nullptr && take_answer(msg_id, packet, size));
 }
@@ -88,9 +91,11 @@ void queue_timers()
 // What waits in the pipe, and timers that are due, in this order; true when there were packets.
 bool take_over()
 {
+    // No more than the pipe holds: others may send faster than the node takes over.
     CFE_SB_Buffer_t *buffer = nullptr;
     bool             came   = false;
-    while (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, CFE_SB_POLL) == CFE_SUCCESS)
+    for (std::uint16_t left = g_node.description->pipe_depth;
+         left > 0 && CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, CFE_SB_POLL) == CFE_SUCCESS; --left)
     {
         dispatch(buffer);
         came = true;
@@ -99,9 +104,34 @@ bool take_over()
     return came;
 }
 
+// While this is there, the node waits.
+struct Waiting
+{
+    Waiting() { mark(false); }
+    ~Waiting() { mark(true); }
+    Waiting(const Waiting &) = delete;
+    Waiting &operator=(const Waiting &) = delete;
+
+    static void mark(bool works)
+    {
+        if (mark_work != nullptr)
+        {
+            mark_work(works);
+        }
+    }
+};
+
 bool wait_to_the_point(std::int64_t until_ns)
 {
+    const Waiting waiting;
     return wait_exactly != nullptr && wait_exactly(until_ns);
+}
+
+const CFE_SB_Buffer_t *wait_for_packet(std::int32_t wait_ms)
+{
+    const Waiting    waiting;
+    CFE_SB_Buffer_t *buffer = nullptr;
+    return CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, wait_ms) == CFE_SUCCESS ? buffer : nullptr;
 }
 
 // What a program waits for before it is a node; messages do not concern it.
@@ -130,6 +160,10 @@ void open_bus()
     if (open_subscribers != nullptr)
     {
         open_subscribers();
+    }
+    if (open_ground != nullptr)
+    {
+        open_ground();
     }
 }
 
@@ -175,8 +209,7 @@ bool pump(std::int64_t until_ns, bool exactly)
         // One more, since cFE loses it: it makes the time absolute, and rounds the rest down to whole milliseconds.
         wait_ms = static_cast<std::int32_t>(std::min<std::int64_t>(whole, kLongestWaitMs)) + 1;
     }
-    CFE_SB_Buffer_t *buffer = nullptr;
-    if (CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, wait_ms) == CFE_SUCCESS)
+    if (const CFE_SB_Buffer_t *buffer = wait_for_packet(wait_ms); buffer != nullptr)
     {
         dispatch(buffer);
     }
@@ -208,6 +241,7 @@ CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size)
     CFE_SB_Buffer_t *buffer = CFE_SB_AllocateMessageBuffer(size);
     if (buffer == nullptr)
     {
+        ++g_counters.not_sent;
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: no memory of the Software Bus for %lu bytes on 0x%04X",
                           g_node.name.c_str(), static_cast<unsigned long>(size), msg_id);
         return nullptr;
@@ -227,10 +261,13 @@ CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size)
 
 void send_packet(CFE_SB_Buffer_t *buffer)
 {
-    if (CFE_SB_TransmitBuffer(buffer, true) != CFE_SUCCESS)
+    if (CFE_SB_TransmitBuffer(buffer, true) == CFE_SUCCESS)
     {
-        CFE_SB_ReleaseMessageBuffer(buffer);
+        ++g_counters.sent;
+        return;
     }
+    ++g_counters.not_sent;
+    CFE_SB_ReleaseMessageBuffer(buffer);
 }
 
 } // namespace roscfe

@@ -167,6 +167,11 @@ ROSCFE_HOOK void take_piece(std::uint16_t msg_id, const std::uint8_t *packet, st
                             CFE_MSG_SegmentationFlag_t flag, int number);
 ROSCFE_HOOK bool receive_raw(Subscription &subscription, const std::uint8_t *packet, std::size_t size);
 
+// ground.cpp: commands of the ground, and marks in the performance log when the node begins to work, or to wait.
+ROSCFE_HOOK void open_ground();
+ROSCFE_HOOK bool take_command(std::uint16_t msg_id, const CFE_SB_Buffer_t *buffer, std::size_t size);
+ROSCFE_HOOK void mark_work(bool begins);
+
 // services.cpp, timers.cpp, exact_waits.cpp, async.cpp, sim_time.cpp, parameters.cpp, private_parameters.cpp, master.cpp
 // and logging.cpp.
 ROSCFE_HOOK bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);

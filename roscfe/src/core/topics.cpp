@@ -199,8 +199,7 @@ void subscribe(const boost::shared_ptr<Subscription> &subscription, const char *
     g_node.subscriptions.push_back(subscription);
     if (!known && !listen(place.msg_id))
     {
-        CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: no subscription of %s", g_node.name.c_str(),
-                          subscription->topic_.c_str());
+        refuse("the Software Bus has no room for the subscription", subscription->topic_.c_str());
     }
     if (known && another_subscription != nullptr)
     {

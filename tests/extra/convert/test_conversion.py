@@ -63,6 +63,33 @@ def test_converted_mission_has_the_reported_msg_ids(package: Path, tmp_path: Pat
     assert {name: f"0x{id_:04X}" for name, id_ in spec.ros.locked_topics.items()} == said
 
 
+def test_each_converted_node_has_a_msg_id_for_the_ground(package: Path, tmp_path: Path) -> None:
+    out = tmp_path / "made"
+    assert convert(package, out) == 0
+    spec = read_mission(str(out / "mission"))
+    said = json.loads((out / "report.json").read_text(encoding="utf-8"))
+    by_node = {name: ground.msg_id for name, ground in spec.cpp_nodes.ground.items()}
+    assert set(by_node) == {"/arm/left", "/arm/ear"}
+    assert len({*by_node.values(), *spec.ros.locked_topics.values()}) == 2 + len(spec.ros.locked_topics)
+    assert [each["housekeeping"] for each in said["nodes"]] == [f"0x{id_:04X}" for id_ in by_node.values()]
+    entry = (out / "arm_left/fsw/src/arm_left_entry.cpp").read_text(encoding="utf-8")
+    assert f"    0x{by_node['/arm/left']:04X}, roscfe::kNoMarks}};" in entry
+
+
+def test_a_mission_chooses_what_the_ground_has_of_a_converted_node(package: Path, tmp_path: Path) -> None:
+    mission = tmp_path / "mission"
+    mission.mkdir()
+    (mission / "startup.scr").write_text("!\n", encoding="utf-8")
+    ground = "cpp_nodes:\n  ground:\n    /arm/left: {msg_id: 0x0A10, performance_id: 40}\n"
+    (mission / "mission.yaml").write_text(ground, encoding="utf-8")
+    out = tmp_path / "made"
+    assert convert(package, out, "--ids", str(mission)) == 0
+    entry = (out / "arm_left/fsw/src/arm_left_entry.cpp").read_text(encoding="utf-8")
+    assert "    0x0A10, 40};" in entry
+    written = read_mission(str(out / "mission")).cpp_nodes.ground
+    assert (written["/arm/left"].msg_id, written["/arm/left"].performance_id) == (0x0A10, 40)
+
+
 @pytest.mark.slow
 def test_second_conversion_changes_nothing_and_refuses_hand_edited_files(package: Path, tmp_path: Path) -> None:
     out = tmp_path / "made"

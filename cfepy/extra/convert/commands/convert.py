@@ -47,7 +47,8 @@ def run(arguments: argparse.Namespace) -> int:
     task = task_of(arguments.words, dict(os.environ))
     folder = Path(arguments.output or task.made_from.stem).resolve()
     judge = _Judge(config)
-    made = converted(task, _ids(arguments, folder), (lambda program: "") if arguments.no_check else judge)
+    checked = (lambda program: "") if arguments.no_check else judge
+    made = converted(task, _ids(arguments, folder), checked, config.ground)
     if not made.nodes:
         raise UsageError(f"has no node that can be converted: {'; '.join(made.refused.values())}", file=task.made_from)
     files = project_files(made, judge.sized(), folder)
