@@ -177,7 +177,7 @@ def test_unused_parts_of_the_library_are_excluded(package: Path, tmp_path: Path)
     out = tmp_path / "made"
     assert convert(package, out, "--node-profile", "strict") == 0
     cmake = (out / "roscfe/roscfe.cmake").read_text(encoding="utf-8")
-    assert "/src/topics.cpp" in cmake
+    assert "/src/core/topics.cpp" in cmake
     assert "/src/tf/" not in cmake
     header = library_folder() / "include/tf2_ros/buffer.h"
     assert any(each.parent.name == "tf" for each in library_sources([header]))
