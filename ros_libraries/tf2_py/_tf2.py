@@ -267,6 +267,7 @@ class BufferCore:
         return (first[:-1] if second else first) + second
 
     def _frameExists(self, frame_id: str) -> bool:
+        _check_texts((1, frame_id))
         return frame_id in self.__tree.caches
 
     def _getFrameStrings(self) -> list[str]:
@@ -274,18 +275,21 @@ class BufferCore:
 
 
 def _check_texts(*arguments: tuple[int, Any]) -> None:
-    """Refuse arguments that are not text, as the extension module does.
+    """Refuse arguments that are not text for C, as the extension module does.
 
     Args:
         arguments: position and value of each.
 
     Raises:
-        TypeError: one is no text.
+        TypeError: one is not a text.
+        ValueError: one has a NUL.
     """
     for position, value in arguments:
         if not isinstance(value, str):
             kind = "None" if value is None else type(value).__name__
             raise TypeError(f"argument {position} must be str, not {kind}")
+        if "\0" in value:
+            raise ValueError("embedded null character")
 
 
 def _report(level: str, text: str) -> None:

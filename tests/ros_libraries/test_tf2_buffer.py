@@ -78,6 +78,22 @@ def test_arguments_of_the_wrong_kind(node: Universe) -> None:
         buffer.set_transform(incomplete, "me")
 
 
+def test_texts_with_a_nul_are_refused(node: Universe) -> None:
+    load = node.importer.load
+    buffer, time = buffer_of(load), load("rospy").Time(0)
+    calls = (
+        lambda: buffer.set_transform(stamped(load, "map", "base", 6, 0, 0, 0), "m\0e"),
+        lambda: buffer.lookup_transform("map", "ba\0se", time),
+        lambda: buffer.can_transform_full("map", time, "base", time, "\0"),
+        lambda: buffer._frameExists("ma\0p"),
+    )
+    for call in calls:
+        with pytest.raises(ValueError, match="embedded null character"):
+            call()
+    with pytest.raises(TypeError, match="argument 1 must be str, not int"):
+        buffer._frameExists(5)
+
+
 def test_static_transforms_hold_at_all_times(node: Universe) -> None:
     load = node.importer.load
     buffer, time = buffer_of(load), load("rospy").Time
