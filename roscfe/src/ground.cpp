@@ -60,7 +60,7 @@ void reject(const char *what, std::size_t size, CFE_MSG_FcnCode_t code)
 {
     ++g_errors;
     CFE_EVS_SendEvent(kCommandEid, CFE_EVS_EventType_ERROR, "%s: command with %s: code %u, %lu bytes",
-                      g_node.name.c_str(), what, static_cast<unsigned int>(code), static_cast<unsigned long>(size));
+                      g_node.name.c_str(), what, static_cast<unsigned int>(code), as<unsigned long>(size));
 }
 
 } // namespace

@@ -132,7 +132,7 @@ void *take(std::size_t size, std::size_t alignment)
         return nullptr;
     }
     const std::uintptr_t first = reinterpret_cast<std::uintptr_t>(block) + kAligned;
-    const std::size_t    more  = static_cast<std::size_t>(-first & (alignment - 1));
+    const std::uintptr_t more  = -first & (alignment - 1);
     unsigned char *      at    = block + kAligned + more;
     *lead_of(at)               = {static_cast<std::uint32_t>(of), static_cast<std::uint32_t>(at - block)};
     return at;

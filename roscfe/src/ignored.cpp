@@ -13,7 +13,7 @@ void tell_ignored(Ignored what, std::uint16_t msg_id, std::size_t size)
     {
         is_told[number] = true;
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: ignored %lu bytes on 0x%04X: no %s; told once",
-                          g_node.name.c_str(), static_cast<unsigned long>(size), msg_id, kWhat[number]);
+                          g_node.name.c_str(), as<unsigned long>(size), msg_id, kWhat[number]);
     }
 }
 

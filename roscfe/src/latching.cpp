@@ -110,7 +110,7 @@ void Latching::tell(std::uint32_t pipe, bool came)
     if (waiting_.size() == waiting_.capacity())
     {
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: more than %lu subscribers of %s wait for a callback",
-                          g_node.name.c_str(), static_cast<unsigned long>(waiting_.size()), publication_->topic_.c_str());
+                          g_node.name.c_str(), as<unsigned long>(waiting_.size()), publication_->topic_.c_str());
         return;
     }
 #endif

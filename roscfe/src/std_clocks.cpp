@@ -7,7 +7,7 @@
 // The linker puts this function in the place of C's (--wrap).
 extern "C" std::time_t __wrap_time(std::time_t *also)
 {
-    const auto now = static_cast<std::time_t>(roscfe::now_ns() / roscfe::kSecond);
+    const auto now = roscfe::as<std::time_t>(roscfe::now_ns() / roscfe::kSecond);
     if (also != nullptr)
     {
         *also = now;

@@ -95,7 +95,7 @@ bool has_room_for(std::uint16_t msg_id)
     {
         g_left_out = true;
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_INFORMATION, "%s: more than %lu subscriptions; others are left out",
-                          g_node.name.c_str(), static_cast<unsigned long>(g_known.size()));
+                          g_node.name.c_str(), as<unsigned long>(g_known.size()));
     }
     const auto other = std::find_if(g_known.begin(), g_known.end(),
                                     [](const Known &known) { return !is_own(known.msg_id); });

@@ -243,7 +243,7 @@ CFE_SB_Buffer_t *begin_packet(std::uint16_t msg_id, std::size_t size)
     {
         ++g_counters.not_sent;
         CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: no memory of the Software Bus for %lu bytes on 0x%04X",
-                          g_node.name.c_str(), static_cast<unsigned long>(size), msg_id);
+                          g_node.name.c_str(), as<unsigned long>(size), msg_id);
         return nullptr;
     }
     std::uint8_t *packet = bytes_of(buffer);

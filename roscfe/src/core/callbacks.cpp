@@ -136,8 +136,8 @@ void begin_to_spin()
     if (is_first && roscfe::heap::capacity() > 0)
     {
         CFE_EVS_SendEvent(roscfe::kMemoryEid, CFE_EVS_EventType_INFORMATION, "%s: %lu of %lu bytes of the arena are used",
-                          roscfe::g_node.name.c_str(), static_cast<unsigned long>(roscfe::heap::used()),
-                          static_cast<unsigned long>(roscfe::heap::capacity()));
+                          roscfe::g_node.name.c_str(), roscfe::as<unsigned long>(roscfe::heap::used()),
+                          roscfe::as<unsigned long>(roscfe::heap::capacity()));
     }
 }
 

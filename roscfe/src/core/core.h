@@ -47,6 +47,13 @@ constexpr std::int64_t  kSecond          = 1000000000;
 constexpr std::int64_t  kForever         = -1;
 constexpr std::int64_t  kFastCycle       = 10 * kMillisecond; // waits up to this are exact, later ones end at a millisecond
 
+// A conversion between integers. On some processors it is one of a type to itself, as of size_t to unsigned long.
+template <class To, class From>
+constexpr To as(From value)
+{
+    return static_cast<To>(value);
+}
+
 class Service;
 class TimerState;
 

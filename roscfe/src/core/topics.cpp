@@ -160,7 +160,7 @@ void give_to_subscriptions(std::uint16_t msg_id, const std::uint8_t *packet, std
         {
             CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR,
                               "%s: refused %lu bytes on %s: no message of its type, or one beyond its capacities; told once",
-                              g_node.name.c_str(), static_cast<unsigned long>(size), each->topic_.c_str());
+                              g_node.name.c_str(), as<unsigned long>(size), each->topic_.c_str());
         }
         if (more)
         {

@@ -189,7 +189,7 @@ void ApproximateSynchronization::publish_candidate()
 void ApproximateSynchronization::delete_front(std::size_t stream)
 {
     streams_[stream].waiting.pop_front();
-    not_empty_ -= streams_[stream].waiting.empty() ? 1 : 0;
+    not_empty_ -= streams_[stream].waiting.empty() ? 1U : 0U;
 }
 
 void ApproximateSynchronization::move_front_to_past(std::size_t stream)
@@ -214,7 +214,7 @@ void ApproximateSynchronization::recover_all(const std::vector<std::size_t> *cou
     for (std::size_t i = 0; i < streams_.size(); ++i)
     {
         recover(i, counts != nullptr ? (*counts)[i] : streams_[i].past.size());
-        not_empty_ += streams_[i].waiting.empty() ? 0 : 1;
+        not_empty_ += streams_[i].waiting.empty() ? 0U : 1U;
     }
 }
 

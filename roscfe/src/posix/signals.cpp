@@ -4,6 +4,7 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 
 #include "../core/core.h"
 
@@ -24,16 +25,21 @@ bool is_known(int number)
     return number > 0 && number <= kMostSignals && number != SIGKILL && number != SIGSTOP;
 }
 
+struct sigaction &action_of(int number) // a known one
+{
+    return g_actions[static_cast<std::size_t>(number)];
+}
+
 } // namespace
 
 bool call_handler_of_end()
 {
     for (const int number : {SIGINT, SIGTERM})
     {
-        const struct sigaction action = g_actions[number];
+        const struct sigaction action = action_of(number);
         if (action.sa_handler != SIG_DFL && action.sa_handler != SIG_IGN)
         {
-            g_actions[number] = {};
+            action_of(number) = {};
             if ((action.sa_flags & SA_SIGINFO) != 0)
             {
                 siginfo_t info{};
@@ -63,11 +69,11 @@ int __wrap_sigaction(int number, const struct sigaction *action, struct sigactio
     }
     if (before != nullptr)
     {
-        *before = roscfe::g_actions[number];
+        *before = roscfe::action_of(number);
     }
     if (action != nullptr)
     {
-        roscfe::g_actions[number] = *action;
+        roscfe::action_of(number) = *action;
     }
     return 0;
 }

@@ -136,12 +136,12 @@ bool with_each(const std::uint8_t *bytes, std::size_t size, F function)
 // Nothing of a packet is taken that is no whole message, as of any other type.
 bool take(Buffer &buffer, const std::uint8_t *bytes, std::size_t size, bool is_static)
 {
-    typedef std::string_view Name;
-    if (!with_each(bytes, size, [](Name, Name, std::int64_t, const Rigid &) {}))
+    if (!with_each(bytes, size, [](std::string_view, std::string_view, std::int64_t, const Rigid &) {}))
     {
         return false;
     }
-    return with_each(bytes, size, [&](Name child, Name parent, std::int64_t stamp, const Rigid &rigid) {
+    return with_each(bytes, size, [&](std::string_view child, std::string_view parent, std::int64_t stamp,
+                                        const Rigid &rigid) {
         buffer.set(child, parent, stamp, rigid, kAuthority, is_static);
     });
 }

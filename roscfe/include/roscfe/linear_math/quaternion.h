@@ -23,7 +23,10 @@ class Quaternion : public QuadWord<Tag>
     using QuadWord<Tag>::w;
 
     Quaternion() : QuadWord<Tag>(0.0, 0.0, 0.0, 1.0) {}
-    Quaternion(const Scalar &x, const Scalar &y, const Scalar &z, const Scalar &w) : QuadWord<Tag>(x, y, z, w) {}
+    Quaternion(const Scalar &x_of, const Scalar &y_of, const Scalar &z_of, const Scalar &w_of)
+        : QuadWord<Tag>(x_of, y_of, z_of, w_of)
+    {
+    }
     Quaternion(const Vector3<Tag> &axis, const Scalar &angle) { setRotation(axis, angle); }
     Quaternion(const Scalar &yaw, const Scalar &pitch, const Scalar &roll) { setEuler(yaw, pitch, roll); }
 
@@ -37,17 +40,17 @@ class Quaternion : public QuadWord<Tag>
     // Become a rotation by angles in rad about Y (yaw), X (pitch) and Z (roll).
     void setEuler(const Scalar &yaw, const Scalar &pitch, const Scalar &roll)
     {
-        const Half y(yaw), p(pitch), r(roll);
-        setValue(r.cos * p.sin * y.cos + r.sin * p.cos * y.sin, r.cos * p.cos * y.sin - r.sin * p.sin * y.cos,
-                 r.sin * p.cos * y.cos - r.cos * p.sin * y.sin, r.cos * p.cos * y.cos + r.sin * p.sin * y.sin);
+        const Half h(yaw), p(pitch), r(roll);
+        setValue(r.cos * p.sin * h.cos + r.sin * p.cos * h.sin, r.cos * p.cos * h.sin - r.sin * p.sin * h.cos,
+                 r.sin * p.cos * h.cos - r.cos * p.sin * h.sin, r.cos * p.cos * h.cos + r.sin * p.sin * h.sin);
     }
 
     // Become a rotation by angles in rad about the fixed axes X, Y and Z.
     void setRPY(const Scalar &roll, const Scalar &pitch, const Scalar &yaw)
     {
-        const Half y(yaw), p(pitch), r(roll);
-        setValue(r.sin * p.cos * y.cos - r.cos * p.sin * y.sin, r.cos * p.sin * y.cos + r.sin * p.cos * y.sin,
-                 r.cos * p.cos * y.sin - r.sin * p.sin * y.cos, r.cos * p.cos * y.cos + r.sin * p.sin * y.sin);
+        const Half h(yaw), p(pitch), r(roll);
+        setValue(r.sin * p.cos * h.cos - r.cos * p.sin * h.sin, r.cos * p.sin * h.cos + r.sin * p.cos * h.sin,
+                 r.cos * p.cos * h.sin - r.sin * p.sin * h.cos, r.cos * p.cos * h.cos + r.sin * p.sin * h.sin);
     }
     void setEulerZYX(const Scalar &yaw, const Scalar &pitch, const Scalar &roll) { setRPY(roll, pitch, yaw); }
 
