@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from cfepy.cli.ros.rostest import read_results as read_test_results
 from cfepy.es.startup_script import check, entries
 from cfepy.extra.c.engine import compiler
-from cfepy.extra.c.toolchain.source_files import read_cmake_lists
+from cfepy.extra.c.toolchain.source_files import find_sources
 from cfepy.extra.convert.catkin_reader import TESTING
 from cfepy.extra.convert.cpp_sources import collect, main_form
 from cfepy.extra.convert.node_check.source import read_source
@@ -354,7 +354,7 @@ def cmake_lists(data: bytes, path: Path) -> None:
             for word in program.definitions:
                 cmake_word(word, path)
     with suppress(UsageError):
-        read_cmake_lists(path.parent)
+        find_sources(path.parent)
 
 
 def package_manifest(data: bytes, path: Path) -> None:

@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.extra.c import Options, build
-from cfepy.extra.c.toolchain.source_files import read_cmake_lists
+from cfepy.extra.c.toolchain.source_files import find_sources
 from tests.extra.c.building import needs_compiler
 
 pytestmark = needs_compiler
@@ -56,9 +56,8 @@ def test_it_compiles_without_a_warning(omit_deprecated: bool) -> None:
 
 def test_its_cmake_lists_name_all_sources() -> None:
     main(["new", "app", "--c", "thermal"])
-    said = read_cmake_lists(Path("thermal"))
-    there = {file.relative_to("thermal").as_posix() for file in Path("thermal").rglob("*.c")}
-    assert {*said.sources, *said.tables} == there
+    said = find_sources(Path("thermal"))
+    assert {*said.code, *said.tables} == set(Path("thermal").rglob("*.c"))
 
 
 def test_the_longest_name_flies(capsys: pytest.CaptureFixture[str]) -> None:

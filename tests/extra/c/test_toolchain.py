@@ -15,7 +15,7 @@ from cfepy.extra.c import Built, CompilerError, Options, TableFiles, build
 from cfepy.extra.c.elf import elf_file
 from cfepy.extra.c.toolchain import application
 from cfepy.extra.c.toolchain.compiler import compile_file
-from cfepy.extra.c.toolchain.source_files import find_sources, read_cmake_lists
+from cfepy.extra.c.toolchain.source_files import find_sources
 from cfepy.fs import read_table_file
 from cfepy.status import UsageError
 from cfepy.writing.work_progress import WorkProgress
@@ -122,9 +122,10 @@ def test_cmake_lists_define_name_sources_and_tables(tmp_path: Path) -> None:
           list(APPEND FILES fsw/src/d.c)
         endif()
         foreach(EXT_APP hs lc)
-          list(FIND TGTSYS_APPS ${EXT_APP} HAVE_APP)
+          list(FIND TGTSYS_${SYSVAR}_APPS ${EXT_APP} HAVE_APP)
           if (HAVE_APP GREATER_EQUAL 0)
             add_definitions(-DHAVE_${EXT_APP})
+            include_directories($<TARGET_PROPERTY:${EXT_APP},INTERFACE_INCLUDE_DIRECTORIES>)
           endif()
         endforeach()
         aux_source_directory(fsw/more FILES)
@@ -138,14 +139,17 @@ def test_cmake_lists_define_name_sources_and_tables(tmp_path: Path) -> None:
           add_cfe_tables(probe unit-test/t.c)
         endif (ENABLE_UNIT_TESTS)
     """
-    write(tmp_path, {"CMakeLists.txt": text, "fsw/more/e.c": "", "fsw/more/f.cpp": ""})
-    said = read_cmake_lists(tmp_path)
+    sources = ["fsw/src/a.c", "fsw/src/b.c", "fsw/src/c.c", "fsw/more/e.c", "fsw/more/f.cpp"]
+    app, lc = tmp_path / "apps/x", tmp_path / "apps/lc/inc"
+    write(app, {"CMakeLists.txt": text, **dict.fromkeys([*sources, "fsw/inc/x.h", "fsw/tables/t.c"], "")})
+    write(lc, {"lc.h": ""})
+    said = find_sources(app)
     assert said.name == "probe"
-    assert said.sources == ["fsw/src/a.c", "fsw/src/b.c", "fsw/src/c.c", "fsw/more/e.c", "fsw/more/f.cpp"]
-    assert said.tables == ["fsw/tables/t.c"]
-    assert said.definitions == ["PROBE=1"]
-    assert said.includes == ["/fsw/inc", "fsw/inc"]
-    assert said.dependencies == ["other", "sample_lib"]
+    assert said.code == [app / each for each in sources]
+    assert said.tables == [app / "fsw/tables/t.c"]
+    assert said.definitions == ["HAVE_lc", "PROBE=1"]
+    assert said.includes == [app / "fsw/inc", lc]
+    assert said.missing == ["other", "sample_lib"]
 
 
 def test_missing_source_of_cmake_is_reported(app: Path) -> None:

@@ -4,10 +4,18 @@
 
 #include "config.h"
 
+#ifndef CFEPY_CMD_MID_BASE /* a mission may have other bases */
 #define CFEPY_CMD_MID_BASE                      0x1800
+#endif
+#ifndef CFEPY_TLM_MID_BASE
 #define CFEPY_TLM_MID_BASE                      0x0800
+#endif
+#ifndef CFEPY_GLOBAL_CMD_MID_BASE
 #define CFEPY_GLOBAL_CMD_MID_BASE               0x1860
+#endif
+#ifndef CFEPY_GLOBAL_TLM_MID_BASE
 #define CFEPY_GLOBAL_TLM_MID_BASE               0x0860
+#endif
 #define CFE_PLATFORM_BASE_MIDVAL(kind)          CFEPY_##kind##_MID_BASE
 #define CFE_GLOBAL_BASE_MIDVAL(kind)            CFEPY_GLOBAL_##kind##_MID_BASE
 #define CFE_PLATFORM_CMD_TOPICID_TO_MIDV(topic) (CFE_PLATFORM_BASE_MIDVAL(CMD) | (topic))

@@ -63,6 +63,7 @@ class Options:
             receiver.
         flags: more flags of the compiler.
         tables: the table files to write.
+        goes_on_without_tables: whether a source of a table that cannot be compiled is left out.
     """
 
     cfs: Path | None = None
@@ -74,6 +75,7 @@ class Options:
     sanitize_thread: bool = False
     flags: Sequence[str] = ()
     tables: TableFiles = TableFiles.KEEP
+    goes_on_without_tables: bool = False
 
 
 @dataclass(slots=True)
@@ -85,12 +87,16 @@ class Built:
         tables: table files that were written, or that have these contents already.
         kept: existing table files with other contents, which were not written.
         warnings: warnings of the compiler and of the table reader.
+        refused: sources of tables that the compiler refused, with its text, where the build goes on without them.
+        names: full names of the tables, such as SAMPLE_APP.ExampleTable, by the table file.
     """
 
     library: Path
     tables: list[Path] = field(default_factory=list)
     kept: list[Path] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    refused: dict[Path, str] = field(default_factory=dict)
+    names: dict[str, str] = field(default_factory=dict)
 
 
 def build(folder: str | Path, library: str | Path | None = None, options: Options | None = None) -> Built:
@@ -110,14 +116,39 @@ def build(folder: str | Path, library: str | Path | None = None, options: Option
         CompilerError: the compiler refused a file; the text is the compiler's.
     """
     options = options or Options()
-    sources = find_sources(Path(folder), options.definitions)
+    return build_sources(find_sources(Path(folder), options.definitions), library, options)
+
+
+def build_sources(
+    sources: Sources, library: str | Path | None, options: Options, progress: WorkProgress | None = None
+) -> Built:
+    """Build an application whose sources are known.
+
+    Args:
+        sources: its sources.
+        library: the shared object to write; NAME.so in the application's folder when None.
+        options: the build options.
+        progress: shows the source that is being compiled; one of its own when None.
+
+    Returns:
+        The written files. It raises the errors of `build`.
+    """
     built = Built(Path(library) if library is not None else sources.folder / f"{sources.name}.so")
     built.library.parent.mkdir(parents=True, exist_ok=True)
-    with (
-        tempfile.TemporaryDirectory(prefix="cfepy-build-") as scratch,
-        WorkProgress(Stopwatch().elapsed_ns) as progress,
-    ):
-        _Builder(sources, options, Path(scratch), built, progress).build()
+    with tempfile.TemporaryDirectory(prefix="cfepy-build-") as scratch:
+        if progress is not None:
+            _Builder(sources, options, Path(scratch), built, progress).build()
+            return built
+        with WorkProgress(Stopwatch().elapsed_ns) as own:
+            _Builder(sources, options, Path(scratch), built, own).build()
+    return built
+
+
+def build_tables(sources: Sources, library: Path, options: Options, progress: WorkProgress) -> Built:
+    """Build only the tables of an application, beside a shared object that exists already; see `build_sources`."""
+    built = Built(library)
+    with tempfile.TemporaryDirectory(prefix="cfepy-build-") as scratch:
+        _Builder(sources, options, Path(scratch), built, progress).build_tables()
     return built
 
 
@@ -162,6 +193,11 @@ class _Builder:
         for table in tables:
             self._write(table)
 
+    def build_tables(self) -> None:
+        """Build the tables alone."""
+        for table in self._tables():
+            self._write(table)
+
     @property
     def _table_sources(self) -> Sequence[Path]:
         return () if self._options.tables is TableFiles.NONE else self._sources.tables
@@ -170,6 +206,7 @@ class _Builder:
         """Write a table file. One with other contents stays, because a mission may have its own."""
         path = self._built.library.parent / table.file
         data = table_file(table.table)
+        self._built.names[table.file] = table.table.name
         if self._options.tables is TableFiles.KEEP and os.path.lexists(path) and not _has(path, data):
             self._built.kept.append(path)
             return
@@ -202,8 +239,16 @@ class _Builder:
         for source in self._table_sources:
             made = self._scratch / f"table-{source.name}.o"
             names = [f'-DCFE_APP_NAME="{self._sources.name}"', f"-DCFE_TABLE_NAME={source.stem}", "-DCFE_CPU_NAME=cpu1"]
-            self._compile(source, made, [*self._flags, *names, *self._options.flags])
-            table = read_table(read_limited(made, OBJECT_BYTES), source)
+            more = [f"-I{each}" for each in self._sources.table_includes]
+            more += [f"-D{each}" for each in self._sources.table_definitions if "CFE_APP_NAME=" not in each]
+            try:
+                self._compile(source, made, [*self._flags, *more, *names, *self._options.flags])
+                table = read_table(read_limited(made, OBJECT_BYTES), source)
+            except (CompilerError, UsageError) as error:
+                if not self._options.goes_on_without_tables:
+                    raise
+                self._built.refused[source] = str(error)
+                continue
             if table.addresses:
                 text = f"{table.addresses} words of the table are addresses, which become 0 in the table file"
                 self._built.warnings.append(f"{source}: warning: {text}")

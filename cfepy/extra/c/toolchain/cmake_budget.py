@@ -62,8 +62,10 @@ class CMakeBudget:
     def inside(self) -> Iterator[None]:
         """Count a nested block, call or subfolder in this context. It raises the errors of `spend`."""
         self.descend()
-        yield
-        self.ascend()
+        try:
+            yield
+        finally:
+            self.ascend()
 
     def descend(self) -> None:
         """Begin a nested block, call, subfolder or bracket. It raises the errors of `spend`."""

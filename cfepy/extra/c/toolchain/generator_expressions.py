@@ -15,8 +15,6 @@ _ARE = {
     "PLATFORM_ID": "Linux",
     "CXX_COMPILER_ID": "GNU",
     "C_COMPILER_ID": "GNU",
-    "COMPILE_LANGUAGE": "CXX",
-    "LINK_LANGUAGE": "CXX",
 }
 """The value of a fact, by its expression. With arguments, the expression asks whether one of them is the value."""
 _SIGNS = {"COMMA": ",", "SEMICOLON": ";", "ANGLE-R": ">", "QUOTE": '"'}
@@ -29,12 +27,17 @@ class GeneratorExpressions:
         is_target: returns True if a target exists.
         property_of: returns a property of a target, with semicolons between its items; empty if it is not known.
         build_type: such as "Release"; empty without one.
+        language: of the sources: "C" or "CXX".
     """
 
     def __init__(
-        self, is_target: Callable[[str], bool], property_of: Callable[[str, str], str], build_type: str = ""
+        self,
+        is_target: Callable[[str], bool],
+        property_of: Callable[[str, str], str],
+        build_type: str = "",
+        language: str = "CXX",
     ) -> None:
-        self._are = {**_ARE, "CONFIG": build_type}
+        self._are = {**_ARE, "CONFIG": build_type, "COMPILE_LANGUAGE": language, "LINK_LANGUAGE": language}
         self._is_target = is_target
         self._property_of = property_of
 

@@ -5,10 +5,10 @@ Settings of a mission are in `config`: a file `config/default_NAME.h` there is i
 has one. The folder's CMakeLists.txt takes precedence over these conventions: its name, sources, tables, include folders
 and dependencies.
 
-Among the commands of such files, cFS's `add_cfe_app`, `add_cfe_tables` and `add_cfe_app_dependency` are defined here,
-and also include folders and definitions; `cmake_script` knows the language itself. A condition holds if its variable
-was set to a true value in the file itself: no EDS, no unit tests, no options, as in a plain build of the mission. The
-list of the mission's applications, in which a file looks for those whose headers it takes, has the folders next to it.
+`cmake_project` reads that file, with the files of subfolders and of the neighbours that it refers to: the applications
+and libraries beside it, and those in `apps` and `libs` of the same tree. A condition holds if its variable was set to a
+true value in a file: no EDS, no unit tests, no options, as in a plain build of the mission. An application counts as
+part of the mission if its folder is there.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.extra.c.toolchain.cmake_script import FILE, CMakeScript
-from cfepy.extra.c.toolchain.cmake_words import CMakeWord
+from cfepy.extra.c.toolchain.cmake_project import Project, ProjectScript, Tables
+from cfepy.extra.c.toolchain.cmake_script import FILE
+from cfepy.extra.c.toolchain.cmake_targets import INTERFACE, Target
 from cfepy.extra.c.toolchain.compiler import SOURCE_SUFFIXES
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import CMAKE_BYTES
@@ -32,14 +33,13 @@ TABLES = ("fsw/tables", "tables")
 DEFINITIONS = (".", "inc", "mission_inc", "platform_inc", "fsw/mission_inc", "fsw/platform_inc")
 DEFAULT = "default_"
 NEIGHBOURS = (".", "apps", "libs")
-SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE", "BEFORE", "AFTER", "SYSTEM")
-_MISSION_DIR = re.compile(r"\$\{(\w+)_MISSION_DIR\}")
-"""The folder of another application, in files that are older than `add_cfe_app_dependency`."""
-_APPS = re.compile(r"TGTSYS_\w*APPS")
-"""The list of a mission's applications in cFS's build."""
-_HEADERS_OF = re.compile(r"\$<TARGET_PROPERTY:(\w+),(?:INTERFACE_)?INCLUDE_DIRECTORIES>")
-"""The folders of another application's headers."""
+CORE_TARGETS = (
+    *("core_api", "core_private", "cfe_core", "osal", "osal_public_api", "osal_bsp"),
+    *("psp", "psp_module_api", "iodriver"),
+)
+"""Targets of cFE, OSAL and the PSP, whose headers are cfepy's."""
 _FILE_LIST = re.compile(r"set\(\w{1,100}_FILE_LIST([^()]*+)\)")
+_SYSTEM = "native_default_cpu1"
 _LEGAL = re.compile(r"\w[\w.+-]*")
 _SHOWN = 100  # characters of a name that is wrong
 _EDS = re.compile(r"_eds_\w+$")
@@ -59,6 +59,8 @@ class Sources:
         chosen: headers to write for the compiler: a name, and the file that stands for it; None for an empty one.
         definitions: the compiler's -D.
         missing: applications and libraries that its headers come from and that were not found.
+        table_includes, table_definitions: more folders and -D for the sources of tables.
+        replaced: the application's own source of a table, by the mission's source that replaces it.
     """
 
     name: str
@@ -69,6 +71,9 @@ class Sources:
     chosen: dict[str, Path | None] = field(default_factory=dict)
     definitions: list[str] = field(default_factory=list)
     missing: list[str] = field(default_factory=list)
+    table_includes: list[Path] = field(default_factory=list)
+    table_definitions: list[str] = field(default_factory=list)
+    replaced: dict[Path, Path] = field(default_factory=dict)
 
 
 def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
@@ -85,27 +90,134 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
         raise UsageError("folder not found; give the folder that contains the application's fsw/src", file=folder)
     if definitions is not None and not os.path.isdir(definitions):
         raise UsageError("folder of the mission's headers not found", file=definitions)
-    said = read_cmake_lists(folder)
-    code = _files(folder, said.sources) or _code_in(folder)
-    if not code:
-        raise UsageError("missing C sources: add them to fsw/src, or name them in CMakeLists.txt", file=folder)
-    tables = _files(folder, said.tables) or _all_in(folder, TABLES)
-    if said.name and not _LEGAL.fullmatch(said.name):
-        text = f"invalid application name {said.name[:_SHOWN]!r} in {FILE}; expected letters, digits, '_', '-' and '.'"
-        raise UsageError(text, file=folder / FILE)
-    found = Sources(said.name or folder.resolve().name, folder, code, tables, definitions=list(said.definitions))
     headers = [] if definitions is None else _folders(definitions, DEFINITIONS)
-    found.includes += headers + _folders(folder, said.includes) + _folders(folder, INCLUDES)
-    _choose(found, folder, headers)
-    for name in said.dependencies:
-        other = _neighbour(folder, name)
-        if other is None:
-            found.missing.append(name)
-        else:
-            found.includes += _folders(other, [*read_cmake_lists(other).includes, *INCLUDES])
-            _choose(found, other, headers)
+    if not os.path.isfile(folder / FILE):
+        found = sources_by_convention(folder)
+        found.name = folder.resolve().name
+        found.includes = headers + _folders(folder, INCLUDES)
+        _choose(found, folder, headers)
+    else:
+        found = _sources_of_cmake(folder, headers)
+    if not found.code:
+        raise UsageError("missing C sources: add them to fsw/src, or name them in CMakeLists.txt", file=folder)
     found.includes = list(dict.fromkeys(found.includes))
     return found
+
+
+def _sources_of_cmake(folder: Path, headers: list[Path]) -> Sources:
+    """Return the sources that a CMakeLists.txt names; those by convention for what it leaves out."""
+    project, target, used = read_project(folder)
+    name = folder.resolve().name if target is None else target.name
+    if not _LEGAL.fullmatch(name):
+        text = f"invalid application name {name[:_SHOWN]!r} in {FILE}; expected letters, digits, '_', '-' and '.'"
+        raise UsageError(text, file=folder / FILE)
+    code = [] if target is None else sources_of(project, target)
+    tables = [Path(each.folder, word) for each in project.tables if each.folder == str(folder) for word in each.words]
+    tables = [each for each in tables if each.suffix in SOURCE_SUFFIXES]
+    for each in (*code, *tables):
+        if not each.is_file():
+            shown = os.path.relpath(each, folder)
+            raise UsageError(f"{FILE} names a missing file: {shown}{_made_by(project, each)}", file=folder / FILE)
+    found = Sources(name, folder, code or _code_in(folder), tables or _all_in(folder, TABLES))
+    found.includes = [*headers, *_folders_of(project, target), *_folders(folder, INCLUDES)]
+    found.definitions = [] if target is None else definitions_of(project, target)
+    if target is None:
+        found.definitions = list(project.root.settings.definitions) if project.root is not None else []
+    _choose(found, folder, headers)
+    for other in used.values():
+        found.includes += _folders(other, INCLUDES)
+        _choose(found, other, headers)
+    add_table_settings(found, project, target, [each for each in project.tables if each.folder == str(folder)])
+    found.missing = [each for each in project.absent if each not in CORE_TARGETS]
+    return found
+
+
+def read_project(folder: Path) -> tuple[Project, Target | None, dict[str, Path]]:
+    """Read the CMakeLists.txt of an application alone.
+
+    Args:
+        folder: of the application.
+
+    Returns:
+        The project, the application's target (None if the file makes none), and the folders of the neighbours that its
+        settings refer to, by name.
+    """
+    neighbours = _neighbours(folder)
+    project = Project(folder / FILE, neighbours)
+    for name in CORE_TARGETS:
+        project.targets.all[name] = Target(name, INTERFACE, "")
+    variables = {f"{name}_MISSION_DIR": [str(other)] for name, other in neighbours.items()}
+    variables |= {f"{folder.name}_MISSION_DIR": [str(folder)], "UNIX": ["1"], "CMAKE_SYSTEM_NAME": ["Linux"]}
+    variables |= {"SYSVAR": [_SYSTEM], f"TGTSYS_{_SYSTEM}_APPS": list(neighbours), "IS_CFS_ARCH_BUILD": ["TRUE"]}
+    variables |= {"CMAKE_C_COMPILER_ID": ["GNU"], "TGTNAME": ["cpu1"], "CFE_SYSTEM_PSPNAME": ["pc-linux"]}
+    project.root = ProjectScript(project, folder, variables)
+    project.add_folder(folder, project.root)
+    made = [each for each in project.targets.all.values() if each.folder == str(folder) and each.kind != INTERFACE]
+    target = next((each for each in made if each.is_application), None)
+    target = target or next((each for each in made if each.kind in ("MODULE", "SHARED")), None)
+    if target is not None:
+        project.targets.includes(target)  # reads the neighbours that the settings refer to
+    return project, target, {name: each for name, each in neighbours.items() if project.has_used(name)}
+
+
+def _neighbours(folder: Path) -> dict[str, Path]:
+    """Return the folders of other applications and libraries: beside this one, or in `libs` or `apps` one level up.
+
+    A link to the folder has the neighbours of the link, then those of the folder itself.
+    """
+    found: dict[str, Path] = {}
+    for above in dict.fromkeys((Path(os.path.abspath(folder)).parent, folder.resolve().parent)):
+        for place in (above, *(above.parent / each for each in NEIGHBOURS)):
+            for other in sorted(place.glob("*/")):
+                if other.resolve() != folder.resolve():
+                    found.setdefault(other.name, other)
+    return found
+
+
+def sources_of(project: Project, target: Target) -> list[Path]:
+    """Return the sources of a target in C and C++, with those of libraries of the tree that it links."""
+    return [Path(each) for each in project.targets.sources(target) if Path(each).suffix in SOURCE_SUFFIXES]
+
+
+def definitions_of(project: Project, target: Target) -> list[str]:
+    """Return the compiler's -D of a target and of its parts."""
+    everything = [target, *project.targets.parts(target)]
+    return list(dict.fromkeys(each for one in everything for each in project.targets.definitions(one)))
+
+
+def _folders_of(project: Project, target: Target | None) -> list[Path]:
+    if target is None:
+        named = [] if project.root is None else project.root.settings.includes
+        return [Path(each) for each in named if os.path.isdir(each)]
+    everything = [target, *project.targets.parts(target)]
+    named = [each for one in everything for each in project.targets.includes(one)]
+    return [Path(each) for each in dict.fromkeys(named) if os.path.isdir(each)]
+
+
+def add_table_settings(found: Sources, project: Project, target: Target | None, calls: Iterable[Tables]) -> None:
+    """Add the include folders and definitions that calls of `add_cfe_tables` have for their tables alone."""
+    targets = project.targets
+    for each in calls:
+        helper = target if target is None else targets.all.get(f"{target.name}.table", target)
+        more = {} if helper is None else helper.properties
+        of = helper or Target("", INTERFACE, each.folder)
+        words = [*each.settings.includes, *more.get("INTERFACE_INCLUDE_DIRECTORIES", [])]
+        named = [Path(one) for word in words for one in targets.evaluated(word, of)]
+        found.table_includes += [one for one in dict.fromkeys(named) if one.is_dir()]
+        words = [*each.settings.definitions, *more.get("INTERFACE_COMPILE_DEFINITIONS", [])]
+        found.table_definitions += [one for word in words for one in targets.evaluated(word, of)]
+
+
+def _made_by(project: Project, file: Path) -> str:
+    """Return the custom command that makes a missing source, for an error."""
+    command = project.generated.get(str(file))
+    return "" if command is None else f", which a custom command of the build makes: {command}"
+
+
+def sources_by_convention(folder: Path) -> Sources:
+    """Return the sources of a folder without a CMakeLists.txt: fsw/src, fsw/tables, and the folders of headers."""
+    includes = _folders(folder, (*INCLUDES, "fsw/src", "fsw/tables"))
+    return Sources(folder.name, folder, _code_in(folder), _all_in(folder, TABLES), includes)
 
 
 def chosen_headers(folders: Iterable[Path], overriding: Sequence[Path] = ()) -> dict[str, Path]:
@@ -141,14 +253,6 @@ def _declared(folder: Path) -> Iterator[str]:
                 yield from (word for word in words.split() if word.endswith(".h") and _LEGAL.fullmatch(word))
 
 
-def _files(folder: Path, names: Iterable[str]) -> list[Path]:
-    named = {name: folder / name for name in names if Path(name).suffix in SOURCE_SUFFIXES}
-    for name, file in named.items():
-        if not os.path.isfile(file):
-            raise UsageError(f"{FILE} names a missing file: {name}", file=folder / FILE)
-    return list(named.values())
-
-
 def _code_in(folder: Path) -> list[Path]:
     for name in CODE:
         files = _all_in(folder, (name,))
@@ -164,107 +268,3 @@ def _all_in(folder: Path, names: Iterable[str]) -> list[Path]:
 
 def _folders(folder: Path, names: Iterable[str]) -> list[Path]:
     return [folder / name for name in names if name[:1] != "/" and os.path.isdir(folder / name)]
-
-
-def _neighbour(folder: Path, name: str) -> Path | None:
-    """Return the folder of another application or library: beside this one, or in `libs` or `apps` one level up."""
-    above = folder.resolve().parent
-    places = [above / name, *(above.parent / each / name for each in NEIGHBOURS)]
-    return next((each for each in places if os.path.isdir(each) and each != folder.resolve()), None)
-
-
-# -- CMakeLists.txt ----------------------------------------------------------------------------------------------------
-
-
-@dataclass(slots=True)
-class CMakeLists:
-    """The contents of a CMakeLists.txt; all paths are relative to its folder.
-
-    Attributes:
-        name: of the application, "" when there is none.
-        sources: of its code.
-        tables: sources of tables.
-        includes: folders of headers.
-        definitions: the compiler's -D.
-        dependencies: names of applications and libraries whose headers it uses.
-    """
-
-    name: str = ""
-    sources: list[str] = field(default_factory=list)
-    tables: list[str] = field(default_factory=list)
-    includes: list[str] = field(default_factory=list)
-    definitions: list[str] = field(default_factory=list)
-    dependencies: list[str] = field(default_factory=list)
-
-
-def read_cmake_lists(folder: Path) -> CMakeLists:
-    """Read the file of a folder.
-
-    Args:
-        folder: of the application.
-
-    Returns:
-        Its contents; empty if there is no such file.
-    """
-    file = folder / FILE
-    if not os.path.isfile(file):
-        return CMakeLists()
-    reader = _Reader(folder)
-    reader.run(text_limited(file, CMAKE_BYTES, "replace"))
-    return reader.found
-
-
-class _Reader(CMakeScript):
-    """Reads the file of an application.
-
-    Args:
-        folder: folder of the file.
-
-    Attributes:
-        found: its contents.
-    """
-
-    def __init__(self, folder: Path) -> None:
-        super().__init__(folder, {"CMAKE_CURRENT_SOURCE_DIR": ["."], "CMAKE_CURRENT_LIST_DIR": ["."]})
-        self.found = CMakeLists()
-
-    def command(self, name: str, words: list[str]) -> None:
-        found = self.found
-        match name, words:
-            case "add_cfe_app", [app, *sources] if not found.name:
-                found.name, found.sources = app, sources
-            case "add_cfe_tables", [_, *tables]:
-                found.tables += tables
-            case "add_cfe_app_dependency", [_, *names]:
-                found.dependencies += names
-            case "target_include_directories", [_, *folders]:
-                self._include(folders)
-            case "include_directories", folders:
-                self._include(folders)
-            case "list", ["FIND", variable, app, index] if _APPS.fullmatch(variable):
-                there = _neighbour(self.folder, app) if _LEGAL.fullmatch(app) else None
-                is_app = there is not None and os.path.isfile(there / FILE)  # not a submodule that was not fetched
-                self.variables[index] = ["0" if is_app else "-1"]
-            case "add_definitions" | "add_compile_definitions", definitions:
-                found.definitions += [each.removeprefix("-D") for each in definitions]
-            case _:
-                super().command(name, words)
-
-    def _include(self, folders: Sequence[str]) -> None:
-        for each in folders:
-            other = _HEADERS_OF.fullmatch(each)
-            if other is not None:
-                self._depend(other[1])
-            elif each not in SCOPES and "$" not in each:
-                self.found.includes.append(each)
-
-    def _depend(self, name: str) -> None:
-        if name not in self.found.dependencies:
-            self.found.dependencies.append(name)
-
-    def expanded(self, words: Sequence[CMakeWord]) -> list[str]:
-        """Expand words. A folder of another application also makes it a dependency."""
-        for word in words:
-            for name in _MISSION_DIR.findall(word.text):
-                self._depend(name)
-        return super().expanded(words)
