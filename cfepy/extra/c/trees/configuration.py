@@ -1,0 +1,260 @@
+"""The configuration of a mission tree: from its headers and OSAL's options to `limits` of a mission file.
+
+cFE names its values CFE_PLATFORM_... and CFE_MISSION_..., or without these words in cFE 6.5. `PlatformConfig` has the
+values that the simulator follows. Each other value that differs from cfepy's headers becomes a note, because the
+simulator cannot follow it.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+
+from cfepy.config.platform import NOT_LIMITS, PlatformConfig
+from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
+from cfepy.extra.c.toolchain.cmake_project import Project, ProjectScript
+from cfepy.extra.c.toolchain.compiler import CompilerError
+from cfepy.extra.c.toolchain.headers import NEEDED, headers_folder, read_tree
+from cfepy.extra.c.toolchain.headers import names as core_names
+from cfepy.extra.c.trees.macro_values import macro_names, macro_values
+from cfepy.extra.c.trees.tree_model import TreeModel, locate_header
+from cfepy.extra.c.trees.tree_reader import build_variables
+
+BASES = {
+    "CFEPY_CMD_MID_BASE": "CFE_PLATFORM_BASE_MIDVAL(CMD)",
+    "CFEPY_TLM_MID_BASE": "CFE_PLATFORM_BASE_MIDVAL(TLM)",
+    "CFEPY_GLOBAL_CMD_MID_BASE": "CFE_GLOBAL_BASE_MIDVAL(CMD)",
+    "CFEPY_GLOBAL_TLM_MID_BASE": "CFE_GLOBAL_BASE_MIDVAL(TLM)",
+}
+"""cfepy's macros for the bases of MsgIds, and NASA's."""
+DEFAULT_BASES = {
+    "CFEPY_CMD_MID_BASE": 0x1800,
+    "CFEPY_TLM_MID_BASE": 0x0800,
+    "CFEPY_GLOBAL_CMD_MID_BASE": 0x1860,
+    "CFEPY_GLOBAL_TLM_MID_BASE": 0x0860,
+}
+BASE_HEADER = "cfe_core_api_base_msgid_values"
+
+_OTHER_NAMES = {
+    "es_app_scan_rate_ms": "ES_APP_SCAN_RATE",
+    "es_startup_sync_poll_ms": "ES_STARTUP_SYNC_POLL_MSEC",
+    "es_startup_script_timeout_ms": "ES_STARTUP_SCRIPT_TIMEOUT_MSEC",
+    "es_core_max_startup_ms": "CORE_MAX_STARTUP_MSEC",
+    "sb_max_msg_size": "SB_MAX_SB_MSG_SIZE",
+    "sb_highest_valid_msg_id": "SB_HIGHEST_VALID_MSGID",
+}
+"""Fields whose macro has another name."""
+_PREFIXES = ("CFE_PLATFORM_", "CFE_MISSION_", "CFE_")
+_IDENTITIES = ("spacecraft_id", "processor_id", "processor_name")
+_OSAL = "OSAL_CONFIG_"
+_OS_MACRO = "OS_"
+_NEUTRAL = ("_TASK_PRIORITY", "_TASK_STACK_SIZE", "_TOPICID", "_MID", "_REV", "_BLOCK_SIZE", "_ENDIAN")
+"""Ends of names whose values are not part of the binary interface, or are compared elsewhere."""
+
+
+@dataclass(slots=True)
+class Configuration:
+    """The configuration of a tree.
+
+    Attributes:
+        release: the release of cFE.
+        limits: values for `limits` of a mission file that differ from the release's defaults.
+        bases: bases of MsgIds that differ from cfepy's, by cfepy's macro.
+        omit_deprecated: whether the tree leaves deprecated names out.
+        notes: facts for the report: values that the simulator does not follow.
+    """
+
+    release: str = DEFAULT_RELEASE
+    limits: dict[str, int | str] = field(default_factory=dict)
+    bases: dict[str, int] = field(default_factory=dict)
+    omit_deprecated: bool = False
+    notes: list[str] = field(default_factory=list)
+
+
+def read_configuration(model: TreeModel) -> Configuration:
+    """Read the configuration of a tree for its processor.
+
+    Raises:
+        UsageError: there is no compiler, or no reader of object files.
+    """
+    found = Configuration()
+    found.omit_deprecated = model.variables.get("OMIT_DEPRECATED", ["0"])[:1] in (["1"], ["ON"], ["TRUE"], ["true"])
+    _Reader(model, found).read()
+    return found
+
+
+class _Reader:
+    def __init__(self, model: TreeModel, found: Configuration) -> None:
+        self._model = model
+        self._found = found
+        self._has_cfe = (model.layout.tree / NEEDED).is_file()
+
+    def read(self) -> None:
+        own = self._own_headers()
+        with tempfile.TemporaryDirectory(prefix="cfepy-tree-") as scratch:
+            flags, headers = self._flags(Path(scratch), own)
+            values = self._values(headers, flags) if headers else {}
+            if self._has_cfe:
+                self._release(flags)
+        defaults = PlatformConfig().with_limits(RELEASES[self._found.release].limits)
+        self._limits(values, defaults)
+        self._osal(defaults)
+        self._identities(defaults)
+
+    def _own_headers(self) -> dict[str, Path]:
+        """Return the mission's own versions of headers of cFE."""
+        layout, cpu = self._model.layout, self._model.cpu
+        found = {}
+        for name in core_names():
+            file = locate_header(layout.definitions, f"{name}.h", ("default", cpu))
+            if file is not None and name != "cfe_perfids":
+                found[f"{name}.h"] = file
+        for name, short, prefix in (  # the names of cFS 6
+            ("cfe_mission_cfg.h", "mission_cfg.h", layout.config_name),
+            ("cfe_platform_cfg.h", "platform_cfg.h", cpu),
+            ("osconfig.h", "osconfig.h", "default"),
+        ):
+            file = locate_header(layout.definitions, short, (prefix,))
+            if file is not None:
+                found.setdefault(name, file)
+        return found
+
+    def _flags(self, scratch: Path, own: Mapping[str, Path]) -> tuple[list[str], list[str]]:
+        """Return flags for headers of the tree, and the headers to read."""
+        definitions, cpu = self._model.layout.definitions, self._model.cpu
+        folders = [each for each in (definitions / cpu, definitions, definitions / "inc") if each.is_dir()]
+        chosen: dict[str, Path | None] = {}
+        more: list[Path] = [headers_folder()]
+        headers = [each for each in own if "cfg" in each or each == "osconfig.h"]
+        if self._has_cfe:
+            tree = read_tree(self._model.layout.tree)
+            chosen, more = dict(tree.chosen), tree.includes
+            headers += [f"{each.stem}.h" for each in self._internal()]
+            headers += ["cfe_mission_cfg.h"]
+        chosen |= own
+        for name, file in chosen.items():
+            (scratch / name).write_text("" if file is None else f'#include "{file.absolute()}"\n', encoding="utf-8")
+        flags = [f"-I{each}" for each in (scratch, *folders, *more)]
+        if BASE_HEADER + ".h" in own:
+            headers.append(f"{BASE_HEADER}.h")
+        return flags, list(dict.fromkeys(headers))
+
+    def _internal(self) -> list[Path]:
+        modules = self._model.layout.tree / "cfe/modules"
+        return sorted(
+            (*modules.glob("*/fsw/inc/cfe_*_internal_cfg.h"), *modules.glob("*/fsw/inc/cfe_*_interface_cfg.h"))
+        )
+
+    def _values(self, headers: Sequence[str], flags: Sequence[str]) -> dict[str, int]:
+        """Return the values of macros. A header that cannot be compiled is left out with a note."""
+        usable = list(headers)
+        names: list[str] = []
+        try:
+            names = macro_names(headers, flags)
+        except CompilerError:
+            usable = []
+        for header in () if usable else headers:
+            try:
+                names += macro_names([header], flags)
+            except CompilerError as error:
+                self._found.notes.append(f"{header} cannot be read: {_first_error(error)}")
+            else:
+                usable.append(header)
+        wanted = [each for each in dict.fromkeys(names) if each.startswith(("CFE_PLATFORM_", "CFE_MISSION_", "OS_"))]
+        wanted += [each for each in dict.fromkeys(names) if each.startswith("CFE_") and each not in wanted]
+        if f"{BASE_HEADER}.h" in usable:
+            wanted += BASES.values()
+        try:
+            return macro_values(usable, wanted, flags)
+        except CompilerError as error:
+            self._found.notes.append(f"the configuration headers cannot be compiled together: {_first_error(error)}")
+            return {}
+
+    def _release(self, flags: Sequence[str]) -> None:
+        parts = ("CFE_MAJOR_VERSION", "CFE_MINOR_VERSION", "CFE_REVISION")
+        try:
+            values = macro_values(["cfe_version.h"], parts, flags)
+        except CompilerError:
+            return
+        name = ".".join(str(values[each]) for each in parts if each in values)
+        if name in RELEASES:
+            self._found.release = name
+        else:
+            self._found.notes.append(
+                f"cFE is {name or 'of an unknown release'} in the tree; cfepy follows {DEFAULT_RELEASE}"
+            )
+
+    def _limits(self, values: Mapping[str, int], defaults: PlatformConfig) -> None:
+        seen = set()
+        for each in fields(PlatformConfig):
+            if each.name in NOT_LIMITS or each.name in _IDENTITIES or not isinstance(getattr(defaults, each.name), int):
+                continue
+            base = _OTHER_NAMES.get(each.name, each.name.upper())
+            prefixes = (_OS_MACRO,) if base.startswith(_OS_MACRO) else _PREFIXES
+            names = [base] if base.startswith(_OS_MACRO) else [f"{prefix}{base}" for prefix in prefixes]
+            name = next((one for one in names if one in values), None)
+            if name is not None:
+                seen.add(name)
+                self._set(each.name, values[name], defaults)
+        for macro, text in BASES.items():
+            if text in values and values[text] != DEFAULT_BASES[macro]:
+                self._found.bases[macro] = values[text]
+        self._compare(values, seen)
+
+    def _set(self, name: str, value: int, defaults: PlatformConfig) -> None:
+        before = getattr(defaults, name)
+        made = bool(value) if isinstance(before, bool) else value
+        if made != before:
+            self._found.limits[name] = made
+
+    def _compare(self, values: Mapping[str, int], seen: set[str]) -> None:
+        """Note values that apps see and that cfepy's headers have with another value."""
+        names = [each for each in values if each.startswith("CFE_MISSION_") and each not in seen]
+        self._note_differences({each: values[each] for each in names if not each.endswith(_NEUTRAL)})
+
+    def _note_differences(self, values: Mapping[str, int]) -> None:
+        """Note values that cfepy's headers have too, with another value."""
+        ours = macro_values(["cfe.h"], values, [f"-I{headers_folder()}"]) if values else {}
+        for name, value in ours.items():
+            if value != values[name]:
+                text = f"{name} is {values[name]} in the mission and {value} in cfepy, which cannot change it"
+                self._found.notes.append(text)
+
+    def _osal(self, defaults: PlatformConfig) -> None:
+        """Read OSAL's options: default_osconfig.cmake, then those of the toolchain and of the processor."""
+        definitions, cpu = self._model.layout.definitions, self._model.cpu
+        files = [definitions / f"{each}_osconfig.cmake" for each in ("default", "native", cpu)]
+        files = [each for each in files if each.is_file()]
+        if not files:
+            return
+        script = ProjectScript(Project(files[0]), definitions, build_variables(self._model.layout))
+        for file in files:
+            script.include(file)
+        names = {each.name for each in fields(PlatformConfig)}
+        unknown: dict[str, int] = {}
+        for key, words in script.variables.items():
+            if not key.startswith(_OSAL) or len(words) != 1 or not words[0].isdecimal():
+                continue
+            name = f"os_{key.removeprefix(_OSAL).lower()}"
+            if name in names:
+                self._set(name, int(words[0]), defaults)
+            else:
+                unknown[f"{_OS_MACRO}{key.removeprefix(_OSAL)}"] = int(words[0])
+        self._note_differences(unknown)
+
+    def _identities(self, defaults: PlatformConfig) -> None:
+        model = self._model
+        for name, value in (
+            ("spacecraft_id", model.spacecraft_id),
+            ("processor_id", model.processor_id),
+            ("processor_name", model.cpu),
+        ):
+            if value is not None and value != getattr(defaults, name):
+                self._found.limits[name] = value
+
+
+def _first_error(error: CompilerError) -> str:
+    lines = [each.partition("error: ")[2] for each in str(error).splitlines() if "error: " in each]
+    return lines[0] if lines else str(error).partition("\n")[0]

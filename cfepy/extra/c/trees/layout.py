@@ -1,0 +1,121 @@
+"""The layout of a cFS mission tree: its folder of definitions, its processors, and the folders of its modules.
+
+A mission tree has a folder NAME_defs with a file targets.cmake, and applications and libraries in `apps` and `libs`.
+A tree that was only cloned may have its definitions still in `cfe/cmake/sample_defs`, as NASA delivers them. Modules
+are git submodules in most trees, and a submodule that was never fetched is an empty folder.
+"""
+
+from __future__ import annotations
+
+import configparser
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_limits import CMAKE_BYTES
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import UsageError
+
+TARGETS = "targets.cmake"
+DEFINITIONS = "*_defs"
+DELIVERED = "cfe/cmake/sample_defs"
+SEARCHED = ("apps", "libs", "psp/fsw/modules", "cfe/modules")
+"""Folders in which cFS looks for modules."""
+_SUFFIX = "_defs"
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """The places of a tree.
+
+    Attributes:
+        tree: its folder.
+        definitions: its folder of definitions.
+        submodules: git submodules: the path in the tree, and the URL.
+    """
+
+    tree: Path
+    definitions: Path
+    submodules: dict[str, str]
+
+    @property
+    def config_name(self) -> str:
+        """The mission's name in file names, such as "sample" of sample_defs."""
+        return self.definitions.name.removesuffix(_SUFFIX)
+
+    def absent_submodule(self, folder: Path) -> str:
+        """Return the URL of a git submodule that was not fetched; empty if the folder is not one."""
+        inside = os.path.relpath(folder, self.tree)
+        for path, url in self.submodules.items():
+            if (inside == path or inside.startswith(f"{path}/")) and not _has_files(self.tree / path):
+                return url
+        return ""
+
+
+def is_tree(folder: Path) -> bool:
+    """Return True if a folder is a mission tree."""
+    return bool(_definitions_in(folder))
+
+
+def find_layout(tree: Path, definitions: str | Path | None = None) -> Layout:
+    """Find the places of a tree.
+
+    Args:
+        tree: its folder.
+        definitions: its folder of definitions, as a path or as a name in the tree; None for the only one.
+
+    Raises:
+        UsageError: it has no such folder, or several and none was chosen.
+    """
+    found = _definitions_in(tree)
+    if definitions is not None:
+        chosen = next((each for each in (Path(definitions), tree / definitions) if (each / TARGETS).is_file()), None)
+        if chosen is None:
+            names = [each.name for each in found]
+            hint = did_you_mean(str(definitions), names) or (f"; the tree has {', '.join(names)}" if names else "")
+            raise UsageError(f"folder of definitions with a {TARGETS} not found{hint}", file=definitions)
+    elif not found:
+        raise UsageError(f"is not a cFS mission tree: {DEFINITIONS}/{TARGETS} is missing", file=tree)
+    elif len(found) > 1:
+        several = " ".join(each.name for each in found)
+        raise UsageError(f"has several folders of definitions: {several}; choose one with --defs", file=tree)
+    else:
+        chosen = found[0]
+    return Layout(Path(os.path.abspath(tree)), Path(os.path.abspath(chosen)), _submodules(tree))
+
+
+def tree_above(folder: Path) -> Path | None:
+    """Return the mission tree that a folder of an application is in; None if it is in none."""
+    for above in list(folder.absolute().parents)[:4]:
+        if _definitions_in(above):
+            return above
+    return None
+
+
+def _definitions_in(tree: Path) -> list[Path]:
+    found = sorted(each for each in tree.glob(DEFINITIONS) if (each / TARGETS).is_file())
+    if not found and (tree / DELIVERED / TARGETS).is_file():
+        return [tree / DELIVERED]
+    return found
+
+
+def _submodules(tree: Path) -> dict[str, str]:
+    file = tree / ".gitmodules"
+    if not file.is_file():
+        return {}
+    reader = configparser.RawConfigParser(strict=False)
+    text = "\n".join(line.strip() for line in text_limited(file, CMAKE_BYTES, "replace").splitlines())
+    try:
+        reader.read_string(text)
+    except configparser.Error:
+        return {}
+    sections = [dict(reader[each]) for each in reader.sections()]
+    return {each["path"]: each.get("url", "") for each in sections if each.get("path")}
+
+
+def _has_files(folder: Path) -> bool:
+    try:
+        return any(each.name != ".git" for each in os.scandir(folder))
+    except OSError:
+        return False
