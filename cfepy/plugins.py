@@ -92,6 +92,8 @@ OWN = (
             "compiled_code": ".in_missions:compiled_loader",
             "check_compiled": ".object_check:check_compiled",
             "check_profiles": ".object_check:check_profiles",
+            "check_tree": ".trees.tree_check:check_tree",
+            "mission_from": ".trees.walk_through:mission_from",
         },
     ),
     _own(

@@ -95,13 +95,20 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     app.add_argument("--c", action="store_true", help="an application in C, which `cfepy build` compiles")
     mission = kinds.add_parser(
         "mission",
-        help="a mission of an application and two ROS nodes",
-        description="Write a mission of an application and two ROS nodes, with a test.",
-        examples=("cfepy new mission rover",),
+        help="a mission of an application and two ROS nodes, or one from your own cFS tree",
+        description="Write a mission of an application and two ROS nodes, with a test. With --from, build a mission "
+        "folder from a cFS mission tree or from an application in C, check it, and fly it for 10 virtual seconds. It "
+        "ends with the flight, or with a list of at most ten things to do.",
+        examples=("cfepy new mission rover", "cfepy new mission --from cFS"),
+        epilog="exit status: 0 written, and with --from flown; with --from, that of cfepy run if the flight had a "
+        "problem, and 1 if nothing could be built; 2 bad usage",
     )
     mission.set_defaults(c=False, hint="; only applications can be in C: cfepy new app NAME --c")
+    text = "a cFS mission tree, or the folder of an application in C; NAME may be left out"
+    mission.add_argument("--from", dest="source", metavar="TREE|FOLDER", help=text)
+    app.add_argument("name", metavar="NAME", help="also the name of the new folder")
+    mission.add_argument("name", metavar="NAME", nargs="?", help="also the name of the new folder")
     for kind in (app, mission):
-        kind.add_argument("name", metavar="NAME", help="also the name of the new folder")
         kind.set_defaults(module="cfepy.cli.run.new")
     _add_new_faults(kinds)
     _add_new_schema(kinds)

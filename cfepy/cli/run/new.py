@@ -12,9 +12,11 @@ import os
 import re
 import sys
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 from cfepy.cli.main import ENDED_WELL
+from cfepy.plugins import Hook
 from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
 from cfepy.tbl import image
@@ -31,6 +33,8 @@ FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: after NASA's app
 FIRST_PERF_ID, PERF_IDS = 100, 28  # after NASA's apps, up to the last of cFE's 128
 
 Files = dict[str, bytes]
+MISSION_FROM: Hook[Callable[[Path, Path | None], int]] = Hook("mission_from")
+"""Makes a mission folder from a mission tree or an application in C, and flies it. Returns the exit status."""
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -43,6 +47,10 @@ def run(arguments: argparse.Namespace) -> int:
         UsageError: the name cannot be used, or such a file or folder exists already.
     """
     kind, name = arguments.kind, arguments.name
+    if kind == "mission" and arguments.source is not None:
+        return MISSION_FROM.need("`--from`")(Path(arguments.source), None if name is None else Path(name))
+    if name is None:
+        raise UsageError("missing name: cfepy new mission NAME", field="NAME")
     _check_name(kind, name)
     folder = Path(name)
     if os.path.exists(folder):

@@ -21,6 +21,7 @@ from cfepy.mission import (
     find_node,
     find_script,
     is_alone,
+    is_mission_folder,
     is_node,
     mission_environment,
     mission_file_of,
@@ -53,6 +54,8 @@ CHECK_PROFILES: Hook[Callable[[Path, list[StartupEntry], MissionSections], Itera
 """Checks all code of a mission together: the startup script, its entries, the mission file."""
 CHECK_SECTIONS: Hook[Callable[[MissionSections], Iterable[MissionProblem]]] = Hook("check_sections")
 """Checks the sections of a mission file."""
+CHECK_TREE: Hook[Callable[[Path], list[MissionProblem] | None]] = Hook("check_tree")
+"""Checks a mission tree of cFS sources. Returns None for another folder."""
 __all__ = ["MissionProblem", "check_mission", "problem_of", "shown_file"]
 
 
@@ -62,7 +65,7 @@ def check_mission(
     """Find all problems of a mission.
 
     Args:
-        mission: see `cfepy.mission.find_script`; or the script of a node.
+        mission: see `cfepy.mission.find_script`; or the script of a node, or a cFS mission tree.
         board: name or file of a board; None takes the mission's own.
         args: arguments for a launch file.
         cpp_nodes: how nodes in C++ are built, which overrides the mission; see `cfepy.mission.cpp_nodes_of`.
@@ -76,12 +79,23 @@ def check_mission(
     config = None if cpp_nodes is None else cpp_nodes_of(cpp_nodes)
     if is_node(mission):
         return _sorted(_check_node(Path(mission).resolve()))
+    tree = _check_tree(Path(mission))
+    if tree is not None:
+        return _sorted(tree)
     script = find_script(mission)
     if script.suffix in LAUNCH_FILES:
         return _sorted(_check_launch_file(script, args or {}, config))
     if args:
         raise UsageError("is not a launch file, so it takes no arguments", file=mission, field="--arg")
     return _sorted(_check_folder(script, board, config))
+
+
+def _check_tree(folder: Path) -> list[MissionProblem] | None:
+    """Check a folder that is no mission as a mission tree. Returns None if it is none."""
+    if not os.path.isdir(folder) or is_mission_folder(folder):
+        return None
+    found = (check(folder) for check in CHECK_TREE.all())
+    return next((each for each in found if each is not None), None)
 
 
 def _sorted(found: Iterable[MissionProblem]) -> list[MissionProblem]:
