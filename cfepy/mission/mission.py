@@ -155,10 +155,11 @@ class Mission:
         self.stall_watch = StallWatch(self.kernel, is_own=is_own_code)
         self.meet: Callable[[], int] | None = None
         self._first_boot: int | None = None
-        self._resetting = self._is_closed = False
+        self._resetting = False
         self._provide_tables()
         self._machine = self._make_machine()
         self.processor = Processor(self._machine)
+        self._is_closed = False  # before that there is nothing to close
         for each in self._attachments:
             each.begin(self)
         self._power_up()

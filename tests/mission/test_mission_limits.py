@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+import sys
 from pathlib import Path
 
 import pytest
@@ -35,6 +37,17 @@ def test_memory_for_many_nodes_does_not_reduce_memory_for_images() -> None:
 def test_a_mission_raises_and_lowers() -> None:
     config = MissionLimits({"os_max_tasks": 300, "sb_max_pipes": 10}).config(LINUX, has_nodes=False)
     assert (config.os_max_tasks, config.sb_max_pipes, config.os_max_queues) == (300, 10, 64)
+
+
+def test_refused_limits_of_the_time_leave_nothing_to_close(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    unraised: list[object] = []
+    monkeypatch.setattr(sys, "unraisablehook", unraised.append)
+    (tmp_path / "startup.scr").write_text("!\n", encoding="utf-8")
+    (tmp_path / "mission.yaml").write_text("limits: {time_cfg_source: true}\n", encoding="utf-8")
+    with pytest.raises(UsageError, match="needs exactly one of"):
+        Mission(str(tmp_path), console=Console(quiet=True))
+    gc.collect()
+    assert unraised == []
 
 
 def test_limit_above_the_board_is_refused() -> None:

@@ -108,7 +108,7 @@ class Project:
 
     def __init__(self, file: Path, targets_in: Mapping[str, Path] | None = None) -> None:
         self.budget = CMakeBudget(file)
-        self.targets = Targets(self._from_folder)
+        self.targets = Targets(self._from_folder, self.budget.spend)
         self.targets_in = dict(targets_in or {})
         self.tables: list[Tables] = []
         self.headers: dict[str, str | None] = {}
@@ -134,6 +134,7 @@ class Project:
         if str(folder) in self._visited:
             return
         self._visited.add(str(folder))
+        self.targets.forget()
         parent.inner(folder).read(folder / FILE)
 
     def has_used(self, name: str) -> bool:

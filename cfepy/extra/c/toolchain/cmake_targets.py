@@ -54,14 +54,23 @@ class Targets:
     Args:
         find: makes a target that no file has defined yet, such as one of another application's folder; None if there is
             none.
+        spend: charges characters to the reader's budget, because expressions of targets that refer to each other can
+            multiply.
 
     Attributes:
         all: the targets by name.
     """
 
-    def __init__(self, find: Callable[[str], Target | None]) -> None:
+    def __init__(self, find: Callable[[str], Target | None], spend: Callable[[int], object]) -> None:
         self._find = find
+        self._spend = spend
+        self._known: dict[tuple[str, str], list[str]] = {}
+        self._asking: set[tuple[str, str]] = set()
         self.all: dict[str, Target] = {}
+
+    def forget(self) -> None:
+        """Forget evaluated properties, after a file has changed targets."""
+        self._known.clear()
 
     def get(self, name: str) -> Target | None:
         """Return a target, from the files that define it if necessary."""
@@ -119,6 +128,7 @@ class Targets:
 
     def _property(self, target: Target, name: str, depth: int) -> list[str]:
         words = target.properties.get(name, [])
+        self._spend(len(words) + sum(map(len, words)))
         return [each for word in words for each in self._words(word, depth)]
 
     def evaluated(self, word: str, target: Target) -> list[str]:
@@ -146,15 +156,18 @@ class Targets:
 
     def _asked(self, name: str, key: str, depth: int) -> list[str]:
         """Return a property for TARGET_PROPERTY, with the one that it gets from the targets that it links."""
-        target = self.get(name)
-        if target is None:
+        target, asked = self.get(name), (name, key)
+        if target is None or asked in self._asking:  # properties can refer to each other
             return []
-        found = self._property(target, key, depth)
-        plain = key.removeprefix("INTERFACE_")
-        if plain in USED:
-            for each in self._linked(target):
+        if asked not in self._known:
+            self._asking.add(asked)
+            found = self._property(target, key, depth)
+            plain = key.removeprefix("INTERFACE_")
+            for each in self._linked(target) if plain in USED else ():
                 found += self._property(each, f"INTERFACE_{plain}", depth)
-        return list(dict.fromkeys(found))
+            self._asking.discard(asked)
+            self._known[asked] = list(dict.fromkeys(found))
+        return self._known[asked]
 
 
 def absolute(folder: str, words: Sequence[str]) -> Iterator[str]:

@@ -106,20 +106,24 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
 
 def _sources_of_cmake(folder: Path, headers: list[Path]) -> Sources:
     """Return the sources that a CMakeLists.txt names; those by convention for what it leaves out."""
-    project, target, used = read_project(folder)
+    here = Path(os.path.abspath(folder))
+    project, target, used = read_project(here)
     name = folder.resolve().name if target is None else target.name
     if not _LEGAL.fullmatch(name):
         text = f"invalid application name {name[:_SHOWN]!r} in {FILE}; expected letters, digits, '_', '-' and '.'"
         raise UsageError(text, file=folder / FILE)
+    calls = [each for each in project.tables if each.folder == str(here)]
     code = [] if target is None else sources_of(project, target)
-    tables = [Path(each.folder, word) for each in project.tables if each.folder == str(folder) for word in each.words]
+    tables = [here / word for each in calls for word in each.words]
     tables = [each for each in tables if each.suffix in SOURCE_SUFFIXES]
     for each in (*code, *tables):
         if not each.is_file():
-            shown = os.path.relpath(each, folder)
+            shown = os.path.relpath(each, here)
             raise UsageError(f"{FILE} names a missing file: {shown}{_made_by(project, each)}", file=folder / FILE)
-    found = Sources(name, folder, code or _code_in(folder), tables or _all_in(folder, TABLES))
-    found.includes = [*headers, *_folders_of(project, target), *_folders(folder, INCLUDES)]
+    found = Sources(name, folder, _given(code, here, folder) or _code_in(folder), _given(tables, here, folder))
+    found.tables = found.tables or _all_in(folder, TABLES)
+    named = _given(_folders_of(project, target), here, folder)
+    found.includes = [*headers, *named, *_folders(folder, INCLUDES)]
     found.definitions = [] if target is None else definitions_of(project, target)
     if target is None:
         found.definitions = list(project.root.settings.definitions) if project.root is not None else []
@@ -127,9 +131,14 @@ def _sources_of_cmake(folder: Path, headers: list[Path]) -> Sources:
     for other in used.values():
         found.includes += _folders(other, INCLUDES)
         _choose(found, other, headers)
-    add_table_settings(found, project, target, [each for each in project.tables if each.folder == str(folder)])
+    add_table_settings(found, project, target, calls)
     found.missing = [each for each in project.absent if each not in CORE_TARGETS]
     return found
+
+
+def _given(paths: Iterable[Path], here: Path, folder: Path) -> list[Path]:
+    """Return absolute paths as the user gave the folder, which may be relative, for the compiler's messages."""
+    return [folder / each.relative_to(here) if each.is_relative_to(here) else each for each in paths]
 
 
 def read_project(folder: Path) -> tuple[Project, Target | None, dict[str, Path]]:

@@ -21,6 +21,8 @@ from cfepy.extra.c.toolchain.headers import names as core_names
 from cfepy.extra.c.trees.macro_values import macro_names, macro_values
 from cfepy.extra.c.trees.tree_model import TreeModel, locate_header
 from cfepy.extra.c.trees.tree_reader import build_variables
+from cfepy.status import UsageError
+from cfepy.time.settings import TimeSettings
 
 BASES = {
     "CFEPY_CMD_MID_BASE": "CFE_PLATFORM_BASE_MIDVAL(CMD)",
@@ -47,6 +49,7 @@ _OTHER_NAMES = {
 }
 """Fields whose macro has another name."""
 _PREFIXES = ("CFE_PLATFORM_", "CFE_MISSION_", "CFE_")
+_TIME_SOURCES = ("time_cfg_", "time_at_tone_")
 _IDENTITIES = ("spacecraft_id", "processor_id", "processor_name")
 _OSAL = "OSAL_CONFIG_"
 _OS_MACRO = "OS_"
@@ -100,6 +103,7 @@ class _Reader:
                 self._release(flags)
         defaults = PlatformConfig().with_limits(RELEASES[self._found.release].limits)
         self._limits(values, defaults)
+        self._check_time(defaults)
         self._osal(defaults)
         self._identities(defaults)
 
@@ -202,6 +206,18 @@ class _Reader:
             if text in values and values[text] != DEFAULT_BASES[macro]:
                 self._found.bases[macro] = values[text]
         self._compare(values, seen)
+
+    def _check_time(self, defaults: PlatformConfig) -> None:
+        """Leave out settings of the time that contradict each other, with which cFE would not compile."""
+        try:
+            TimeSettings.of(defaults.with_limits(self._found.limits))
+        except UsageError as error:
+            dropped = [each for each in self._found.limits if each.startswith(_TIME_SOURCES)]
+            for each in dropped:
+                del self._found.limits[each]
+            self._found.notes.append(
+                f"cFE's defaults replace {', '.join(dropped)}, which contradict each other: {error}"
+            )
 
     def _set(self, name: str, value: int, defaults: PlatformConfig) -> None:
         before = getattr(defaults, name)

@@ -40,6 +40,7 @@ from cfepy.writing.work_progress import WorkProgress
 MISSION_FILE = "mission.yaml"
 _TABLE_PATH = re.compile(rb"/cf/((?:[\w.-]+/)+)([\w.-]+\.tbl)\0")
 _CODE_FOLDER = re.compile(r"/cf/((?:[\w.-]+/)*)[^/]*")
+_FUNCTION = re.compile(r"^def (\w+)\(", re.MULTILINE)
 _MOST_FILE = 64 << 20
 _CFE_6 = re.compile(
     r"'(?:CFE_SB_(?:TLM|CMD)_HDR_SIZE|CFE_SB_MsgPtr_t|CFE_SB_Msg_t|CFE_SB_CmdHdr_t|CFE_EVS_BinFilter_t|boolean"
@@ -141,6 +142,7 @@ class _Build:
         startup = self._startup or made_startup(modules)
         self._copy_tables()
         self._copy_files()
+        startup = self._with_entry_points(startup)
         self._write(STARTUP_SCRIPT, startup.text, startup.origin)
         self._write(MISSION_FILE, mission_file(self._report.mission, configuration), "limits and names of the tree")
         self._check_startup(startup, configuration)
@@ -274,6 +276,21 @@ class _Build:
             )
         return "the startup script names it, and it is not in the tree"
 
+    def _with_entry_points(self, startup: StartupScript) -> StartupScript:
+        """Give stand-ins their own entry points, which older scripts write in other letters: CI_Lab_AppMain."""
+        text = startup.text
+        for each in startup.lines:
+            app = _file_name(each.file)
+            if app in self._built or not (shipped("apps") / app).is_dir():
+                continue
+            for name in _python_functions(app):
+                if name != each.symbol and name.lower() == each.symbol.lower():
+                    text = text.replace(each.symbol.encode(), name.encode())
+                    self._report.notes.append(
+                        f"{STARTUP_SCRIPT}: {name}, as cfepy's own {app} has it, for {each.symbol}"
+                    )
+        return startup._replace(text=text)
+
     def _name_tables(self, startup: StartupScript) -> None:
         """Give tables of stand-ins the name that the startup script gives their application, as cFE requires it."""
         names = {_file_name(each.file): each.name for each in startup.lines if each.kind == CFE_APP}
@@ -336,6 +353,12 @@ def _steps(report: BuildReport, model: TreeModel) -> Iterator[str]:
 
 def _file_name(file: str) -> str:
     return os.path.basename(file).partition(".")[0]
+
+
+def _python_functions(app: str) -> list[str]:
+    """Return the functions of one of cfepy's own applications."""
+    files = sorted((shipped("apps") / app).glob("*.py"))
+    return [name for file in files for name in _FUNCTION.findall(file.read_text(encoding="utf-8"))]
 
 
 def functions_of(library: Path) -> list[str]:

@@ -153,6 +153,23 @@ def test_tree_of_cfs_6_gives_its_limits_and_folders(tmp_path: Path) -> None:
     assert "ONE has 0x1890" in console_of(fly(str(tmp_path / "mission")))
 
 
+def test_settings_of_the_time_that_contradict_each_other_are_left_out(tmp_path: Path) -> None:
+    header = "#define CFE_PLATFORM_TIME_CFG_SOURCE true\n#define CFE_PLATFORM_ES_MAX_LIBRARIES 12\n"
+    report = built(tmp_path, {"small_defs/cfe_platform_cfg.h": header})
+    assert report.notes == [
+        "cFE's defaults replace time_cfg_source, which contradict each other: limits.time_cfg_source: needs exactly one "
+        "of time_cfg_src_met, _gps, _time"
+    ]
+    assert yaml.safe_load((tmp_path / "mission/mission.yaml").read_text())["limits"]["es_max_libraries"] == 12
+
+
+def test_stand_in_gets_its_entry_point_in_an_older_startup_script(tmp_path: Path) -> None:
+    script = SCRIPT.replace("two, TWO_Main, TWO,", "ci_lab, CI_Lab_AppMain, CI_LAB_APP,")
+    report = built(tmp_path, {"small_defs/cpu1_cfe_es_startup.scr": script})
+    assert report.notes[0] == "startup.scr: CI_LAB_AppMain, as cfepy's own ci_lab has it, for CI_Lab_AppMain"
+    assert "CI_LAB_APP" in console_of(fly(str(tmp_path / "mission")))
+
+
 def test_table_is_also_written_where_the_code_looks_for_it(tmp_path: Path) -> None:
     main_text = FILES["apps/one/fsw/src/one.c"] + 'const char *const Place = "/cf/apps/rows.tbl";\n'
     built(tmp_path, {"apps/one/fsw/src/one.c": main_text})

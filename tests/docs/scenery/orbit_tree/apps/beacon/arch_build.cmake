@@ -1,0 +1,1 @@
+generate_configfile_set(beacon_tbl.h)

@@ -1,0 +1,6 @@
+#include "cfe.h"
+
+typedef struct
+{
+    uint32 PeriodMs;
+} BEACON_Table_t;

@@ -1,0 +1,6 @@
+SET(MISSION_NAME "Orbit")
+SET(SPACECRAFT_ID 0x42)
+SET(MISSION_CPUNAMES cpu1)
+SET(cpu1_PROCESSORID 1)
+SET(cpu1_APPLIST beacon to_lab)
+SET(cpu1_FILELIST cfe_es_startup.scr)
