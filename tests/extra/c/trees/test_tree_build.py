@@ -157,8 +157,8 @@ def test_settings_of_the_time_that_contradict_each_other_are_left_out(tmp_path: 
     header = "#define CFE_PLATFORM_TIME_CFG_SOURCE true\n#define CFE_PLATFORM_ES_MAX_LIBRARIES 12\n"
     report = built(tmp_path, {"small_defs/cfe_platform_cfg.h": header})
     assert report.notes == [
-        "cFE's defaults replace time_cfg_source, which contradict each other: limits.time_cfg_source: needs exactly one "
-        "of time_cfg_src_met, _gps, _time"
+        "cFE's defaults replace time_cfg_source, which contradict each other: limits.time_cfg_source: needs exactly "
+        "one of time_cfg_src_met, _gps, _time"
     ]
     assert yaml.safe_load((tmp_path / "mission/mission.yaml").read_text())["limits"]["es_max_libraries"] == 12
 
