@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from cfepy.time.clock import CLOCK_FLYWHEEL, CLOCK_INVALID, CLOCK_VALID
     from cfepy.time.packets import COMMANDS, TELEMETRY
     from cfepy.time.service import TimeServices
+    from cfepy.time.settings import TimeSettings
     from cfepy.time.systime import (
         A_GT_B,
         A_LT_B,
@@ -40,6 +41,7 @@ __all__ = [
     "TELEMETRY",
     "SysTime",
     "TimeServices",
+    "TimeSettings",
     "add",
     "compare",
     "copy",
@@ -63,6 +65,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "TELEMETRY",
             ),
             ".service": ("TimeServices",),
+            ".settings": ("TimeSettings",),
             ".systime": (
                 "A_GT_B",
                 "A_LT_B",

@@ -28,8 +28,8 @@ from cfepy.extra.c.toolchain.cmake_targets import (
     LINKS,
     MODULE,
     STATIC,
+    CMakeTargets,
     Target,
-    Targets,
     absolute,
 )
 from cfepy.reading.input_files import text_limited
@@ -44,7 +44,7 @@ HEADER_FOLDERS = ("fsw/inc", "fsw/public_inc", "fsw/mission_inc", "fsw/platform_
 _FIND = ("find_package", "find_library", "find_path", "find_file", "find_program", "pkg_check_modules")
 
 
-class Note(NamedTuple):
+class ProjectNote(NamedTuple):
     """A fact about a file of the tree that a build of it should report.
 
     Attributes:
@@ -58,7 +58,7 @@ class Note(NamedTuple):
     text: str
 
 
-class Tables(NamedTuple):
+class TableCall(NamedTuple):
     """A call of `add_cfe_tables`: its name, the folder of its file, its sources and the settings of the folder."""
 
     name: str
@@ -108,16 +108,16 @@ class Project:
 
     def __init__(self, file: Path, targets_in: Mapping[str, Path] | None = None) -> None:
         self.budget = CMakeBudget(file)
-        self.targets = Targets(self._from_folder, self.budget.spend)
+        self.targets = CMakeTargets(self._from_folder, self.budget.spend)
         self.targets_in = dict(targets_in or {})
-        self.tables: list[Tables] = []
+        self.tables: list[TableCall] = []
         self.headers: dict[str, str | None] = {}
         self.mission_headers: set[str] = set()
         self.generated: dict[str, str] = {}
         self.written: dict[str, str] = {}
         self.installed: list[str] = []
         self.cache: dict[str, list[str]] = {}
-        self.notes: list[Note] = []
+        self.notes: list[ProjectNote] = []
         self.absent: list[str] = []
         self.root: ProjectScript | None = None
         self._visited: set[str] = set()
@@ -125,7 +125,7 @@ class Project:
 
     def note(self, kind: str, folder: str | Path, text: str) -> None:
         """Add a note, once."""
-        one = Note(kind, str(folder), text)
+        one = ProjectNote(kind, str(folder), text)
         if one not in self.notes:
             self.notes.append(one)
 
@@ -340,7 +340,7 @@ class ProjectScript(CMakeScript):
                     self._add(app, MODULE, sources).is_application = True
                     self._add(f"{app}.table", INTERFACE, [])
             case "add_cfe_tables", [of, *tables]:
-                self.project.tables.append(Tables(of, str(self.folder), tables, self.settings))
+                self.project.tables.append(TableCall(of, str(self.folder), tables, self.settings))
             case "add_cfe_app_dependency", [app, *names]:
                 target = self.project.targets.all.get(app)
                 if target is not None:

@@ -1,6 +1,6 @@
 """The targets of a CMake project, and generator expressions about them.
 
-A target keeps its include folders and definitions as the files write them. `Targets` evaluates them when all files
+A target keeps its include folders and definitions as the files write them. `CMakeTargets` evaluates them when all files
 have been read, as CMake does, because an expression may refer to a target of a later file.
 """
 
@@ -48,7 +48,7 @@ class Target:
         self.properties.setdefault(name, []).extend(words)
 
 
-class Targets:
+class CMakeTargets:
     """The targets of a project.
 
     Args:

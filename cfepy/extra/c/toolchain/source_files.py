@@ -19,7 +19,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.extra.c.toolchain.cmake_project import Project, ProjectScript, Tables
+from cfepy.extra.c.toolchain.cmake_project import Project, ProjectScript, TableCall
 from cfepy.extra.c.toolchain.cmake_script import FILE
 from cfepy.extra.c.toolchain.cmake_targets import INTERFACE, Target
 from cfepy.extra.c.toolchain.compiler import SOURCE_SUFFIXES
@@ -203,7 +203,7 @@ def _folders_of(project: Project, target: Target | None) -> list[Path]:
     return [Path(each) for each in dict.fromkeys(named) if os.path.isdir(each)]
 
 
-def add_table_settings(found: Sources, project: Project, target: Target | None, calls: Iterable[Tables]) -> None:
+def add_table_settings(found: Sources, project: Project, target: Target | None, calls: Iterable[TableCall]) -> None:
     """Add the include folders and definitions that calls of `add_cfe_tables` have for their tables alone."""
     targets = project.targets
     for each in calls:

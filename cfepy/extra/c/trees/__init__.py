@@ -14,8 +14,8 @@ from cfepy.interpreter.faces import face
 if TYPE_CHECKING:
     from cfepy.extra.c.trees.build_report import BuildReport
     from cfepy.extra.c.trees.cmake_reader import CMAKE_NOTE, read_with_cmake
-    from cfepy.extra.c.trees.layout import find_layout, is_tree, tree_above
     from cfepy.extra.c.trees.mission_folder import TreeOptions, build_tree
+    from cfepy.extra.c.trees.tree_layout import find_layout, is_tree, tree_above
     from cfepy.extra.c.trees.tree_model import TreeModel
     from cfepy.extra.c.trees.tree_reader import read_tree
 
@@ -38,7 +38,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".build_report": ("BuildReport",),
             ".cmake_reader": ("CMAKE_NOTE", "read_with_cmake"),
-            ".layout": ("find_layout", "is_tree", "tree_above"),
+            ".tree_layout": ("find_layout", "is_tree", "tree_above"),
             ".mission_folder": ("TreeOptions", "build_tree"),
             ".tree_model": ("TreeModel",),
             ".tree_reader": ("read_tree",),

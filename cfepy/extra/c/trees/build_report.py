@@ -10,7 +10,7 @@ BUILT, STANDS_IN, LEFT_OUT = "built", "stands in", "left out"
 KEPT = "kept"
 
 
-class Entry(NamedTuple):
+class ReportLine(NamedTuple):
     """A line of the report.
 
     Attributes:
@@ -44,7 +44,7 @@ class BuildReport:
     cpu: str
     folder: str
     read_by: str
-    entries: list[Entry] = field(default_factory=list)
+    entries: list[ReportLine] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     steps: list[str] = field(default_factory=list)
@@ -52,9 +52,9 @@ class BuildReport:
 
     def add(self, result: str, name: str, text: str) -> None:
         """Add a line."""
-        self.entries.append(Entry(result, name, text))
+        self.entries.append(ReportLine(result, name, text))
 
-    def named(self, result: str) -> list[Entry]:
+    def named(self, result: str) -> list[ReportLine]:
         """Return the lines with a result."""
         return [each for each in self.entries if each.result == result]
 

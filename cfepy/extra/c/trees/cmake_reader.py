@@ -17,11 +17,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from cfepy.extra.c.toolchain.cmake_project import Directory, Project, Tables
+from cfepy.extra.c.toolchain.cmake_project import Directory, Project, TableCall
 from cfepy.extra.c.toolchain.cmake_targets import DEFINITIONS, INCLUDES, INTERFACE, LINKS, Target
 from cfepy.extra.c.toolchain.compiler import call_bounded
 from cfepy.extra.c.toolchain.source_files import CORE_TARGETS
-from cfepy.extra.c.trees.layout import TARGETS, Layout
+from cfepy.extra.c.trees.tree_layout import TARGETS, TreeLayout
 from cfepy.extra.c.trees.tree_model import TreeModel, choose_cpu, make_model, module_folders
 from cfepy.extra.c.trees.tree_reader import convention_target
 from cfepy.reading.input_files import text_limited
@@ -40,7 +40,7 @@ _KEPT = ("PATH", "TMPDIR")
 Told = list[str]
 
 
-def read_with_cmake(layout: Layout, cpu: str | None = None, more: Sequence[str] = ()) -> TreeModel:
+def read_with_cmake(layout: TreeLayout, cpu: str | None = None, more: Sequence[str] = ()) -> TreeModel:
     """Read a tree for one processor; see `tree_reader.read_tree`.
 
     Raises:
@@ -62,7 +62,7 @@ def read_with_cmake(layout: Layout, cpu: str | None = None, more: Sequence[str] 
 
 
 def _configure(
-    program: str, layout: Layout, cpu: str | None, more: Sequence[str], ignored: Sequence[str], scratch: Path
+    program: str, layout: TreeLayout, cpu: str | None, more: Sequence[str], ignored: Sequence[str], scratch: Path
 ) -> tuple[int, str]:
     build = scratch / "build"
     query = build / ".cmake/api/v1/query"
@@ -92,7 +92,7 @@ def _error(said: str) -> str:
 class _Reply:
     """The reply of CMake, as a project."""
 
-    def __init__(self, layout: Layout, cpu: str | None, scratch: Path) -> None:
+    def __init__(self, layout: TreeLayout, cpu: str | None, scratch: Path) -> None:
         self._layout = layout
         self._cpu = cpu
         self._build = scratch / "build"
@@ -144,7 +144,7 @@ class _Reply:
             case "tables", [name, target_name, *sources]:
                 target = self._table_targets.get(target_name, Target(target_name, "OBJECT", folder))
                 settings = Directory(target.properties.get(INCLUDES, []), target.properties.get(DEFINITIONS, []))
-                project.tables.append(Tables(name, folder, sources, settings))
+                project.tables.append(TableCall(name, folder, sources, settings))
             case "header", words:
                 self._header(place, words)
             case "source", [path]:

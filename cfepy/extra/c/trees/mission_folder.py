@@ -13,18 +13,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import yaml
-
 from cfepy.es import CFE_APP
 from cfepy.extra.c.elf import ElfError, read_shared_object
 from cfepy.extra.c.toolchain.application import Built, Options, TableFiles, build_sources, build_tables
 from cfepy.extra.c.toolchain.compiler import CompilerError
 from cfepy.extra.c.toolchain.source_files import Sources
 from cfepy.extra.c.trees.build_report import BUILT, KEPT, LEFT_OUT, STANDS_IN, BuildReport
-from cfepy.extra.c.trees.configuration import Configuration, read_configuration
-from cfepy.extra.c.trees.layout import Layout, find_layout
+from cfepy.extra.c.trees.configuration import Configuration, mission_file, read_configuration
 from cfepy.extra.c.trees.startup_scripts import StartupScript, find_startup, made_startup
-from cfepy.extra.c.trees.tree_model import Module, TreeModel, module_folders
+from cfepy.extra.c.trees.tree_layout import TreeLayout, find_layout
+from cfepy.extra.c.trees.tree_model import TreeModel, TreeModule, module_folders
 from cfepy.extra.c.trees.tree_reader import read_tree
 from cfepy.mission import STARTUP_SCRIPT
 from cfepy.reading.contained_files import write_contained
@@ -34,7 +32,8 @@ from cfepy.reading.resources import shipped
 from cfepy.reading.suggestions import expected
 from cfepy.rtos import Stopwatch
 from cfepy.status import UsageError
-from cfepy.tbl import image
+from cfepy.tbl import build as table_file
+from cfepy.tbl import read as read_table_image
 from cfepy.writing.work_progress import WorkProgress
 
 MISSION_FILE = "mission.yaml"
@@ -49,7 +48,7 @@ _CFE_6 = re.compile(
 )
 """Errors of a compiler that show sources of cFE 6."""
 
-Reader = Callable[[Layout, str | None, tuple[str, ...]], TreeModel]
+Reader = Callable[[TreeLayout, str | None, tuple[str, ...]], TreeModel]
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +149,7 @@ class _Build:
 
     # -- modules -------------------------------------------------------------------------------------------------------
 
-    def _module(self, module: Module, configuration: Configuration, progress: WorkProgress) -> None:
+    def _module(self, module: TreeModule, configuration: Configuration, progress: WorkProgress) -> None:
         if module.name in self._options.stand_ins:
             self._without(module.name, "--stand-in asks for it")
             return
@@ -296,10 +295,10 @@ class _Build:
         names = {_file_name(each.file): each.name for each in startup.lines if each.kind == CFE_APP}
         for app in self._stand_ins:
             for file in sorted((shipped("apps") / app / "tables").glob("*.tbl")):
-                table = image.read(read_limited(file, _MOST_FILE))
+                table = read_table_image(read_limited(file, _MOST_FILE))
                 owner, dot, rest = table.name.partition(".")
                 if app in names and names[app] != owner and dot:
-                    data = image.build(table._replace(name=f"{names[app]}.{rest}"))
+                    data = table_file(table._replace(name=f"{names[app]}.{rest}"))
                     self._write(file.name, data, f"table of the stand-in {app}, named {names[app]}.{rest}")
 
     def _check_tables(self, startup: StartupScript) -> None:
@@ -323,16 +322,6 @@ _BASE_WORDS = {
     "CFEPY_GLOBAL_CMD_MID_BASE": "global commands",
     "CFEPY_GLOBAL_TLM_MID_BASE": "global telemetry",
 }
-
-
-def mission_file(name: str, configuration: Configuration) -> bytes:
-    """Return the mission file of a tree."""
-    content: dict[str, object] = {"name": name, "cfe_version": configuration.release}
-    if configuration.omit_deprecated:
-        content["compiled"] = {"omit_deprecated": True}
-    if configuration.limits:
-        content["limits"] = dict(configuration.limits)
-    return yaml.safe_dump(content, sort_keys=False, default_flow_style=False, allow_unicode=True).encode()
 
 
 def _steps(report: BuildReport, model: TreeModel) -> Iterator[str]:

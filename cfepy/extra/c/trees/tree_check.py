@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cfepy.extra.c.trees.layout import TARGETS, find_layout, is_tree
 from cfepy.extra.c.trees.startup_scripts import find_startup
+from cfepy.extra.c.trees.tree_layout import TARGETS, find_layout, is_tree
 from cfepy.extra.c.trees.tree_model import module_folders
 from cfepy.extra.c.trees.tree_reader import read_tree
 from cfepy.pilot import MissionProblem

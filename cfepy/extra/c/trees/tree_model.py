@@ -18,7 +18,7 @@ from cfepy.extra.c.toolchain.cmake_targets import Target
 from cfepy.extra.c.toolchain.compiler import SOURCE_SUFFIXES
 from cfepy.extra.c.toolchain.headers import names as core_names
 from cfepy.extra.c.toolchain.source_files import INCLUDES, Sources, add_table_settings, definitions_of, sources_of
-from cfepy.extra.c.trees.layout import SEARCHED, Layout
+from cfepy.extra.c.trees.tree_layout import SEARCHED, TreeLayout
 from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
@@ -28,7 +28,7 @@ _NUMBER = re.compile(r"0[xX][0-9a-fA-F]{1,8}|[0-9]{1,10}")
 
 
 @dataclass(slots=True)
-class Module:
+class TreeModule:
     """An application or library of a tree.
 
     Attributes:
@@ -65,13 +65,13 @@ class TreeModel:
         read_by: "cfepy", or "CMake" with its version.
     """
 
-    layout: Layout
+    layout: TreeLayout
     cpu: str
     cpus: list[str]
     mission_name: str = ""
     spacecraft_id: int | None = None
     processor_id: int | None = None
-    modules: list[Module] = field(default_factory=list)
+    modules: list[TreeModule] = field(default_factory=list)
     variables: Mapping[str, Sequence[str]] = field(default_factory=dict)
     headers: dict[str, Path | None] = field(default_factory=dict)
     files: dict[str, Path] = field(default_factory=dict)
@@ -84,7 +84,7 @@ Variables = Mapping[str, Sequence[str]]
 
 
 def make_model(
-    layout: Layout, cpu: str, project: Project, made_by: Mapping[str, Sequence[Target]], variables: Variables
+    layout: TreeLayout, cpu: str, project: Project, made_by: Mapping[str, Sequence[Target]], variables: Variables
 ) -> TreeModel:
     """Make the model of a tree whose files have been read.
 
@@ -124,7 +124,12 @@ def module_folders(tree: Path) -> dict[str, Path]:
 
 class _Maker:
     def __init__(
-        self, layout: Layout, cpu: str, project: Project, made_by: Mapping[str, Sequence[Target]], variables: Variables
+        self,
+        layout: TreeLayout,
+        cpu: str,
+        project: Project,
+        made_by: Mapping[str, Sequence[Target]],
+        variables: Variables,
     ) -> None:
         self._layout = layout
         self._folders = module_folders(layout.tree)
@@ -152,27 +157,27 @@ class _Maker:
 
     # -- modules -------------------------------------------------------------------------------------------------------
 
-    def _modules(self, name: str, model: TreeModel) -> Iterator[Module]:
+    def _modules(self, name: str, model: TreeModel) -> Iterator[TreeModule]:
         folder = self._folders.get(name)
         url = self._layout.absent_submodule(folder or self._layout.tree / "apps" / name)
         if folder is None or url:
             reason = f"is not in {' or '.join(SEARCHED[:2])}"
             if url:
                 reason = f"is a git submodule that was not fetched; its URL is {url}"
-            yield Module(name, folder, reason=reason)
+            yield TreeModule(name, folder, reason=reason)
             return
         made = self._made_by.get(name, [])
         if not made:
             text = f"{FILE} defines no application" if (folder / FILE).is_file() else f"has neither {FILE} nor fsw"
-            yield Module(name, folder, reason=text)
+            yield TreeModule(name, folder, reason=text)
         for target in made:
             yield self._module(target, folder, model)
 
-    def _module(self, target: Target, folder: Path, model: TreeModel) -> Module:
+    def _module(self, target: Target, folder: Path, model: TreeModel) -> TreeModule:
         targets = self._project.targets
         everything = [target, *targets.parts(target)]
         code = sources_of(self._project, target)
-        module = Module(target.name, folder, libraries=targets.libraries(target))
+        module = TreeModule(target.name, folder, libraries=targets.libraries(target))
         missing = [each for each in code if not each.is_file()]
         if missing or not code:
             module.reason = self._why_missing(missing) if missing else "has no source in C or C++"
@@ -287,7 +292,7 @@ def locate_header(definitions: Path, name: str, prefixes: Sequence[str]) -> Path
     return _last(definitions, name, prefixes, "config")
 
 
-def locate_table(layout: Layout, cpu: str, source: str, folder: Path) -> Path | None:
+def locate_table(layout: TreeLayout, cpu: str, source: str, folder: Path) -> Path | None:
     """Return the source of a table: the processor's, then the mission's, then the application's own."""
     name = os.path.basename(source)
     own = Path(os.path.normpath(folder / source))

@@ -11,11 +11,11 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from cfepy.extra.c.toolchain.cmake_project import Directory, Project, ProjectScript, Tables
+from cfepy.extra.c.toolchain.cmake_project import Directory, Project, ProjectScript, TableCall
 from cfepy.extra.c.toolchain.cmake_script import FILE
 from cfepy.extra.c.toolchain.cmake_targets import INTERFACE, MODULE, SHARED, Target
 from cfepy.extra.c.toolchain.source_files import CORE_TARGETS, sources_by_convention
-from cfepy.extra.c.trees.layout import SEARCHED, TARGETS, Layout
+from cfepy.extra.c.trees.tree_layout import SEARCHED, TARGETS, TreeLayout
 from cfepy.extra.c.trees.tree_model import TreeModel, choose_cpu, make_model, module_folders
 
 PARTS = ("PROCESSORID", "APPLIST", "STATIC_APPLIST", "FILELIST", "EMBED_FILELIST", "SYSTEM", "PLATFORM")
@@ -25,7 +25,7 @@ _APPLIST = "_APPLIST"
 _NO_CPU = ("MISSION_GLOBAL", "TGT")
 
 
-def read_tree(layout: Layout, cpu: str | None = None, more: Sequence[str] = ()) -> TreeModel:
+def read_tree(layout: TreeLayout, cpu: str | None = None, more: Sequence[str] = ()) -> TreeModel:
     """Read a tree for one processor.
 
     Args:
@@ -46,12 +46,12 @@ def convention_target(name: str, folder: Path, project: Project) -> Target:
     for key in ("INCLUDE_DIRECTORIES", "INTERFACE_INCLUDE_DIRECTORIES"):
         target.properties[key] = [str(each) for each in found.includes]
     project.targets.all[name] = target
-    project.tables.append(Tables(name, str(folder), list(map(str, found.tables)), Directory()))
+    project.tables.append(TableCall(name, str(folder), list(map(str, found.tables)), Directory()))
     return target
 
 
 class _TreeReader:
-    def __init__(self, layout: Layout, cpu: str | None, more: Sequence[str]) -> None:
+    def __init__(self, layout: TreeLayout, cpu: str | None, more: Sequence[str]) -> None:
         self._layout = layout
         self._folders = module_folders(layout.tree)
         targets_in = {**self._folders, **dict.fromkeys(("ut_assert", "ut_assert_pic"), layout.tree / "osal/ut_assert")}
@@ -147,7 +147,7 @@ class _TreeReader:
             self._made_by[name].append(targets[name])  # another folder has needed it before
 
 
-def build_variables(layout: Layout) -> dict[str, list[str]]:
+def build_variables(layout: TreeLayout) -> dict[str, list[str]]:
     """Return the variables that cFS's build has before it reads targets.cmake, on Linux."""
     tree = str(layout.tree)
     return {

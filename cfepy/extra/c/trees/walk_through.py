@@ -11,9 +11,10 @@ from pathlib import Path
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, main
 from cfepy.extra.c.toolchain.application import build
 from cfepy.extra.c.toolchain.compiler import CompilerError
-from cfepy.extra.c.trees.layout import is_tree
-from cfepy.extra.c.trees.mission_folder import build_tree, functions_of
+from cfepy.extra.c.trees.configuration import Configuration, mission_file
+from cfepy.extra.c.trees.mission_folder import MISSION_FILE, build_tree, functions_of
 from cfepy.extra.c.trees.startup_scripts import made_startup
+from cfepy.extra.c.trees.tree_layout import is_tree
 from cfepy.mission import STARTUP_SCRIPT
 from cfepy.pilot import check_mission
 from cfepy.status import UsageError
@@ -91,7 +92,8 @@ def _built_app(app: Path, folder: Path | None) -> tuple[Path | None, list[str]]:
         return None, [first, f"when it compiles: cfepy new mission --from {app}"]
     script = made_startup([(built.library.stem, functions_of(built.library), list(built.names.values()))])
     (made / STARTUP_SCRIPT).write_bytes(LABS.encode() + script.text)
-    for file in (built.library, *built.tables, made / STARTUP_SCRIPT):
+    (made / MISSION_FILE).write_bytes(mission_file(app.resolve().name, Configuration()))
+    for file in (built.library, *built.tables, made / STARTUP_SCRIPT, made / MISSION_FILE):
         print(f"  {file}")
     return made, []
 

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.c.trees.cmake_reader import read_with_cmake
-from cfepy.extra.c.trees.layout import find_layout, is_tree
 from cfepy.extra.c.trees.startup_scripts import find_startup
-from cfepy.extra.c.trees.tree_model import Module, TreeModel
+from cfepy.extra.c.trees.tree_layout import find_layout, is_tree
+from cfepy.extra.c.trees.tree_model import TreeModel, TreeModule
 from cfepy.extra.c.trees.tree_reader import read_tree
 from cfepy.status import UsageError
 from tests.extra.c.trees.small_trees import OLD_FILES, TARGETS, write_tree
@@ -22,7 +22,7 @@ def read(tree: Path, cpu: str | None = None) -> TreeModel:
     return read_tree(find_layout(tree), cpu)
 
 
-def module(model: TreeModel, name: str) -> Module:
+def module(model: TreeModel, name: str) -> TreeModule:
     return next(each for each in model.modules if each.name == name)
 
 

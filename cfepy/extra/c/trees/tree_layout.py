@@ -26,7 +26,7 @@ _SUFFIX = "_defs"
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class TreeLayout:
     """The places of a tree.
 
     Attributes:
@@ -58,7 +58,7 @@ def is_tree(folder: Path) -> bool:
     return bool(_definitions_in(folder))
 
 
-def find_layout(tree: Path, definitions: str | Path | None = None) -> Layout:
+def find_layout(tree: Path, definitions: str | Path | None = None) -> TreeLayout:
     """Find the places of a tree.
 
     Args:
@@ -82,7 +82,7 @@ def find_layout(tree: Path, definitions: str | Path | None = None) -> Layout:
         raise UsageError(f"has several folders of definitions: {several}; choose one with --defs", file=tree)
     else:
         chosen = found[0]
-    return Layout(Path(os.path.abspath(tree)), Path(os.path.abspath(chosen)), _submodules(tree))
+    return TreeLayout(Path(os.path.abspath(tree)), Path(os.path.abspath(chosen)), _submodules(tree))
 
 
 def tree_above(folder: Path) -> Path | None:
