@@ -116,3 +116,12 @@ def test_missing_source_is_named_with_its_custom_command(tmp_path: Path) -> None
     (tmp_path / "CMakeLists.txt").write_text(text, encoding="utf-8")
     with pytest.raises(UsageError, match=r"missing file: made\.c, which a custom command of the build makes: make_it"):
         find_sources(tmp_path)
+
+
+def test_missing_source_of_a_submodule_is_named_with_its_url(tmp_path: Path) -> None:
+    modules = '[submodule "core"]\n\tpath = one/core\n\turl = https://example.org/core.git\n'
+    (tmp_path / "one/core").mkdir(parents=True)
+    (tmp_path / ".gitmodules").write_text(modules, encoding="utf-8")
+    (tmp_path / "one/CMakeLists.txt").write_text("add_cfe_app(one core/a.c)\n", encoding="utf-8")
+    with pytest.raises(UsageError, match=r"core/a\.c, which is in a git submodule .*https://example\.org/core\.git"):
+        find_sources(tmp_path / "one")

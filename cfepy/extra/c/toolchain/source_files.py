@@ -23,6 +23,7 @@ from cfepy.extra.c.toolchain.cmake_project import Project, ProjectScript, TableC
 from cfepy.extra.c.toolchain.cmake_script import FILE
 from cfepy.extra.c.toolchain.cmake_targets import INTERFACE, Target
 from cfepy.extra.c.toolchain.compiler import SOURCE_SUFFIXES
+from cfepy.extra.c.toolchain.git_submodules import absent_submodule_above
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import CMAKE_BYTES
 from cfepy.status import UsageError
@@ -218,9 +219,11 @@ def add_table_settings(found: Sources, project: Project, target: Target | None, 
 
 
 def _made_by(project: Project, file: Path) -> str:
-    """Return the custom command that makes a missing source, for an error."""
-    command = project.generated.get(str(file))
-    return "" if command is None else f", which a custom command of the build makes: {command}"
+    """Return why a source is missing, for an error: a custom command makes it, or it is in a submodule."""
+    if str(file) in project.generated:
+        return f", which a custom command of the build makes: {project.generated[str(file)]}"
+    url = absent_submodule_above(file)
+    return f", which is in a git submodule that was not fetched; its URL is {url}" if url else ""
 
 
 def sources_by_convention(folder: Path) -> Sources:

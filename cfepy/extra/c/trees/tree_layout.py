@@ -7,13 +7,11 @@ are git submodules in most trees, and a submodule that was never fetched is an e
 
 from __future__ import annotations
 
-import configparser
 import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from cfepy.reading.input_files import text_limited
-from cfepy.reading.input_limits import CMAKE_BYTES
+from cfepy.extra.c.toolchain.git_submodules import absent_submodule
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
@@ -32,12 +30,10 @@ class TreeLayout:
     Attributes:
         tree: its folder.
         definitions: its folder of definitions.
-        submodules: git submodules: the path in the tree, and the URL.
     """
 
     tree: Path
     definitions: Path
-    submodules: dict[str, str]
 
     @property
     def config_name(self) -> str:
@@ -46,11 +42,7 @@ class TreeLayout:
 
     def absent_submodule(self, folder: Path) -> str:
         """Return the URL of a git submodule that was not fetched; empty if the folder is not one."""
-        inside = os.path.relpath(folder, self.tree)
-        for path, url in self.submodules.items():
-            if (inside == path or inside.startswith(f"{path}/")) and not _has_files(self.tree / path):
-                return url
-        return ""
+        return absent_submodule(self.tree, folder)
 
 
 def is_tree(folder: Path) -> bool:
@@ -82,7 +74,7 @@ def find_layout(tree: Path, definitions: str | Path | None = None) -> TreeLayout
         raise UsageError(f"has several folders of definitions: {several}; choose one with --defs", file=tree)
     else:
         chosen = found[0]
-    return TreeLayout(Path(os.path.abspath(tree)), Path(os.path.abspath(chosen)), _submodules(tree))
+    return TreeLayout(Path(os.path.abspath(tree)), Path(os.path.abspath(chosen)))
 
 
 def tree_above(folder: Path) -> Path | None:
@@ -98,24 +90,3 @@ def _definitions_in(tree: Path) -> list[Path]:
     if not found and (tree / DELIVERED / TARGETS).is_file():
         return [tree / DELIVERED]
     return found
-
-
-def _submodules(tree: Path) -> dict[str, str]:
-    file = tree / ".gitmodules"
-    if not file.is_file():
-        return {}
-    reader = configparser.RawConfigParser(strict=False)
-    text = "\n".join(line.strip() for line in text_limited(file, CMAKE_BYTES, "replace").splitlines())
-    try:
-        reader.read_string(text)
-    except configparser.Error:
-        return {}
-    sections = [dict(reader[each]) for each in reader.sections()]
-    return {each["path"]: each.get("url", "") for each in sections if each.get("path")}
-
-
-def _has_files(folder: Path) -> bool:
-    try:
-        return any(each.name != ".git" for each in os.scandir(folder))
-    except OSError:
-        return False
