@@ -74,7 +74,7 @@ def sections(built: Built) -> set[str]:
 def test_missing_elf_reader_is_reported_before_anything_is_compiled(app: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     write(app, {"fsw/tables/probe_tbl.c": TABLE})
     monkeypatch.setitem(sys.modules, "elftools.elf.elffile", None)
-    monkeypatch.setattr(application, "compile_file", lambda *words: pytest.fail("a compiler was started"))
+    monkeypatch.setattr(application, "compile_files", lambda *words: pytest.fail("a compiler was started"))
     with pytest.raises(UsageError, match=r"pip install 'cfepy\[c\]'"):
         build(app)
 
@@ -94,6 +94,24 @@ def test_build_shows_each_source_and_its_number(app: Path, monkeypatch: pytest.M
     write(app, {"fsw/tables/probe_tbl.c": TABLE})
     build(app)
     assert texts == ["compiling probe: 1 of 2, probe.c", "compiling probe: 2 of 2, probe_tbl.c"]
+
+
+def test_sources_outside_of_the_folder_may_share_a_name(tmp_path: Path) -> None:
+    files = {f"more/{each}/part.c": f"int {each.upper()}_Part(void) {{ return 1; }}\n" for each in ("a", "b")}
+    main_text = (
+        '#include "cfe.h"\nint A_Part(void), B_Part(void);\nint PROBE_Main(void) { return A_Part() + B_Part(); }\n'
+    )
+    lists = "add_cfe_app(probe main.c ../more/a/part.c ../more/b/part.c)\n"
+    write(tmp_path, {**files, "probe/main.c": main_text, "probe/CMakeLists.txt": lists})
+    found = symbols(build(tmp_path / "probe"))
+    assert found["A_Part"]
+    assert found["B_Part"]
+
+
+def test_first_source_with_an_error_is_reported(app: Path) -> None:
+    write(app, {f"fsw/src/a{number}.c": f"#error number {number}\n" for number in range(4)})
+    with pytest.raises(CompilerError, match="number 0"):
+        build(app)
 
 
 # -- sources -----------------------------------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.extra.c.elf import MACHINES, check_elf_reader, elf_file
-from cfepy.extra.c.toolchain.compiler import CompilerError, compile_file, is_cpp, link
+from cfepy.extra.c.toolchain.compiler import CompileJob, CompilerError, compile_file, compile_files, is_cpp, link
 from cfepy.extra.c.toolchain.headers import CfsTree, headers_folder, read_tree
 from cfepy.extra.c.toolchain.source_files import Sources, find_sources
 from cfepy.reading.contained_files import write_contained
@@ -167,6 +167,7 @@ class _Builder:
         self._sources = sources
         self._progress = progress
         self._started = 0
+        self._objects: set[Path] = set()
         self._options = options
         self._scratch = scratch
         self._built = built
@@ -224,13 +225,22 @@ class _Builder:
         if options.sanitize_thread:
             flags.append("-fsanitize=thread")
         flags += options.flags
-        return [self._compile(source, self._object(source, where.resolve()), flags) for source in self._sources.code]
+        jobs = [CompileJob(each, self._object(each, where.resolve()), flags) for each in self._sources.code]
+        try:
+            warnings = compile_files(jobs, lambda job: self._show(job.source), self._progress.refresh)
+        except CompilerError as error:
+            raise self._with_hint(error) from None
+        self._built.warnings += filter(None, warnings)
+        return [each.made for each in jobs]
 
     def _object(self, source: Path, where: Path) -> Path:
         """Return the object file of a source, in the same subfolders, because sources may share a name."""
         is_inside = ".." not in source.parts and source.is_relative_to(self._sources.folder)
         inner = source.relative_to(self._sources.folder) if is_inside else Path(source.name)
         made = where / inner.with_name(f"{source.name}.o")
+        while made in self._objects:  # files outside of the folder may share a name
+            made = made.with_name(f"_{made.name}")
+        self._objects.add(made)
         made.parent.mkdir(parents=True, exist_ok=True)
         return made
 
@@ -256,20 +266,28 @@ class _Builder:
         return found
 
     def _compile(self, source: Path, made: Path, flags: Sequence[str]) -> Path:
-        self._started += 1
-        total = len(self._sources.code) + len(self._table_sources)
-        self._progress.show(f"compiling {self._sources.name}: {self._started} of {total}, {source.name}")
+        self._show(source)
         try:
             warnings = compile_file(source, made, flags, self._progress.refresh)
         except CompilerError as error:
-            hint = ""
-            if self._sources.missing and "No such file" in str(error):
-                missing = ", ".join(self._sources.missing)
-                hint = f"\n(It uses headers of {missing}: put that folder next to this one, or add --flag=-IFOLDER)"
-            raise CompilerError(f"{error}{hint}") from None
+            raise self._with_hint(error) from None
         if warnings:
             self._built.warnings.append(warnings)
         return made
+
+    def _show(self, source: Path) -> None:
+        """Show a source that is about to be compiled."""
+        self._started += 1
+        total = len(self._sources.code) + len(self._table_sources)
+        self._progress.show(f"compiling {self._sources.name}: {self._started} of {total}, {source.name}")
+
+    def _with_hint(self, error: CompilerError) -> CompilerError:
+        """Return an error with the neighbours that were not found, if a header is missing."""
+        if not self._sources.missing or "No such file" not in str(error):
+            return error
+        missing = ", ".join(self._sources.missing)
+        hint = f"(It uses headers of {missing}: put that folder next to this one, or add --flag=-IFOLDER)"
+        return CompilerError(f"{error}\n{hint}")
 
 
 # -- tables ------------------------------------------------------------------------------------------------------------

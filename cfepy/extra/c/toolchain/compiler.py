@@ -6,9 +6,11 @@ import os
 import signal
 import subprocess
 import tempfile
+from collections import deque
 from collections.abc import Callable, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from pathlib import Path
+from typing import IO, NamedTuple
 
 from cfepy.extra.c.engine import compiler
 from cfepy.interpreter.host_system import is_absent
@@ -56,8 +58,61 @@ def compile_file(
         CompilerError: it refused the file.
         UsageError: there is no compiler.
     """
+    return _call(_command(source, made, flags), while_waiting)
+
+
+class CompileJob(NamedTuple):
+    """A file to compile; see `compile_file`."""
+
+    source: Path
+    made: Path
+    flags: Sequence[str]
+
+
+def compile_files(
+    jobs: Sequence[CompileJob], starts: Callable[[CompileJob], object], while_waiting: Callable[[], object]
+) -> list[str]:
+    """Compile files, as many at once as the computer has processors.
+
+    Args:
+        jobs: the files.
+        starts: called before each file.
+        while_waiting: called every few seconds.
+
+    Returns:
+        The compiler's warnings for each file.
+
+    Raises:
+        CompilerError: it refused a file; the first one in the order of the files.
+        UsageError: there is no compiler.
+    """
+    found: list[str] = []
+    waiting, running = deque(jobs), deque[tuple[subprocess.Popen[bytes], IO[bytes]]]()
+    with ExitStack() as outputs:
+        try:
+            while waiting or running:
+                while waiting and len(running) < (os.cpu_count() or 1):
+                    job = waiting.popleft()
+                    starts(job)
+                    output: IO[bytes] = outputs.enter_context(tempfile.TemporaryFile())
+                    running.append((start_bounded(_command(*job), output.fileno()), output))
+                process, written = running.popleft()
+                status = end_bounded(process, while_waiting)
+                written.seek(0)
+                said = written.read(_MOST_SAID).decode("utf-8", "replace").rstrip()
+                written.close()
+                if status:
+                    raise CompilerError(said or f"the compiler ended with {status}")
+                found.append(said)
+        finally:
+            for process, _ in running:  # after an error
+                end_bounded(process, while_waiting)
+    return found
+
+
+def _command(source: Path, made: Path, flags: Sequence[str]) -> list[str]:
     command = [*cpp_compiler(), *CPP_FLAGS] if is_cpp(source) else [*compiler(), *C_FLAGS]
-    return _call([*command, *COMMON, *flags, "-c", str(source), "-o", str(made)], while_waiting)
+    return [*command, *COMMON, *flags, "-c", str(source), "-o", str(made)]
 
 
 def link(objects: Sequence[Path], made: Path, flags: Sequence[str], *, with_cpp: bool) -> str:
