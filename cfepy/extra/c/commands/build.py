@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -61,8 +60,7 @@ def _build_tree(arguments: argparse.Namespace) -> int:
         print(CMAKE_NOTE, file=sys.stderr)
     check_json(arguments)
     folder = None if arguments.output is None else Path(arguments.output)
-    with writing(arguments.output or os.curdir, "--output"):
-        report = build_tree(Path(arguments.folder), folder, _tree_options(arguments))
+    report = build_tree(Path(arguments.folder), folder, _tree_options(arguments))
     for line in report.lines():
         print(line)
     for step in report.steps:

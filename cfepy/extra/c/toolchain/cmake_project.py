@@ -32,7 +32,7 @@ from cfepy.extra.c.toolchain.cmake_targets import (
     Target,
     absolute,
 )
-from cfepy.reading.input_files import text_limited
+from cfepy.reading.input_files import text_limited, unreadable
 from cfepy.reading.input_limits import CMAKE_BYTES
 
 SCOPES = ("PUBLIC", "PRIVATE", "INTERFACE", "BEFORE", "AFTER", "SYSTEM")
@@ -203,7 +203,7 @@ class ProjectScript(CMakeScript):
     def read(self, file: Path) -> None:
         """Execute a file of this folder, and give its targets the folder's settings."""
         with self._ending(file):
-            self.run(text_limited(file, CMAKE_BYTES, "replace"))
+            self.run(_text_of(file))
         self._settle()
 
     def _settle(self) -> None:
@@ -218,7 +218,7 @@ class ProjectScript(CMakeScript):
         before = self.variables.get("CMAKE_CURRENT_LIST_DIR", [])
         self.variables["CMAKE_CURRENT_LIST_DIR"] = [str(file.parent)]
         with self._ending(file):
-            self.run(text_limited(file, CMAKE_BYTES, "replace"))
+            self.run(_text_of(file))
         self.variables["CMAKE_CURRENT_LIST_DIR"] = before
 
     @contextmanager
@@ -458,6 +458,13 @@ class ProjectScript(CMakeScript):
         self.project.targets.all[name] = target
         self._made.append(target)
         return target
+
+
+def _text_of(file: Path) -> str:
+    try:
+        return text_limited(file, CMAKE_BYTES, "replace")
+    except OSError as error:
+        raise unreadable(file, error) from None
 
 
 def _definitions(words: Sequence[str], plain: bool) -> list[str]:

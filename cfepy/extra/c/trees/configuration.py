@@ -29,7 +29,7 @@ from cfepy.extra.c.toolchain.headers import NEEDED, headers_folder, read_tree
 from cfepy.extra.c.toolchain.headers import names as core_names
 from cfepy.extra.c.trees.tree_model import TreeModel, locate_header
 from cfepy.extra.c.trees.tree_reader import build_variables
-from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_files import read_limited, text_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
 from cfepy.status import UsageError
 from cfepy.time import TimeSettings
@@ -47,6 +47,8 @@ DEFAULT_BASES = {
     "CFEPY_GLOBAL_CMD_MID_BASE": 0x1860,
     "CFEPY_GLOBAL_TLM_MID_BASE": 0x0860,
 }
+VERSION_6 = "cfe/fsw/cfe-core/src/inc/cfe_version.h"
+_VERSION_PARTS = ("CFE_MAJOR_VERSION", "CFE_MINOR_VERSION", "CFE_REVISION")
 BASE_HEADER = "cfe_core_api_base_msgid_values"
 
 _OTHER_NAMES = {
@@ -111,6 +113,7 @@ class _Reader:
             values = self._values(headers, flags) if headers else {}
             if self._has_cfe:
                 self._release(flags)
+        self._note_cfe_6()
         defaults = PlatformConfig().with_limits(RELEASES[self._found.release].limits)
         self._limits(values, defaults)
         self._check_time(defaults)
@@ -187,18 +190,25 @@ class _Reader:
             return {}
 
     def _release(self, flags: Sequence[str]) -> None:
-        parts = ("CFE_MAJOR_VERSION", "CFE_MINOR_VERSION", "CFE_REVISION")
         try:
-            values = macro_values(["cfe_version.h"], parts, flags)
+            values = macro_values(["cfe_version.h"], _VERSION_PARTS, flags)
         except CompilerError:
             return
-        name = ".".join(str(values[each]) for each in parts if each in values)
+        name = ".".join(str(values[each]) for each in _VERSION_PARTS if each in values)
         if name in RELEASES:
             self._found.release = name
         else:
             self._found.notes.append(
                 f"cFE is {name or 'of an unknown release'} in the tree; cfepy follows {DEFAULT_RELEASE}"
             )
+
+    def _note_cfe_6(self) -> None:
+        """Note the release of a cFE 6, whose files are in other folders."""
+        file = self._model.layout.tree / VERSION_6
+        if file.is_file():
+            said = dict(_DEFINED.findall(text_limited(file, OBJECT_BYTES, "replace")))
+            numbers = [said.get(each, "?").strip("() ") for each in _VERSION_PARTS]
+            self._found.notes.append(f"the tree has cFE {'.'.join(numbers)}; the mission runs on cFE {DEFAULT_RELEASE}")
 
     def _limits(self, values: Mapping[str, int], defaults: PlatformConfig) -> None:
         seen = set()
@@ -300,7 +310,7 @@ def mission_file(name: str, configuration: Configuration) -> bytes:
 
 # -- values of macros --------------------------------------------------------------------------------------------------
 
-_DEFINED = re.compile(r"^#define (\w+) (\S.*)$", re.MULTILINE)
+_DEFINED = re.compile(r"^#define +(\w+) +(\S[^\n]*?)(?: */\*[^\n]*)?$", re.MULTILINE)
 _IN_FUNCTION = re.compile(r"In function .cfepy_(\d+).")
 _ROUNDS = 6
 _LAYOUT = struct.Struct("<q")

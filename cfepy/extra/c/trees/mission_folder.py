@@ -26,7 +26,7 @@ from cfepy.extra.c.trees.tree_model import TreeModel, TreeModule, module_folders
 from cfepy.extra.c.trees.tree_reader import read_tree
 from cfepy.mission import STARTUP_SCRIPT
 from cfepy.reading.contained_files import write_contained
-from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_files import read_limited, unwritable
 from cfepy.reading.input_limits import OBJECT_BYTES
 from cfepy.reading.resources import shipped
 from cfepy.reading.suggestions import expected
@@ -131,6 +131,12 @@ class _Build:
             raise UsageError("has no application that can be built", file=self._model.layout.tree)
         configuration = read_configuration(self._model)
         self._report.notes += configuration.notes
+        try:
+            return self._written(configuration)
+        except OSError as error:
+            raise unwritable(error.filename or self._folder, error, "--output") from None
+
+    def _written(self, configuration: Configuration) -> BuildReport:
         self._folder.mkdir(parents=True, exist_ok=True)
         with WorkProgress(Stopwatch().elapsed_ns) as progress:
             for module in self._model.modules:

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 from cfepy.es import CFE_APP, CFE_LIB, StartupEntry, entries
 from cfepy.extra.c.trees.tree_model import TreeModel, locate_installed
+from cfepy.reading.input_files import read_limited, unreadable
+from cfepy.reading.input_limits import STARTUP_BYTES
 
 NAME = "cfe_es_startup.scr"
 FIRST_PRIORITY, PRIORITY_STEP, LAST_PRIORITY = 50, 5, 200
@@ -44,16 +46,26 @@ def find_startup(model: TreeModel, chosen: Path | None = None) -> StartupScript 
 
     Returns:
         The script; None if the tree has none.
+
+    Raises:
+        UsageError: the file cannot be read.
     """
     if chosen is not None:
-        return StartupScript(chosen.read_bytes(), str(chosen))
+        return StartupScript(_read(chosen), str(chosen))
     file = model.files.get(NAME) or locate_installed(model.layout.definitions, model.cpu, NAME)
     if file is not None:
-        return StartupScript(file.read_bytes(), str(file.relative_to(model.layout.tree)))
+        return StartupScript(_read(file), str(file.relative_to(model.layout.tree)))
     for path, text in model.written.items():
         if path.endswith(".scr") and f"/{model.cpu}/" in path:
             return StartupScript(text.encode(), "written by the tree's CMake files")
     return None
+
+
+def _read(file: Path) -> bytes:
+    try:
+        return read_limited(file, STARTUP_BYTES)
+    except OSError as error:
+        raise unreadable(file, error) from None
 
 
 def made_startup(built: Iterable[tuple[str, Sequence[str], Sequence[str]]]) -> StartupScript:

@@ -214,6 +214,8 @@ class _Maker:
             if str(each) in self._project.generated:
                 command = self._project.generated[str(each)]
                 return f"{each.name} is made by a custom command of the build: {command}"
+            if str(each) in self._project.written:
+                return f"{each.name} is written by the tree's CMake files; the code is elsewhere, such as in Rust"
             url = self._layout.absent_submodule(each)
             if url:
                 return f"{self._inside(each)} is in a git submodule that was not fetched; its URL is {url}"

@@ -137,6 +137,21 @@ def test_msgid_bases_of_the_processor_reach_the_applications(tmp_path: Path) -> 
     assert "ONE has 0x1990" in console_of(fly(str(tmp_path / "mission")))
 
 
+def test_release_of_cfe_6_is_noted(tmp_path: Path) -> None:
+    header = "#define CFE_MAJOR_VERSION 6 /* as it was */\n#define CFE_MINOR_VERSION 7\n#define CFE_REVISION (1)\n"
+    report = built(tmp_path, {"cfe/fsw/cfe-core/src/inc/cfe_version.h": header})
+    assert report.notes == ["the tree has cFE 6.7.1; the mission runs on cFE 7.0.1"]
+
+
+def test_startup_script_of_an_option_replaces_the_trees(tmp_path: Path) -> None:
+    (tmp_path / "mine.scr").write_text("CFE_APP, two, TWO_Main, SECOND, 60, 16384, 0x0, 0;\n!\n", encoding="utf-8")
+    report = built(tmp_path, options=TreeOptions(startup=tmp_path / "mine.scr"))
+    assert text_of(report, "startup.scr") == str(tmp_path / "mine.scr")
+    assert report.notes == ["the startup script does not start one, shared"]
+    with pytest.raises(UsageError, match=r"none\.scr: cannot be read: No such file or directory"):
+        built(tmp_path, options=TreeOptions(startup=tmp_path / "none.scr"))
+
+
 def test_tree_of_cfs_6_gives_its_limits_and_folders(tmp_path: Path) -> None:
     report = build_tree(write_tree(tmp_path / "tree", files=OLD_FILES), tmp_path / "mission")
     assert names(report, BUILT) == ["one", "startup.scr", "mission.yaml"]
@@ -207,6 +222,13 @@ def test_only_builds_the_named_application(tmp_path: Path) -> None:
     report = built(tmp_path, options=TreeOptions(only=("two",)))
     assert names(report, BUILT)[0] == "two"
     assert "one" not in names(report, BUILT)
+
+
+def test_folder_that_cannot_be_written_is_reported(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(UsageError, match=r"cannot be written") as caught:
+        build_tree(write_tree(tmp_path / "tree"), tmp_path / "file/mission")
+    assert caught.value.field == "--output"
 
 
 # -- commands ----------------------------------------------------------------------------------------------------------

@@ -177,6 +177,12 @@ def test_source_of_a_custom_command_is_reported_with_the_command(tmp_path: Path)
     assert reason == "made.c is made by a custom command of the build: python3 make.py --all DEPENDS make.py"
 
 
+def test_source_that_cmake_writes_is_reported(tmp_path: Path) -> None:
+    text = 'file(WRITE ${CMAKE_CURRENT_BINARY_DIR}/a.c "")\nadd_cfe_app(two ${CMAKE_CURRENT_BINARY_DIR}/a.c)\n'
+    reason = module(read(write_tree(tmp_path, {"apps/two/CMakeLists.txt": text})), "two").reason
+    assert reason == "a.c is written by the tree's CMake files; the code is elsewhere, such as in Rust"
+
+
 def test_error_in_a_file_ends_that_file_only(tmp_path: Path) -> None:
     text = 'add_cfe_app(two fsw/src/two.c)\nmessage(FATAL_ERROR "no radio")\nadd_cfe_app(three fsw/src/two.c)\n'
     model = read(write_tree(tmp_path, {"apps/two/CMakeLists.txt": text}))
