@@ -156,7 +156,7 @@ class _Reply:
                 project.installed += [os.path.normpath(os.path.join(folder, each)) for each in named]
             case "WRITE" | "APPEND", [path, *texts]:
                 before = project.written.get(path, "") if kind == "APPEND" else ""
-                project.written[path] = before + ";".join(texts)
+                project.written[path] = before + "".join(texts).replace("{semicolon}", ";")
             case "folder" | "file", [path]:
                 project.note(f"missing {kind}", folder, path)
             case "error" | "command" | "package", words:

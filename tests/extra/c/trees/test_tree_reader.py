@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import textwrap
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,27 @@ from cfepy.status import UsageError
 from tests.extra.c.trees.small_trees import OLD_FILES, TARGETS, write_tree
 
 needs_cmake = pytest.mark.skipif(shutil.which("cmake") is None, reason="there is no CMake")
+
+
+WRITER = """
+    function(write_script FOLDER)
+      set(FILE "${CMAKE_INSTALL_PREFIX}/${FOLDER}/cfe_es_startup.scr")
+      file(WRITE ${FILE}
+        "CFE_LIB, shared, Shared_Init, S, 0, 0, 0, 0;\\n"
+        "CFE_LIB, other, NULL, O, 0, 0, 0, 0;\\n"
+      )
+      foreach(APP one gone)
+        list(FIND ARGN ${APP} STARTS)
+        if (STARTS GREATER -1)
+          file(APPEND ${FILE} "CFE_APP, ${APP}, M, A, 5, 0, 0, 0;\\n")
+        endif()
+      endforeach()
+    endfunction()
+"""
+INSTALL = """
+    install(SCRIPT ${MISSION_DEFS}/script.cmake)
+    install(CODE "write_script(\\"${TGTNAME}/${INSTALL_SUBDIR}\\" ${${TGTNAME}_APPLIST})")
+"""
 
 
 def read(tree: Path, cpu: str | None = None) -> TreeModel:
@@ -119,31 +141,15 @@ def test_install_custom_adds_tables_and_folders(tmp_path: Path) -> None:
 
 
 def test_startup_script_that_cmake_would_write_is_made_in_memory(tmp_path: Path) -> None:
-    script = """
-        function(write_script FOLDER)
-          set(FILE "${CMAKE_INSTALL_PREFIX}/${FOLDER}/cfe_es_startup.scr")
-          file(WRITE ${FILE} "CFE_LIB, shared, Shared_Init, S, 0, 0, 0, 0;")
-          foreach(APP one gone)
-            list(FIND ARGN ${APP} STARTS)
-            if (STARTS GREATER -1)
-              file(APPEND ${FILE} "CFE_APP, ${APP}, M, A, 5, 0, 0, 0;")
-            endif()
-          endforeach()
-        endfunction()
-    """
-    install = """
-        install(SCRIPT ${MISSION_DEFS}/script.cmake)
-        install(CODE "write_script(\\"${TGTNAME}/${INSTALL_SUBDIR}\\" ${${TGTNAME}_APPLIST})")
-    """
     changed = {
-        "small_defs/script.cmake": script,
-        "small_defs/cpu1/install_custom.cmake": install,
+        "small_defs/script.cmake": WRITER,
+        "small_defs/cpu1/install_custom.cmake": INSTALL,
         "small_defs/cpu1_cfe_es_startup.scr": None,
     }
     model = read(write_tree(tmp_path, changed))
     found = find_startup(model)
     assert found is not None
-    assert [each.file for each in found.lines] == ["shared", "one"]
+    assert [each.file for each in found.lines] == ["shared", "other", "one"]
     assert not (tmp_path / "cpu1").exists()
 
 
@@ -237,13 +243,18 @@ def test_folder_without_targets_is_not_a_tree(tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("is_old", [False, True])
 def test_cmake_and_cfepys_reader_agree(is_old: bool, tmp_path: Path) -> None:
-    install = {"small_defs/cpu1/install_custom.cmake": "add_cfe_tables(one more.c)\n", "small_defs/tables/more.c": ""}
+    install = {
+        "small_defs/cpu1/install_custom.cmake": f"add_cfe_tables(one more.c)\n{textwrap.dedent(INSTALL)}",
+        "small_defs/script.cmake": WRITER,
+        "small_defs/tables/more.c": "",
+    }
     write_tree(tmp_path, files=OLD_FILES) if is_old else write_tree(tmp_path, install)
     layout = find_layout(tmp_path)
     own, other = read_tree(layout), read_with_cmake(layout)
     assert other.read_by.startswith("CMake 3") or other.read_by.startswith("CMake 4")
     assert own.headers == other.headers
     assert own.files == other.files
+    assert list(own.written.values()) == list(other.written.values())
     assert (own.cpus, own.spacecraft_id, own.mission_name) == (other.cpus, other.spacecraft_id, other.mission_name)
     assert [each.name for each in own.modules] == [each.name for each in other.modules]
     for one, two in zip(own.modules, other.modules, strict=True):
