@@ -32,7 +32,7 @@ def absent_submodule(tree: Path, path: Path) -> str:
     """Return the URL of the submodule that a path is in, if it was not fetched; empty otherwise."""
     inside = os.path.relpath(path, tree)
     for folder, url in submodules_of(tree).items():
-        if (inside == folder or inside.startswith(f"{folder}/")) and not _has_files(tree / folder):
+        if (inside == folder or inside.startswith(f"{folder}/")) and not has_files(tree / folder):
             return url
     return ""
 
@@ -45,7 +45,8 @@ def absent_submodule_above(path: Path) -> str:
     return ""
 
 
-def _has_files(folder: Path) -> bool:
+def has_files(folder: Path) -> bool:
+    """Return True if a folder can be read and is not empty, apart from git's own entry."""
     try:
         return any(each.name != ".git" for each in os.scandir(folder))
     except OSError:

@@ -23,7 +23,7 @@ from cfepy.extra.c.toolchain.cmake_project import Project, ProjectScript, TableC
 from cfepy.extra.c.toolchain.cmake_script import FILE
 from cfepy.extra.c.toolchain.cmake_targets import INTERFACE, Target
 from cfepy.extra.c.toolchain.compiler import SOURCE_SUFFIXES
-from cfepy.extra.c.toolchain.git_submodules import absent_submodule_above
+from cfepy.extra.c.toolchain.git_submodules import absent_submodule_above, has_files
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import CMAKE_BYTES
 from cfepy.status import UsageError
@@ -173,13 +173,14 @@ def read_project(folder: Path) -> tuple[Project, Target | None, dict[str, Path]]
 def _neighbours(folder: Path) -> dict[str, Path]:
     """Return the folders of other applications and libraries: beside this one, or in `libs` or `apps` one level up.
 
-    A link to the folder has the neighbours of the link, then those of the folder itself.
+    A link to the folder has the neighbours of the link, then those of the folder itself. An empty folder, such as a git
+    submodule that was not fetched, is none.
     """
     found: dict[str, Path] = {}
     for above in dict.fromkeys((Path(os.path.abspath(folder)).parent, folder.resolve().parent)):
         for place in (above, *(above.parent / each for each in NEIGHBOURS)):
             for other in sorted(place.glob("*/")):
-                if other.resolve() != folder.resolve():
+                if other.resolve() != folder.resolve() and has_files(other):
                     found.setdefault(other.name, other)
     return found
 
