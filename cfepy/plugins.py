@@ -137,6 +137,7 @@ OWN = (
     _own(
         "dictionaries",
         hooks={"declarations": ".mission_sources:declarations_of", "dictionary_formats": ".formats:FORMATS"},
+        needs=("c",),
     ),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
     _own("attach", hooks={"realtime_flights": ".attach_door:AttachDoor"}),

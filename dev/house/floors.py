@@ -34,7 +34,19 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("flight",),
     ("testing",),
     ("cli", "__main__"),
-    ("extra", "c", "convert", "exploration", "reports", "debugger", "viewers", "ros_host", "profiler", "attach"),
+    (
+        "extra",
+        "c",
+        "convert",
+        "exploration",
+        "reports",
+        "debugger",
+        "viewers",
+        "ros_host",
+        "profiler",
+        "attach",
+        "dictionaries",
+    ),
     ("__init__",),  # the public API of the library
 )
 LEVEL = {part: level for level, floor in enumerate(FLOORS) for part in floor}
@@ -42,6 +54,7 @@ GROUND_FLOOR = 0
 
 PEERS_THAT_MEET: dict[tuple[str, str], str] = {
     ("convert", "c"): "nodes in C++ are compiled as applications in C are",
+    ("dictionaries", "c"): "the packets of a compiled application are in its debug data",
     ("reports", "c"): "a report about a board reads how large compiled code is",
     ("exploration", "reports"): "a sweep is drawn with the curves of reports",
     ("__main__", "cli"): "`python -m cfepy` is the command",

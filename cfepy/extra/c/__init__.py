@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from cfepy.extra.c.ground_check import ground_differences
     from cfepy.extra.c.linking import wanted_names
     from cfepy.extra.c.loading import CompiledLoader
+    from cfepy.extra.c.macros import Macros, macros_of
     from cfepy.extra.c.runtime import CRuntime
+    from cfepy.extra.c.structs import CStruct, FieldType, StructField, StructPlace, Structs, structs_of
     from cfepy.extra.c.toolchain import (
         Built,
         CMakeBudget,
@@ -53,11 +55,17 @@ __all__ = [
     "CMakeBudget",
     "CMakeScript",
     "CRuntime",
+    "CStruct",
     "CompiledLoader",
     "CompilerError",
     "ElfError",
+    "FieldType",
     "GeneratorExpressions",
+    "Macros",
     "Options",
+    "StructField",
+    "StructPlace",
+    "Structs",
     "TableFiles",
     "abi_profile",
     "build",
@@ -69,9 +77,11 @@ __all__ = [
     "function_names",
     "ground_differences",
     "headers_folder",
+    "macros_of",
     "read_shared_object",
     "split_list",
     "start_bounded",
+    "structs_of",
     "version_of",
     "wanted_names",
     "writing_cache",
@@ -89,6 +99,8 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".ground_check": ("ground_differences",),
             ".linking": ("wanted_names",),
             ".loading": ("CompiledLoader",),
+            ".macros": ("Macros", "macros_of"),
+            ".structs": ("CStruct", "FieldType", "StructField", "StructPlace", "Structs", "structs_of"),
             ".runtime": ("CRuntime",),
             ".toolchain": (
                 "Built",

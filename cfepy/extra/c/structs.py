@@ -6,6 +6,7 @@ a bit field or a pointer has no such type, so it has the name of its kind.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from functools import lru_cache
 from io import BytesIO
@@ -54,6 +55,13 @@ class CStruct(NamedTuple):
         return next((each for each in self.fields if each.name == name), None)
 
 
+class StructPlace(NamedTuple):
+    """Where a struct is declared: the source file as the compiler saw it, and the line."""
+
+    file: str
+    line: int
+
+
 class Structs:
     """The types of one shared object by name; use `structs_of`. Debug data is read as far as a name needs it.
 
@@ -64,7 +72,9 @@ class Structs:
     def __init__(self, data: bytes) -> None:
         self._entries: dict[str, Any] = {}
         self._read: dict[int, CStruct] = {}
-        self._unread = _named(data)
+        self._enumerators: dict[str, int] = {}
+        self._functions: dict[str, Any] = {}
+        self._unread = _named(data, self._enumerators, self._functions)
 
     @property
     def has_debug_data(self) -> bool:
@@ -76,6 +86,42 @@ class Structs:
         while self._next() is not None:
             pass
         return [name for name, entry in self._entries.items() if _behind(entry).tag in _STRUCTS]
+
+    def enumerators(self) -> dict[str, int]:
+        """Return the values of all enumerators by name."""
+        while self._next() is not None:
+            pass
+        return self._enumerators
+
+    def function_names(self) -> list[str]:
+        """Return the names of all functions."""
+        while self._next() is not None:
+            pass
+        return list(self._functions)
+
+    def argument_of(self, function: str) -> CStruct | None:
+        """Return the struct to which the first argument of a function points; None for another argument."""
+        entry = self._functions.get(function)
+        try:
+            children = () if entry is None else entry.iter_children()
+            first = next((each for each in children if each.tag == "DW_TAG_formal_parameter"), None)
+            pointer = None if first is None else _behind(first.get_DIE_from_attribute("DW_AT_type"))
+            if pointer is None or pointer.tag != "DW_TAG_pointer_type":
+                return None
+            outer = pointer.get_DIE_from_attribute("DW_AT_type")
+            while not _text(outer) and outer.tag in _TRANSPARENT:
+                outer = outer.get_DIE_from_attribute("DW_AT_type")
+            return self._struct(_behind(outer), _text(outer)) if _behind(outer).tag in _STRUCTS else None
+        except Exception:  # as in `find`
+            return None
+
+    def place_of(self, name: str) -> StructPlace | None:
+        """Return where a struct is declared; None if that is not known."""
+        entry = self._entry(name)
+        try:
+            return None if entry is None else _place(_behind(entry)) or _place(entry)
+        except Exception:  # as in `find`
+            return None
 
     def find(self, name: str) -> CStruct | None:
         """Return a struct by its typedef or tag; None if there is none, or its description is damaged."""
@@ -154,11 +200,23 @@ def _word(entry: Any, size: int) -> str:
     return f"{_LETTERS.get(encoding, 'a type of ')}{8 * size}"
 
 
-def _named(data: bytes) -> Iterator[tuple[str, Any]]:
-    """Yield the complete types of all units, by typedef or tag."""
+def _named(data: bytes, enumerators: dict[str, int], functions: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield the complete types of all units, by typedef or tag.
+
+    Args:
+        data: the bytes of the file.
+        enumerators: receives the enumerators on the way,
+        functions: and the functions that are defined.
+    """
     elf = elf_file(BytesIO(data))
     for unit in elf.get_dwarf_info().iter_CUs() if elf.has_dwarf_info() else ():
         for entry in unit.get_top_DIE().iter_children():
+            if entry.tag == "DW_TAG_enumeration_type":
+                for each in entry.iter_children():
+                    if "DW_AT_const_value" in each.attributes:
+                        enumerators.setdefault(_text(each), int(each.attributes["DW_AT_const_value"].value))
+            if entry.tag == "DW_TAG_subprogram" and "DW_AT_low_pc" in entry.attributes:
+                functions.setdefault(_text(entry), entry)
             is_type = entry.tag in _TRANSPARENT or "DW_AT_byte_size" in entry.attributes
             if is_type and "DW_AT_name" in entry.attributes:
                 yield _text(entry), entry
@@ -169,6 +227,25 @@ def _behind(entry: Any) -> Any:
     while entry.tag in _TRANSPARENT and "DW_AT_type" in entry.attributes:
         entry = entry.get_DIE_from_attribute("DW_AT_type")
     return entry
+
+
+def _place(entry: Any) -> StructPlace | None:
+    """Return the declaration of a type, by the table of files of its unit."""
+    if not {"DW_AT_decl_file", "DW_AT_decl_line"} <= entry.attributes.keys():
+        return None
+    unit = entry.cu
+    program = unit.dwarfinfo.line_program_for_CU(unit)
+    if program is None:
+        return None
+    header = program.header
+    first = 0 if header["version"] >= 5 else 1
+    file = header["file_entry"][int(entry.attributes["DW_AT_decl_file"].value) - first]
+    folders = header["include_directory"]
+    folder = folders[file.dir_index - first] if file.dir_index >= first else b""
+    compiled_in = unit.get_top_DIE().attributes.get("DW_AT_comp_dir")
+    base = b"" if compiled_in is None else compiled_in.value
+    path = os.path.normpath(os.path.join(base, folder, file.name))
+    return StructPlace(os.fsdecode(path), int(entry.attributes["DW_AT_decl_line"].value))
 
 
 def _size(entry: Any) -> int:

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
+from cfepy.es import NODE_SYMBOL
 from cfepy.extra.dictionaries.cosmos_reader import is_cosmos, read_cosmos
 from cfepy.extra.dictionaries.document import XmlTag, read_document
 from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
@@ -19,7 +20,7 @@ from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, Sour
 from cfepy.extra.dictionaries.xtce_reader import ROOT as XTCE_ROOT
 from cfepy.extra.dictionaries.xtce_reader import read_xtce
 from cfepy.ground import ForeignDeclarations
-from cfepy.mission import MissionSpec
+from cfepy.mission import MissionSpec, find_compiled
 from cfepy.msg import Command, Telemetry
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
@@ -53,7 +54,12 @@ def contents_of(spec: MissionSpec) -> tuple[SourceContent, ...]:
     """Return the content of each kind of source of a mission, the one with precedence first."""
     places = [*spec.dictionary, spec.folder / FOLDER]
     files = tuple(dict.fromkeys(file for place in places for file in _files_at(place)))
-    return _contents(tuple((file, *_stamp(file)) for file in files))
+    libraries = (find_compiled(entry.path, spec.folder) for entry in spec.entries if entry.symbol != NODE_SYMBOL)
+    compiled = tuple(dict.fromkeys(each for each in libraries if each is not None))
+    return (
+        *_contents(tuple((file, *_stamp(file)) for file in files)),
+        *_debug_data(tuple((file, *_stamp(file)) for file in compiled)),
+    )
 
 
 def _files_at(place: Path) -> Iterator[Path]:
@@ -100,6 +106,17 @@ def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, 
     if systems:
         found.append(read_xtce(systems))
     return (*found, unread) if unread.problems else tuple(found)
+
+
+@lru_cache(8)
+def _debug_data(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, ...]:
+    """Read compiled applications; see `_contents`."""
+    if not files:
+        return ()
+    from cfepy.extra.dictionaries.debug_data import read_debug_data
+
+    found = read_debug_data(file for file, *_ in files)
+    return (found,) if found.packets else ()
 
 
 def _is_cosmos(file: Path) -> bool:

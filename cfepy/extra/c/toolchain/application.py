@@ -33,6 +33,8 @@ from cfepy.writing.work_progress import WorkProgress
 WITHOUT_DEPRECATED = ("CFE_OMIT_DEPRECATED_6_8", "CFE_OMIT_DEPRECATED_6_7", "CFE_OMIT_DEPRECATED_6_6")
 WITHOUT_DEPRECATED_OSAL = "OSAL_OMIT_DEPRECATED"
 COVERAGE_FOLDER = ".coverage"
+DEBUG = ("-g3", "-fno-eliminate-unused-debug-types")
+"""Debug data with macros and all types: from them ground tools know the packets of an application."""
 """Suffix of a shared object's name: the folder of its object files, in which gcov finds its notes."""
 DEFINITION = "CFE_TBL_FileDef"
 LAYOUT = struct.Struct("<64s40s32s20sI")
@@ -216,7 +218,7 @@ class _Builder:
 
     def _code(self) -> list[Path]:
         options = self._options
-        flags = [*self._flags, f"-O{options.optimize}", *(["-g"] if options.debug else [])]
+        flags = [*self._flags, f"-O{options.optimize}", *(DEBUG if options.debug else ())]
         where = self._scratch
         if options.coverage:  # its notes are written beside the object files, and gcov needs them later
             flags.append("--coverage")
