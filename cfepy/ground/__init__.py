@@ -21,10 +21,8 @@ if TYPE_CHECKING:
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
     from cfepy.ground.foreign_declarations import (
-        DICTIONARY_FORMATS,
         FOREIGN_DECLARATIONS,
         ForeignDeclarations,
-        WriteDictionary,
     )
     from cfepy.ground.json_messages import message_from_json
     from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
@@ -57,12 +55,12 @@ if TYPE_CHECKING:
     from cfepy.ground.traffic_graph.graph_texts import graph_dot, graph_text
     from cfepy.ground.traffic_graph.model import MissionGraph, graph_of
     from cfepy.ground.values import flat, int_of, line_of, measured_fields, number_of, packet_of, text_of, unknown_field
+    from cfepy.ground.xtce import xtce_name
 
 __all__ = [
     "APPLICATIONS",
     "CI_PORT",
     "CLOCK",
-    "DICTIONARY_FORMATS",
     "EVENTS",
     "EVENT_IDS",
     "EVENT_TYPES",
@@ -98,7 +96,6 @@ __all__ = [
     "ShownPackets",
     "Survey",
     "Topic",
-    "WriteDictionary",
     "bag_series",
     "candidates",
     "check_message_type",
@@ -149,6 +146,7 @@ __all__ = [
     "value_at",
     "with_ground_node",
     "with_player",
+    "xtce_name",
 ]
 
 if not TYPE_CHECKING:  # type checkers see only the names above
@@ -174,10 +172,8 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "table_types",
             ),
             ".foreign_declarations": (
-                "DICTIONARY_FORMATS",
                 "FOREIGN_DECLARATIONS",
                 "ForeignDeclarations",
-                "WriteDictionary",
             ),
             ".events": (
                 "EVENT_IDS",
@@ -272,5 +268,6 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "text_of",
                 "unknown_field",
             ),
+            ".xtce": ("xtce_name",),
         },
     )

@@ -1,17 +1,14 @@
-"""The places for add-ons that read and write the declarations of packets and tables in files other than Python."""
+"""The place for add-ons that read the declarations of packets and tables in files other than Python."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, NamedTuple, TypeAlias
+from typing import NamedTuple
 
 from cfepy.mission import MissionSpec
 from cfepy.msg import Command, Telemetry
 from cfepy.plugins import Hook
 from cfepy.tbl import TableType
-
-if TYPE_CHECKING:
-    from cfepy.ground.dictionary import Dictionary
 
 
 class ForeignDeclarations(NamedTuple):
@@ -32,9 +29,3 @@ class ForeignDeclarations(NamedTuple):
 
 FOREIGN_DECLARATIONS: Hook[Callable[[MissionSpec], ForeignDeclarations]] = Hook("declarations")
 """Reads the packets and tables of a mission that files other than Python declare."""
-
-WriteDictionary: TypeAlias = Callable[[MissionSpec, "Dictionary"], str | Mapping[str, str]]
-"""Writes the packets of a mission: one text, or the texts of files by name."""
-
-DICTIONARY_FORMATS: Hook[Mapping[str, WriteDictionary]] = Hook("dictionary_formats")
-"""Writers of a mission's dictionary, by the name of their format."""

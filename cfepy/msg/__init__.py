@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.msg.bit_layout import BitLayout, Place
+    from cfepy.msg.bit_layout import BitLayout, FieldPlace
     from cfepy.msg.dictionary import NO_PAYLOAD, Command, Telemetry
     from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, BAD_MSG_ID, DONE, CommandTable, Dispatch, Handler
     from cfepy.msg.header import (
@@ -115,12 +115,12 @@ __all__ = [
     "Command",
     "CommandTable",
     "Dispatch",
+    "FieldPlace",
     "Handler",
     "Layout",
     "Measurement",
     "MsgType",
     "Packet",
-    "Place",
     "SegmentationFlag",
     "Telemetry",
     "ValueNames",
@@ -189,7 +189,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
         {
             ".bit_layout": (
                 "BitLayout",
-                "Place",
+                "FieldPlace",
             ),
             ".dictionary": (
                 "NO_PAYLOAD",

@@ -20,7 +20,7 @@ Step = str | int
 """A step from a struct to a field: the name of a field, or the index in an array."""
 
 
-class Place(NamedTuple):
+class FieldPlace(NamedTuple):
     """A number or text and where it is.
 
     Attributes:
@@ -141,16 +141,16 @@ class BitLayout(Layout):
         places: the fields in order; those of one array or nested struct stand together.
         size: bytes of the whole struct.
 
-    >>> flags = BitLayout("Flags", [Place(("Mode",), "u", 0, 3), Place(("Count",), "u", 3, 13)], 2)
+    >>> flags = BitLayout("Flags", [FieldPlace(("Mode",), "u", 0, 3), FieldPlace(("Count",), "u", 3, 13)], 2)
     >>> flags.pack(Mode=5, Count=2).hex(), flags.unpack(bytes([0xA0, 0x02]))
     ('a002', {'Mode': 5, 'Count': 2})
     """
 
     __slots__ = ("_known", "places")
 
-    def __init__(self, name: str, places: Iterable[Place], size: int) -> None:
+    def __init__(self, name: str, places: Iterable[FieldPlace], size: int) -> None:
         super().__init__(name, ())
-        self.places: tuple[Place, ...] = tuple(places)
+        self.places: tuple[FieldPlace, ...] = tuple(places)
         self._known: frozenset[tuple[Step, ...]] = frozenset(
             place.steps[:end] for place in self.places for end in range(1, len(place.steps) + 1)
         )
@@ -215,7 +215,7 @@ class BitLayout(Layout):
         number = int.from_bytes(payload, "big") & ~(((1 << place.bits) - 1) << shift)
         payload[:] = (number | (place.encoded(value) << shift)).to_bytes(self.size, "big")
 
-    def _encoded(self, place: Place, value: Any, prefix: str) -> int:
+    def _encoded(self, place: FieldPlace, value: Any, prefix: str) -> int:
         try:
             return place.encoded(value)
         except UsageError as error:
@@ -229,7 +229,7 @@ class BitLayout(Layout):
         """
         for steps in _steps_in(value, ()):
             if steps not in self._known:
-                path = Place(steps, "u", 0, 1).path
+                path = FieldPlace(steps, "u", 0, 1).path
                 raise UsageError(f"has no place in {self.name}; remove it", field=f"{prefix}{path}")
 
     def _misfit(self, value: Mapping[str, Any]) -> UsageError:

@@ -16,7 +16,7 @@ from cfepy.cli.json_output import STDOUT, write_text
 from cfepy.cli.main import ENDED_WELL
 from cfepy.cli.user_notes import check_writable, writing
 from cfepy.cli.viewed_runs import look_at_series
-from cfepy.ground import DICTIONARY_FORMATS, Dictionary, Series, dictionary_of, surveyed_topics
+from cfepy.ground import Dictionary, Series, dictionary_of, surveyed_topics
 from cfepy.mission import MissionSpec, read_mission
 from cfepy.msg import Telemetry
 from cfepy.pilot import booting
@@ -35,6 +35,12 @@ TIME, STAMP = "time", "stamp"
 TELEMETRY_PACKAGE: Hook[Callable[[Sequence[Telemetry], str], Mapping[str, str]]] = Hook("telemetry_package")
 """Makes the files of a catkin package of telemetry. Arguments: the packets, the mission's name. Returns texts by path.
 """
+
+
+DICTIONARY_FORMATS: Hook[Mapping[str, Callable[[MissionSpec, Dictionary], str | Mapping[str, str]]]] = Hook(
+    "dictionary_formats"
+)
+"""Writers of a mission's packets by the name of their format; each makes one text, or the texts of files by name."""
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -11,11 +11,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.extra.dictionaries.names import snake
+from cfepy.extra.dictionaries.nasa_names import snake
 from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
 from cfepy.extra.dictionaries.placed_items import header_value, payload_of
-from cfepy.extra.dictionaries.types import MOST_BITS, MOST_CELLS
-from cfepy.msg import Measurement, Place, ValueNames
+from cfepy.extra.dictionaries.placed_types import MOST_BITS, MOST_CELLS
+from cfepy.msg import FieldPlace, Measurement, ValueNames
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.reading.suggestions import did_you_mean
@@ -66,17 +66,17 @@ class _Item:
     polynomial: tuple[float, ...] = ()
     limits: tuple[float, float, float, float] | None = None
 
-    def places(self) -> Iterator[Place]:
+    def places(self) -> Iterator[FieldPlace]:
         """Yield the places of its values."""
         if self.kind == "block":
             for number in range(self.bits // 8):
-                yield Place((self.name, number), "u", self.start + 8 * number, 8)
+                yield FieldPlace((self.name, number), "u", self.start + 8 * number, 8)
             return
         names = ValueNames.of(f"{self.kind}{self.bits}", self.names) if self.names else None
         for number in range(self.count or 1):
             steps = (self.name, number) if self.count else (self.name,)
             start = self.start + number * self.bits
-            yield Place(steps, self.kind, start, self.bits, self.big_endian, names, self._measurement())
+            yield FieldPlace(steps, self.kind, start, self.bits, self.big_endian, names, self._measurement())
 
     def _measurement(self) -> Measurement | None:
         known = self.unit or self.polynomial or self.limits

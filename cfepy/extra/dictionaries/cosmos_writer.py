@@ -11,9 +11,8 @@ from collections.abc import Iterable, Iterator
 from itertools import groupby
 
 from cfepy.extra.dictionaries.cosmos_reader import PADDING
-from cfepy.extra.dictionaries.names import snake
-from cfepy.ground import Dictionary
-from cfepy.ground.xtce import xtce_name
+from cfepy.extra.dictionaries.nasa_names import snake
+from cfepy.ground import Dictionary, xtce_name
 from cfepy.mission import MissionSpec
 from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Cell, Command, Layout, Measurement, Telemetry
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from cfepy.extra.c import CStruct, FieldType, Macros, StructField, Structs, macros_of, structs_of
 from cfepy.extra.dictionaries.debug_cache import cached_content
-from cfepy.extra.dictionaries.names import snake
+from cfepy.extra.dictionaries.nasa_names import snake
 from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
 from cfepy.msg import NO_PAYLOAD, Layout, is_valid_msg_id
 from cfepy.reading.input_files import read_limited

@@ -12,13 +12,13 @@ from importlib.resources import as_file, files
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.extra.dictionaries.document import XmlTag, read_document
+from cfepy.extra.dictionaries.design_parameters import DesignParameters
 from cfepy.extra.dictionaries.eds_defaults import DEFAULTS
 from cfepy.extra.dictionaries.eds_types import EdsTypes
-from cfepy.extra.dictionaries.names import command_name, packet_name
+from cfepy.extra.dictionaries.nasa_names import command_name, packet_name
 from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent, lines_of
-from cfepy.extra.dictionaries.parameters import Parameters
-from cfepy.extra.dictionaries.types import Array, Struct, Type, memory_layout, without_wrapper
+from cfepy.extra.dictionaries.placed_types import Array, Struct, Type, memory_layout, without_wrapper
+from cfepy.extra.dictionaries.xml_tags import XmlTag, read_document
 from cfepy.status import UsageError
 
 COMMANDS, TELEMETRY, TABLES = "CFE_SB/Telecommand", "CFE_SB/Telemetry", "CFE_TBL/Table"
@@ -53,7 +53,7 @@ class DataSheets:
     """
 
     def __init__(self, roots: Iterable[XmlTag]) -> None:
-        self.parameters = Parameters(DEFAULTS)
+        self.parameters = DesignParameters(DEFAULTS)
         self.types = EdsTypes(self.parameters)
         self._content = SourceContent("EDS")
         packages: list[XmlTag] = []

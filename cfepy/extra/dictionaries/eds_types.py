@@ -1,24 +1,24 @@
-"""Data types of electronic data sheets (CCSDS 876.0), as `cfepy.extra.dictionaries.types`."""
+"""Data types of electronic data sheets (CCSDS 876.0), as `cfepy.extra.dictionaries.placed_types`."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
-from cfepy.extra.dictionaries.document import XmlTag
-from cfepy.extra.dictionaries.parameters import Parameters, defined_twice
-from cfepy.extra.dictionaries.types import (
+from cfepy.extra.dictionaries.design_parameters import DesignParameters, defined_twice
+from cfepy.extra.dictionaries.placed_types import (
     MOST_BITS,
     MOST_CELLS,
     Array,
-    Field,
     Number,
     Padding,
     Struct,
+    StructEntry,
     Text,
     Type,
     bits_of,
     cells_of,
 )
+from cfepy.extra.dictionaries.xml_tags import XmlTag
 from cfepy.msg import Measurement, ValueNames
 from cfepy.reading.suggestions import did_you_mean
 
@@ -39,7 +39,7 @@ class EdsTypes:
         parameters: values of parameters in attributes.
     """
 
-    def __init__(self, parameters: Parameters) -> None:
+    def __init__(self, parameters: DesignParameters) -> None:
         self._parameters = parameters
         self._tags: dict[str, XmlTag] = {}
         self._types: dict[str, Type] = {}
@@ -140,7 +140,7 @@ class EdsTypes:
             *(each for part in tag.all("EntryList") for each in part.tags),
             *(each for part in tag.all("TrailerEntryList") for each in part.tags),
         ]
-        fields: list[Field] = []
+        fields: list[StructEntry] = []
         names: set[str] = set()
         for each in entries:
             if each.name == "ListEntry":
@@ -175,7 +175,7 @@ class EdsTypes:
             return Array(Number("u", 8), self._bytes(tag))
         return self._number(tag)
 
-    def _fields_of(self, name: str) -> tuple[Field, ...]:
+    def _fields_of(self, name: str) -> tuple[StructEntry, ...]:
         found = self.type(name)
         assert isinstance(found, Struct)
         return found.fields
@@ -187,10 +187,10 @@ class EdsTypes:
             raise tag.fail(f"must have whole bytes, not {bits} bits")
         return bits // 8
 
-    def _field(self, tag: XmlTag, package: str) -> Field:
+    def _field(self, tag: XmlTag, package: str) -> StructEntry:
         text = tag.attributes.get("shortDescription", "")
         if tag.name == "PaddingEntry":
-            return Field("", Padding(self._parameters.count(tag, "sizeInBits", MOST_BITS)), tag.line, text)
+            return StructEntry("", Padding(self._parameters.count(tag, "sizeInBits", MOST_BITS)), tag.line, text)
         full = self.find(self._parameters.text(tag, "type"), package, tag)
         kind = self.type(full)
         if any(tag.all("IntegerDataEncoding", "FloatDataEncoding")) and isinstance(kind, Number):
@@ -204,7 +204,7 @@ class EdsTypes:
         fixed: str | None = None
         if tag.name == "FixedValueEntry":
             fixed = self._parameters.text(tag, "fixedValue")
-        return Field(tag.need("name"), kind, tag.line, text, fixed)
+        return StructEntry(tag.need("name"), kind, tag.line, text, fixed)
 
     def _array(self, tag: XmlTag, package: str) -> Type:
         item = self.type(self.find(self._parameters.text(tag, "dataTypeRef"), package, tag))

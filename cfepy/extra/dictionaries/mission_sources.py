@@ -14,9 +14,9 @@ from pathlib import Path
 
 from cfepy.es import NODE_SYMBOL
 from cfepy.extra.dictionaries.cosmos_reader import is_cosmos, read_cosmos
-from cfepy.extra.dictionaries.document import XmlTag, read_document
 from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
 from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
+from cfepy.extra.dictionaries.xml_tags import XmlTag, read_document
 from cfepy.extra.dictionaries.xtce_reader import ROOT as XTCE_ROOT
 from cfepy.extra.dictionaries.xtce_reader import read_xtce
 from cfepy.ground import ForeignDeclarations

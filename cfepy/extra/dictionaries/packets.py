@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.extra.dictionaries.types import Array, Struct
+from cfepy.extra.dictionaries.placed_types import Array, Struct
 from cfepy.msg import Layout
 from cfepy.status import UsageError
 
@@ -57,7 +57,7 @@ class DeclaredTable:
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
+class SourceProblem:
     """An error of a source: file, line (0 for the whole file), and text."""
 
     file: Path
@@ -86,7 +86,7 @@ class SourceContent:
     packets: list[DeclaredPacket] = field(default_factory=list)
     tables: list[DeclaredTable] = field(default_factory=list)
     names: dict[int, str] = field(default_factory=dict)
-    problems: list[Problem] = field(default_factory=list)
+    problems: list[SourceProblem] = field(default_factory=list)
 
     def add_problem(self, error: UsageError, file: Path) -> None:
         """Add an error, once.
@@ -96,7 +96,7 @@ class SourceContent:
             file: the file that was read, for an error without one.
         """
         text = error.text if error.field is None else f"{error.field}: {error.text}"
-        problem = Problem(Path(error.file or file), error.line or 0, text)
+        problem = SourceProblem(Path(error.file or file), error.line or 0, text)
         if problem not in self.problems:
             self.problems.append(problem)
 

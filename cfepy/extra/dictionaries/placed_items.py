@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, BitLayout, Layout, Place
+from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, BitLayout, FieldPlace, Layout
 
 
-def payload_of(name: str, places: Iterable[Place], bits: int, is_command: bool) -> Layout:
+def payload_of(name: str, places: Iterable[FieldPlace], bits: int, is_command: bool) -> Layout:
     """Return the layout of a packet after its header; a plain layout, if its fields are like a C struct's.
 
     Args:
@@ -21,7 +21,7 @@ def payload_of(name: str, places: Iterable[Place], bits: int, is_command: bool) 
     return plain_or_bits(name, inner, max(-(-(bits - header) // 8), 0))
 
 
-def plain_or_bits(name: str, places: Sequence[Place], size: int) -> Layout:
+def plain_or_bits(name: str, places: Sequence[FieldPlace], size: int) -> Layout:
     """Return a plain layout for places that are those of a C struct without nested structs, otherwise a `BitLayout`."""
     layout = BitLayout(name, places, size)
     plain = _plain(name, places)
@@ -33,7 +33,7 @@ def _shape(layout: Layout) -> list[tuple[str, str, int, bool]]:
     return [(each.path, each.type, each.offset, each.big_endian) for each in layout.cells()]
 
 
-def _plain(name: str, places: Sequence[Place]) -> Layout | None:
+def _plain(name: str, places: Sequence[FieldPlace]) -> Layout | None:
     fields: dict[str, object] = {}
     counts: dict[str, int] = {}
     for place in places:
@@ -49,7 +49,7 @@ def _plain(name: str, places: Sequence[Place]) -> Layout | None:
     return Layout(name, [(field, (kind, counts[field]) if counts[field] else kind) for field, kind in fields.items()])
 
 
-def header_value(ids: Iterable[tuple[Place, int]], start: int, bits: int) -> int:
+def header_value(ids: Iterable[tuple[FieldPlace, int]], start: int, bits: int) -> int:
     """Return the value of bits of a header, from the items that are there.
 
     Args:

@@ -7,11 +7,11 @@ from collections.abc import Iterable, Iterator
 
 from cfepy.ground import Dictionary
 from cfepy.mission import MissionSpec
-from cfepy.msg import BitLayout, Command, Layout, Measurement, Place, Telemetry, ValueNames
+from cfepy.msg import BitLayout, Command, FieldPlace, Layout, Measurement, Telemetry, ValueNames
 
 _HEAD = '''"""Packets of the mission {name}, written by `cfepy export python`."""
 
-from cfepy.msg import BitLayout, Command, Layout, Measurement, Place, Telemetry, ValueNames
+from cfepy.msg import BitLayout, Command, Layout, Measurement, FieldPlace, Telemetry, ValueNames
 
 '''
 
@@ -87,15 +87,15 @@ class _Writer:
         return variable
 
 
-def _place(place: Place) -> str:
+def _place(place: FieldPlace) -> str:
     words = []
-    for name, value in zip(Place._fields, place, strict=True):
+    for name, value in zip(FieldPlace._fields, place, strict=True):
         if value is None:
             continue
         shown = _names(value) if isinstance(value, ValueNames) else value
         shown = _measurement(value) if isinstance(value, Measurement) else shown
         words.append(f"{name}={shown if shown is not value else repr(value)}")
-    return f"Place({', '.join(words)})"
+    return f"FieldPlace({', '.join(words)})"
 
 
 def _names(names: ValueNames) -> str:

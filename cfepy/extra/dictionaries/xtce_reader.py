@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 
-from cfepy.extra.dictionaries.document import XmlTag
-from cfepy.extra.dictionaries.names import snake
+from cfepy.extra.dictionaries.nasa_names import snake
 from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
 from cfepy.extra.dictionaries.placed_items import header_value, payload_of
-from cfepy.extra.dictionaries.types import MOST_BITS, MOST_CELLS
-from cfepy.msg import Measurement, Place, ValueNames
+from cfepy.extra.dictionaries.placed_types import MOST_BITS, MOST_CELLS
+from cfepy.extra.dictionaries.xml_tags import XmlTag
+from cfepy.msg import FieldPlace, Measurement, ValueNames
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
@@ -46,11 +46,11 @@ class _Kind:
             return sum(kind.width for _, kind in self.members)
         return self.bits * (self.count or 1)
 
-    def places(self, steps: tuple[str | int, ...], start: int) -> Iterator[Place]:
+    def places(self, steps: tuple[str | int, ...], start: int) -> Iterator[FieldPlace]:
         """Yield the places of its numbers and texts."""
         if self.kind == "block":
             for number in range(self.bits // 8):
-                yield Place((*steps, number), "u", start + 8 * number, 8)
+                yield FieldPlace((*steps, number), "u", start + 8 * number, 8)
         elif self.kind == "array":
             item = self.members[0][1]
             for number in range(self.count):
@@ -61,18 +61,18 @@ class _Kind:
                 start += kind.width
         else:
             names = ValueNames.of(f"{self.kind}{self.bits}", self.names) if self.names else None
-            yield Place(steps, self.kind, start, self.bits, self.big_endian, names, self.measurement)
+            yield FieldPlace(steps, self.kind, start, self.bits, self.big_endian, names, self.measurement)
 
 
 @dataclass(slots=True)
 class _Entries:
     """The entries of a packet so far, `end` is the bit after the last one; `values` are those that they must have."""
 
-    places: list[Place] = field(default_factory=list)
+    places: list[FieldPlace] = field(default_factory=list)
     lines: dict[str, int] = field(default_factory=dict)
     end: int = 0
     values: dict[str, int] = field(default_factory=dict)
-    fixed: list[tuple[Place, int]] = field(default_factory=list)
+    fixed: list[tuple[FieldPlace, int]] = field(default_factory=list)
 
 
 def read_xtce(roots: Iterable[XmlTag]) -> SourceContent:
@@ -155,7 +155,7 @@ class _System:
             DeclaredPacket(name, msg_id, payload, is_command, tag.file, tag.line, code, text, None, lines)
         )
 
-    def _known(self, entries: _Entries) -> list[tuple[Place, int]]:
+    def _known(self, entries: _Entries) -> list[tuple[FieldPlace, int]]:
         """Return the places of header fields with the values that they must have."""
         found = [(place, entries.values[place.path]) for place in entries.places if place.path in entries.values]
         return [*entries.fixed, *found]
@@ -218,7 +218,7 @@ class _System:
         elif tag.name == "FixedValueEntry":
             bits = _number(tag, tag.need("sizeInBits"))
             value = _hex(tag)
-            entries.fixed.append((Place((tag.attributes.get("name", ""),), "u", start, bits), value))
+            entries.fixed.append((FieldPlace((tag.attributes.get("name", ""),), "u", start, bits), value))
             entries.end = max(entries.end, start + bits)
         elif tag.name in ("ParameterRefEntry", "ArgumentRefEntry"):
             self._value(tag, entries, arguments, start)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from cfepy.msg import BitLayout, Layout, Measurement, Place, ValueNames
+from cfepy.msg import BitLayout, FieldPlace, Layout, Measurement, ValueNames
 
 MOST_BITS = 8 << 20
 """The largest type: 1 MiB."""
@@ -58,7 +58,7 @@ class Array(NamedTuple):
     length: int
 
 
-class Field(NamedTuple):
+class StructEntry(NamedTuple):
     """A field of a struct: `line` is where its source declares it, `fixed` the value that it always has."""
 
     name: str
@@ -72,7 +72,7 @@ class Struct(NamedTuple):
     """A struct with its fields in order; padding has the name ""."""
 
     name: str
-    fields: tuple[Field, ...]
+    fields: tuple[StructEntry, ...]
 
 
 Type = Number | Text | Padding | Array | Struct
@@ -100,12 +100,12 @@ def cells_of(kind: Type) -> int:
 
 def wire_layout(struct: Struct) -> BitLayout:
     """Return a struct as it stands on the wire."""
-    places: list[Place] = []
+    places: list[FieldPlace] = []
     end = _put_on_wire(struct, (), 0, places)
     return BitLayout(struct.name, places, -(-end // 8))
 
 
-def _put_on_wire(kind: Type, steps: tuple[str | int, ...], at: int, places: list[Place]) -> int:
+def _put_on_wire(kind: Type, steps: tuple[str | int, ...], at: int, places: list[FieldPlace]) -> int:
     for inner, way in _parts(kind, steps):
         at = _put_on_wire(inner, way, at, places)
     if isinstance(kind, Number | Text):
@@ -115,7 +115,7 @@ def _put_on_wire(kind: Type, steps: tuple[str | int, ...], at: int, places: list
 
 def memory_layout(struct: Struct) -> Layout:
     """Return a struct as a C application has it in memory: a plain layout, if its fields are all of C's types."""
-    places: list[Place] = []
+    places: list[FieldPlace] = []
     end = -(-_put_in_memory(struct, (), 0, places) // 8)
     layout = BitLayout(struct.name, places, end)
     plain = _plain(struct)
@@ -128,7 +128,7 @@ def _shape(layout: Layout) -> list[tuple[str, str, int, int]]:
     return [(cell.path, cell.type, cell.offset, cell.bit) for cell in layout.cells()]
 
 
-def _put_in_memory(kind: Type, steps: tuple[str | int, ...], at: int, places: list[Place]) -> int:
+def _put_in_memory(kind: Type, steps: tuple[str | int, ...], at: int, places: list[FieldPlace]) -> int:
     alignment = _alignment(kind)
     at += -at % alignment
     for inner, way in _parts(kind, steps):
@@ -157,10 +157,10 @@ def _parts(kind: Type, steps: tuple[str | int, ...]) -> Iterator[tuple[Type, tup
         yield from ((field.type, (*steps, field.name)) for field in kind.fields)
 
 
-def _place(kind: Number | Text, steps: tuple[str | int, ...], at: int, big_endian: bool) -> Place:
+def _place(kind: Number | Text, steps: tuple[str | int, ...], at: int, big_endian: bool) -> FieldPlace:
     if isinstance(kind, Text):
-        return Place(steps, "char", at, 8 * kind.size)
-    return Place(steps, kind.kind, at, kind.bits, big_endian, kind.names, kind.measurement)
+        return FieldPlace(steps, "char", at, 8 * kind.size)
+    return FieldPlace(steps, kind.kind, at, kind.bits, big_endian, kind.names, kind.measurement)
 
 
 def _plain(kind: Type) -> Layout | None:

@@ -1,11 +1,11 @@
-"""Parameters of electronic data sheets: `${PACKAGE/NAME}` in an attribute, and the arithmetic of the values."""
+"""DesignParameters of electronic data sheets: `${PACKAGE/NAME}` in an attribute, and the arithmetic of the values."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
 
-from cfepy.extra.dictionaries.document import XmlTag
+from cfepy.extra.dictionaries.xml_tags import XmlTag
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
@@ -17,7 +17,7 @@ LARGEST = 1 << 128
 _DEPTH = 50  # brackets inside each other
 
 
-class Parameters:
+class DesignParameters:
     """The values of `<Define>` tags, by package and name.
 
     Args:
