@@ -136,7 +136,11 @@ OWN = (
     ),
     _own(
         "dictionaries",
-        hooks={"declarations": ".mission_sources:declarations_of", "dictionary_formats": ".formats:FORMATS"},
+        hooks={
+            "declarations": ".mission_sources:declarations_of",
+            "dictionary_formats": ".formats:FORMATS",
+            "check_profiles": ".differences:check_dictionary",
+        },
         needs=("c",),
     ),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),

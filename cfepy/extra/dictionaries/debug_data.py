@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -47,7 +48,7 @@ def read_debug_data(libraries: Iterable[Path]) -> SourceContent:
         except (UsageError, OSError):
             continue  # `cfepy check` reports the error
         found = cached_content(data, partial(_content_of, data, library))
-        content.packets += found.packets
+        content.packets += [replace(packet, library=library) for packet in found.packets]
         content.names = found.names | content.names
     return content
 

@@ -8,11 +8,11 @@ the first of electronic data sheets, COSMOS, XTCE and debug data is used.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from pathlib import Path
 
-from cfepy.es import NODE_SYMBOL
+from cfepy.es import NODE_SYMBOL, StartupEntry
 from cfepy.extra.dictionaries.cosmos_reader import is_cosmos, read_cosmos
 from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
 from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
@@ -29,6 +29,7 @@ from cfepy.tbl import TableType
 
 FOLDER = "dictionary"
 """The folder of a mission with the files of its dictionary."""
+DEBUG_DATA = "debug data"
 MOST_FILES = 2_000
 _SUFFIXES = (".xml", ".txt")
 
@@ -52,9 +53,20 @@ def declarations_of(spec: MissionSpec) -> ForeignDeclarations:
 
 def contents_of(spec: MissionSpec) -> tuple[SourceContent, ...]:
     """Return the content of each kind of source of a mission, the one with precedence first."""
-    places = [*spec.dictionary, spec.folder / FOLDER]
+    return contents_at(spec.dictionary, spec.folder, spec.entries)
+
+
+def contents_at(named: Iterable[Path], folder: Path, entries: Iterable[StartupEntry]) -> tuple[SourceContent, ...]:
+    """Return the content of each kind of source, the one with precedence first.
+
+    Args:
+        named: the files and folders that the mission file names.
+        folder: the folder of the mission.
+        entries: the entries of the startup script.
+    """
+    places = [*named, folder / FOLDER]
     files = tuple(dict.fromkeys(file for place in places for file in _files_at(place)))
-    libraries = (find_compiled(entry.path, spec.folder) for entry in spec.entries if entry.symbol != NODE_SYMBOL)
+    libraries = (find_compiled(entry.path, folder) for entry in entries if entry.symbol != NODE_SYMBOL)
     compiled = tuple(dict.fromkeys(each for each in libraries if each is not None))
     return (
         *_contents(tuple((file, *_stamp(file)) for file in files)),

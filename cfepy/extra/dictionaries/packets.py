@@ -27,6 +27,7 @@ class DeclaredPacket:
         whole: the type with its header as it is on the wire, if the source describes it.
         lines: the lines of fields, by path without indices.
         structs: names that its struct may have in C.
+        library: the shared object, for debug data.
     """
 
     name: str
@@ -40,6 +41,7 @@ class DeclaredPacket:
     whole: Struct | None = None
     lines: Mapping[str, int] = field(default_factory=dict)
     structs: tuple[str, ...] = ()
+    library: Path | None = None
 
 
 @dataclass(frozen=True, slots=True)
