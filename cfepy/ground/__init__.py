@@ -17,7 +17,7 @@ from cfepy.interpreter.faces import face
 if TYPE_CHECKING:
     from cfepy.ground.bag import BagReader, header_of, is_bag
     from cfepy.ground.command_trial import CommandTrial
-    from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, table_type, table_types
+    from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, struct_layout, table_type, table_types
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
     from cfepy.ground.foreign_declarations import (
@@ -135,6 +135,7 @@ __all__ = [
     "rewrite",
     "spread_out",
     "steps_of",
+    "struct_layout",
     "summary_of",
     "surveyed_topics",
     "table_type",
@@ -168,7 +169,9 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "Decoded",
                 "Dictionary",
                 "dictionary_of",
+                "struct_layout",
                 "table_type",
+                "struct_layout",
                 "table_types",
             ),
             ".foreign_declarations": (

@@ -304,6 +304,18 @@ def declared(spec: MissionSpec | None, attributes: Sequence[str], problems: list
     return found
 
 
+def struct_layout(mission: str | None, name: str) -> Layout | None:
+    """Return a struct of a mission's applications by its name in C; None if no file declares it.
+
+    Args:
+        mission: as for `read_mission`, or None.
+        name: such as "HS_AMTEntry_t".
+    """
+    spec = None if mission is None else read_mission(mission)
+    found = (read(spec).layout(name) for read in FOREIGN_DECLARATIONS.all()) if spec is not None else ()
+    return next((layout for layout in found if layout is not None), None)
+
+
 def table_types(mission: str | None, problems: list[str]) -> dict[str, TableType]:
     """Return the known tables by full name, with tables of a mission before tables of the apps included in cfepy.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from cfepy.cli.json_output import write_json, write_text
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.text_table import Table, show_tables
 from cfepy.cli.user_notes import writing
-from cfepy.ground import table_types
+from cfepy.ground import struct_layout, table_types
 from cfepy.ground.cfe_files import table_yaml
 from cfepy.ground.cfe_files.table_file import (
     HEADER_FIELDS,
@@ -26,6 +27,7 @@ from cfepy.ground.cfe_files.table_file import (
     take_apart,
 )
 from cfepy.mission import is_mission_folder
+from cfepy.msg import Layout
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import TABLE_BYTES
 from cfepy.reading.marked_yaml import load
@@ -52,13 +54,15 @@ def run(arguments: argparse.Namespace) -> int:
 def _find(arguments: argparse.Namespace) -> Find:
     """Make the lookup of table types of the mission, of shipped apps, and of `--layout`."""
     problems: list[str] = []
-    known = table_types(arguments.mission or _mission_around(arguments), problems)
+    mission = arguments.mission or _mission_around(arguments)
+    known = table_types(mission, problems)
     for problem in problems:
         print(f"cfepy: {problem}", file=sys.stderr)
+    struct = partial(struct_layout, mission)
     if arguments.layout is not None:
-        own = _own_type(Path(arguments.layout))
+        own = _own_type(Path(arguments.layout), struct)
         known[own.name] = own
-    return KnownTables(known)
+    return KnownTables(known, struct)
 
 
 def _mission_around(arguments: argparse.Namespace) -> str | None:
@@ -69,10 +73,10 @@ def _mission_around(arguments: argparse.Namespace) -> str | None:
     return next((str(folder) for folder in folders if is_mission_folder(folder)), None)
 
 
-def _own_type(path: Path) -> TableType:
+def _own_type(path: Path, struct: Callable[[str], Layout | None]) -> TableType:
     root = load(path, handed=True)
     said = root.mapping()
-    own = table_yaml.own_type(said) if "table" in said else None
+    own = table_yaml.own_type(said, struct) if "table" in said else None
     if own is None:
         raise root.fail("missing layout; add `table` and `layout`, and `count` for more than one row")
     return own

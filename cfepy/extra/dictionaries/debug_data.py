@@ -41,6 +41,7 @@ def read_debug_data(libraries: Iterable[Path]) -> SourceContent:
     Args:
         libraries: their files; one without debug data declares nothing.
     """
+    libraries = tuple(libraries)
     content = SourceContent("debug data")
     for library in libraries:
         try:
@@ -50,7 +51,20 @@ def read_debug_data(libraries: Iterable[Path]) -> SourceContent:
         found = cached_content(data, partial(_content_of, data, library))
         content.packets += [replace(packet, library=library) for packet in found.packets]
         content.names = found.names | content.names
+    content.layout = partial(_struct_of, libraries)
     return content
+
+
+def _struct_of(libraries: Iterable[Path], name: str) -> Layout | None:
+    """Return a struct of the first library that has it."""
+    for library in libraries:
+        try:
+            struct = structs_of(read_limited(library, OBJECT_BYTES)).find(name)
+        except (UsageError, OSError):
+            continue
+        if struct is not None:
+            return layout_of(struct)
+    return None
 
 
 def _content_of(data: bytes, library: Path) -> SourceContent:

@@ -96,7 +96,9 @@ def _compared(
     mine, theirs = members(packet.payload), members(there.payload)
     by_name = {_plain(each.path): each for each in theirs}
     by_start = {each.start: each for each in theirs}
-    shown = _shown(other, there) + (f", as {there.name}" if _plain(there.name) != _plain(packet.name) else "")
+    shown = _shown(other, there) + (
+        f" (called {there.name} there)" if _plain(there.name) != _plain(packet.name) else ""
+    )
     for each in mine:
         found = by_name.get(_plain(each.path)) or by_start.get(each.start)
         if found is None:

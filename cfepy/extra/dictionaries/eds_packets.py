@@ -7,6 +7,7 @@ derived from that type with a function code.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
 from importlib.resources import as_file, files
 from pathlib import Path
@@ -14,14 +15,16 @@ from typing import NamedTuple
 
 from cfepy.extra.dictionaries.design_parameters import DesignParameters
 from cfepy.extra.dictionaries.eds_defaults import DEFAULTS
-from cfepy.extra.dictionaries.eds_types import EdsTypes
+from cfepy.extra.dictionaries.eds_types import EdsTypes, c_name
 from cfepy.extra.dictionaries.nasa_names import command_name, packet_name
 from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent, lines_of
 from cfepy.extra.dictionaries.placed_types import Array, Struct, Type, memory_layout, without_wrapper
 from cfepy.extra.dictionaries.xml_tags import XmlTag, read_document
+from cfepy.msg import Layout
 from cfepy.status import UsageError
 
 COMMANDS, TELEMETRY, TABLES = "CFE_SB/Telecommand", "CFE_SB/Telemetry", "CFE_TBL/Table"
+_TABLE = re.compile(r"Table|Tbl", re.IGNORECASE)
 _CODE = "Sec.FunctionCode"
 _HEADERS = {COMMANDS: "CFE_HDR/CommandHeader", TELEMETRY: "CFE_HDR/TelemetryHeader"}
 _BITS = {COMMANDS: 0x1800, TELEMETRY: 0x0800}
@@ -76,7 +79,32 @@ class DataSheets:
                 self._add(interface, self._content)
             except UsageError as error:
                 self._content.add_problem(error, interface.tag.file)
+        self._content.layout = self._layout
+        self._content.tables += self._tables_by_name()
         return self._content
+
+    def _layout(self, name: str) -> Layout | None:
+        """Return a struct by the name that it has in C, such as "HS_AMTEntry_t"; None if there is none."""
+        full = next((each for each in self.types.names() if c_name(each) == name), None)
+        try:
+            found = None if full is None else self.types.type(full)
+        except UsageError:  # a packet or a table with the type has reported it
+            return None
+        return memory_layout(found) if isinstance(found, Struct) else None
+
+    def _tables_by_name(self) -> Iterator[DeclaredTable]:
+        """Yield types with the names of tables that no interface offers: HS/AppMon_Tbl is HS.AppMon_Tbl."""
+        known = {each.name for each in self._content.tables}
+        for full in self.types.names():
+            name = full.replace("/", ".")
+            if name in known or not _TABLE.search(full):
+                continue
+            try:
+                table = self._table(name, full, self.types.tag(full).attributes.get("shortDescription", ""))
+            except UsageError:  # as in `_layout`
+                continue
+            if table is not None:
+                yield table
 
     def _attempt(self, tag: XmlTag, read: Callable[[XmlTag], None]) -> None:
         try:

@@ -152,7 +152,7 @@ class EdsTypes:
                 raise each.fail("is declared twice; rename one of them")
             names.update({found.name} - {""})
             fields.append(found)
-        return Struct(_c_name(name), tuple(fields))
+        return Struct(c_name(name), tuple(fields))
 
     def _full(self, name: str, package: str) -> str:
         return name if "/" in name else f"{package}/{name}"
@@ -162,7 +162,7 @@ class EdsTypes:
         if tag.name == "ContainerDataType":
             base = self.base_of(name)
             inherited = () if base is None else self._fields_of(base)
-            return Struct(_c_name(name), (*inherited, *self.own_struct(name).fields))
+            return Struct(c_name(name), (*inherited, *self.own_struct(name).fields))
         if tag.name == "AliasDataType":
             return self.type(self.find(self._parameters.text(tag, "type"), package, tag))
         if tag.name == "SubRangeDataType":
@@ -304,6 +304,6 @@ def _package(name: str) -> str:
     return name.partition("/")[0]
 
 
-def _c_name(name: str) -> str:
+def c_name(name: str) -> str:
     """Return the name of the struct that NASA's tools make of a type: HS/HkPacket is HS_HkPacket_t."""
     return f"{name.replace('/', '_')}_t"

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 
 from cfepy.es import NODE_SYMBOL, StartupEntry
@@ -21,7 +21,7 @@ from cfepy.extra.dictionaries.xtce_reader import ROOT as XTCE_ROOT
 from cfepy.extra.dictionaries.xtce_reader import read_xtce
 from cfepy.ground import ForeignDeclarations
 from cfepy.mission import MissionSpec, find_compiled
-from cfepy.msg import Command, Telemetry
+from cfepy.msg import Command, Layout, Telemetry
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.status import UsageError
@@ -48,7 +48,15 @@ def declarations_of(spec: MissionSpec) -> ForeignDeclarations:
         for msg_id, name in content.names.items():
             names.setdefault(msg_id, name)
     problems = [str(problem) for content in contents for problem in content.problems]
-    return ForeignDeclarations(list(packets.values()), list(tables.values()), names, problems)
+    return ForeignDeclarations(
+        list(packets.values()), list(tables.values()), names, problems, partial(_layout, contents)
+    )
+
+
+def _layout(contents: Iterable[SourceContent], name: str) -> Layout | None:
+    """Return a struct of the first source that has it."""
+    found = (content.layout(name) for content in contents)
+    return next((layout for layout in found if layout is not None), None)
 
 
 def contents_of(spec: MissionSpec) -> tuple[SourceContent, ...]:
@@ -128,7 +136,7 @@ def _debug_data(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent
     from cfepy.extra.dictionaries.debug_data import read_debug_data
 
     found = read_debug_data(file for file, *_ in files)
-    return (found,) if found.packets else ()
+    return (found,)
 
 
 def _is_cosmos(file: Path) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -72,6 +72,11 @@ class SourceProblem:
         return f"{place}: {self.text}"
 
 
+def no_layout(name: str) -> Layout | None:
+    """Return None, as a source without structs."""
+    return None
+
+
 @dataclass(slots=True)
 class SourceContent:
     """Everything that a source declares, with a problem for each thing that it could not read.
@@ -82,6 +87,7 @@ class SourceContent:
         tables: its tables.
         names: names of MsgIds.
         problems: its problems.
+        layout: returns a struct by its name in C, or None.
     """
 
     kind: str
@@ -89,6 +95,7 @@ class SourceContent:
     tables: list[DeclaredTable] = field(default_factory=list)
     names: dict[int, str] = field(default_factory=dict)
     problems: list[SourceProblem] = field(default_factory=list)
+    layout: Callable[[str], Layout | None] = no_layout
 
     def add_problem(self, error: UsageError, file: Path) -> None:
         """Add an error, once.

@@ -27,6 +27,7 @@ from cfepy.fs import (
     read_table_file,
     read_table_header,
 )
+from cfepy.msg import Layout
 from cfepy.status import CfeError, UsageError
 from cfepy.tbl import TableType, is_intact, mark_for, mark_in
 
@@ -39,9 +40,11 @@ class KnownTables:
 
     Attributes:
         types: the types by full name.
+        struct: returns a struct of the mission's applications by its name in C.
     """
 
     types: Mapping[str, TableType]
+    struct: Callable[[str], Layout | None] = lambda name: None
 
     def __call__(self, name: str) -> TableType | None:
         return self.types.get(name)

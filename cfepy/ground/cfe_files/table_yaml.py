@@ -11,7 +11,7 @@ See docs/how_to/tables_and_parameters.md for the format. Errors give file, line 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -110,21 +110,37 @@ def _table(root: Marked, find: Find, mistakes: Mistakes) -> TableContents:
     name = said["table"].text()
     if "." not in name or not 0 < len(name) < FULL_NAME_SIZE:
         raise said["table"].fail(f"must be APP.Table with at most {FULL_NAME_SIZE - 1} characters, not {name!r}")
-    kind = own_type(said) or find(name)
+    kind = own_type(said, find.struct if isinstance(find, KnownTables) else _no_struct) or find(name)
     image = _image(said, kind, offset or 0, find.types if isinstance(find, KnownTables) else ())
     table = TableHeader(name, len(image), offset or 0, reserved or 0)
     file = TableContents(header, table, image, after, kind)
     return file.marked() if wants_mark else file
 
 
-def own_type(said: dict[str, Marked]) -> TableType | None:
-    """Return the table's type declared in the file itself; None if there is none."""
+def _no_struct(name: str) -> Layout | None:
+    return None
+
+
+def own_type(said: dict[str, Marked], struct: Callable[[str], Layout | None] = _no_struct) -> TableType | None:
+    """Return the table's type declared in the file itself; None if there is none.
+
+    Args:
+        said: the fields of the file.
+        struct: returns a struct of the mission's applications by its name in C, which `layout` may be.
+    """
     if "layout" not in said:
         if "count" in said:
             raise said["count"].fail("requires a `layout`; add one, or remove this")
         return None
     count = said["count"].integer(1) if "count" in said else 1
-    return TableType(said["table"].plain(), _layout(said["layout"], "row"), count)
+    layout = said["layout"]
+    if isinstance(layout.value, str):
+        known = struct(layout.value)
+        if known is None:
+            what = "give the fields, or the name of a struct in the mission's dictionary or compiled code"
+            raise layout.fail(f"unknown struct {layout.value}; {what}")
+        return TableType(said["table"].plain(), known, count)
+    return TableType(said["table"].plain(), _layout(layout, "row"), count)
 
 
 def _layout(marked: Marked, name: str) -> Layout:
