@@ -42,7 +42,7 @@ class _Kind:
     @property
     def width(self) -> int:
         """The bits of the whole value."""
-        if self.members:
+        if self.kind == "struct":
             return sum(kind.width for _, kind in self.members)
         return self.bits * (self.count or 1)
 
