@@ -304,6 +304,8 @@ def _number(word: str) -> float:
 def _state(item: _Item, words: list[str]) -> None:
     if len(words) < 3:
         raise UsageError("STATE requires a name and a value")
+    if item.kind not in ("u", "i"):
+        raise UsageError("STATE requires a UINT or an INT")
     if words[2].upper() != "ANY":
         item.names[words[1]] = _integer(words[2])
 

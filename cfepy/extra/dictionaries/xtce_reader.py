@@ -286,6 +286,8 @@ class _System:
         if what == "Boolean" and kind.kind in "ui":
             return _Kind("bool", kind.bits, kind.big_endian)
         if what == "Enumerated":
+            if kind.kind not in ("u", "i"):
+                raise tag.fail("an enumeration requires an <IntegerDataEncoding>")
             kind.names = {
                 each.need("label"): _number(each, each.need("value"))
                 for each in tag.inside("EnumerationList", "Enumeration")

@@ -74,6 +74,7 @@ BAD = {
     "TELEMETRY TANK A BIG_ENDIAN\n  ITEM X -8 8 UINT": "a place or size from the end of the packet is not supported",
     "TELEMETRY TANK A BIG_ENDIAN\n  APPEND_ITEM X 8 UINT\n  STATES ON 1": "unknown keyword STATES; did you mean STATE?",
     "TELEMETRY TANK A BIG_ENDIAN\n  STATE ON 1": "STATE requires an item above it; add one",
+    "TELEMETRY TANK A BIG_ENDIAN\n  APPEND_ITEM X 8 STRING\n  STATE A 1": "STATE requires a UINT or an INT",
     "TELEMETRY TANK A BIG_ENDIAN\n  APPEND_ITEM X 99999999992 BLOCK": "is larger than 1,048,576 bytes",
     "TELEMETRY TANK A BIG_ENDIAN\n  APPEND_ITEM X 8 UINT": "A has no MsgId; add an ID item",
     f"TELEMETRY TANK A BIG_ENDIAN\n{HEADER.format(0x820)}{2 * X}": "X is declared twice",
