@@ -57,7 +57,7 @@ from cfepy.reading.plain_yaml import YamlError
 from cfepy.schedules import Schedule
 from cfepy.script.text import parse_script, read_script
 from cfepy.status import CfeError, UsageError
-from dev.fuzz import servers
+from dev.fuzz import dictionary_files, servers
 from dev.fuzz.cds_board import Board
 from rospy_shim.roslaunch.reader import read
 from rospy_shim.roslaunch.values import from_yaml
@@ -663,6 +663,10 @@ KINDS = {
         Kind(
             "cmake-lists", lambda: [*texts(CMAKE)(), *files("tests/**/CMakeLists.txt")()], cmake_lists, "CMakeLists.txt"
         ),
+        Kind("data-sheet", texts(dictionary_files.SHEET), dictionary_files.data_sheet, "tank.xml"),
+        Kind("cosmos", texts(dictionary_files.COSMOS), dictionary_files.cosmos, "tank.txt"),
+        Kind("xtce", texts(dictionary_files.XTCE), dictionary_files.xtce, "tank.xml"),
+        Kind("c-header", texts(dictionary_files.HEADER), dictionary_files.c_header, "tank_msg.h"),
         Kind("package-manifest", texts(PACKAGE), package_manifest, "package.xml"),
         Kind(
             "cpp-source",

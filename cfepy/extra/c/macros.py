@@ -60,7 +60,7 @@ class Macros:
         try:
             tokens = [*self._expanded([name], frozenset(), constants, 0)]
             return _Sum(tokens).value()
-        except (_NoNumberError, ArithmeticError):
+        except (_NoNumberError, ValueError, ArithmeticError, RecursionError):  # a text of anybody
             return None
 
     def _expanded(
@@ -160,25 +160,19 @@ class _Sum:
             value = self._atom()
             return {"-": -value, "+": value, "~": ~value & 0xFFFFFFFF}[token]
         if token == "(":
-            found = self._level(0) if not self._skips_cast() else self._atom()
-            return found
+            return self._bracket()
         digits = token.rstrip("uUlL")
         if digits[:1].isdigit():
             octal = len(digits) > 1 and digits.isdigit() and digits[0] == "0"
             return int(digits, 8 if octal else 0)
         raise _NoNumberError
 
-    def _skips_cast(self) -> bool:
-        """Skip the rest of a cast such as `(uint16)`, and the closing bracket of another expression."""
-        if ")" not in self._tokens:
-            raise _NoNumberError
-        end = self._tokens.index(")")
-        if all(re.fullmatch(r"[A-Za-z_]\w*", each) for each in self._tokens[:end]) and end:
-            del self._tokens[: end + 1]
-            return True
-        inner, rest = _bracketed(self._tokens)
-        self._tokens = [str(_Sum(inner).value()), *rest]
-        return False
+    def _bracket(self) -> int:
+        """Return the value of a bracket, or of the number after a cast such as `(uint16)`."""
+        inner, self._tokens = _bracketed(self._tokens)
+        if inner and all(re.fullmatch(r"[A-Za-z_]\w*", each) for each in inner):
+            return self._atom()
+        return _Sum(inner).value()
 
 
 def _bracketed(tokens: list[str]) -> tuple[list[str], list[str]]:

@@ -14,6 +14,7 @@ _TOKEN = re.compile(r"\s*(0[xX][0-9a-fA-F]+|\d+\.\d+|\d+|[-+*/^()])")
 MOST_STEPS = 50  # parameters inside each other
 MOST_CHARACTERS = 1_000
 LARGEST = 1 << 128
+_SHOWN = 60
 _DEPTH = 50  # brackets inside each other
 
 
@@ -55,8 +56,9 @@ class DesignParameters:
         text = self.text(tag, name)
         try:
             value = _Arithmetic(text).value()
-        except (ValueError, ArithmeticError) as error:
-            raise tag.fail(f"{name} must be a whole number or a sum of such, not {text!r} ({error})") from None
+        except (ValueError, ArithmeticError, RecursionError) as error:
+            shown = text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."
+            raise tag.fail(f"{name} must be a whole number or a sum of such, not {shown!r} ({error})") from None
         if value != int(value):
             raise tag.fail(f"{name} must be a whole number, not {text!r}")
         return int(value)

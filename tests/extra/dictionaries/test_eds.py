@@ -20,6 +20,7 @@ BAD_TYPES = {
     '<PaddingEntry sizeInBits="0"/>': "sizeInBits must be from 1 to",
     '<PaddingEntry sizeInBits="${TANK/MISSING}"/>': "unknown parameter TANK/MISSING",
     '<PaddingEntry sizeInBits="9 ^ 99"/>': "a value is larger than 2 ^ 128",
+    f'<PaddingEntry sizeInBits="{"-" * 990}1"/>': "sizeInBits must be a whole number or a sum of such",
     '<PaddingEntry sizeInBits="1 +"/>': "a number is missing",
     '<PaddingEntry sizeInBits="8 / 0"/>': "must be a whole number or a sum of such",
     '<ListEntry name="A" type="Mode"/>': "a list of variable length is not supported",
