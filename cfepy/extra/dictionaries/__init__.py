@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from cfepy.extra.dictionaries.eds_defaults import DEFAULTS
     from cfepy.extra.dictionaries.eds_packets import DataSheets
     from cfepy.extra.dictionaries.eds_types import EdsTypes
+    from cfepy.extra.dictionaries.file_sources import contents_of_files
     from cfepy.extra.dictionaries.mission_sources import contents_of
     from cfepy.extra.dictionaries.placed_types import memory_layout, wire_layout
     from cfepy.extra.dictionaries.python_writer import python_text
@@ -33,6 +34,7 @@ __all__ = [
     "EdsTypes",
     "cached_content",
     "contents_of",
+    "contents_of_files",
     "cosmos_text",
     "ctf_files",
     "memory_layout",
@@ -57,6 +59,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".eds_defaults": ("DEFAULTS",),
             ".eds_packets": ("DataSheets",),
             ".eds_types": ("EdsTypes",),
+            ".file_sources": ("contents_of_files",),
             ".mission_sources": ("contents_of",),
             ".placed_types": ("memory_layout", "wire_layout"),
             ".python_writer": ("python_text",),

@@ -17,8 +17,8 @@ from cfepy.extra.dictionaries.design_parameters import DesignParameters
 from cfepy.extra.dictionaries.eds_defaults import DEFAULTS
 from cfepy.extra.dictionaries.eds_types import EdsTypes, c_name
 from cfepy.extra.dictionaries.nasa_names import command_name, packet_name
-from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent, lines_of
-from cfepy.extra.dictionaries.placed_types import Array, Struct, Type, memory_layout, without_wrapper
+from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
+from cfepy.extra.dictionaries.placed_types import Array, Struct, Type, lines_of, memory_layout, without_wrapper
 from cfepy.extra.dictionaries.xml_tags import XmlTag, read_document
 from cfepy.msg import Layout
 from cfepy.status import UsageError

@@ -11,21 +11,16 @@ import os
 from collections.abc import Iterable, Iterator
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cfepy.es import NODE_SYMBOL, StartupEntry
-from cfepy.extra.dictionaries.cosmos_reader import is_cosmos, read_cosmos
-from cfepy.extra.dictionaries.eds_packets import ROOTS, DataSheets
-from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
-from cfepy.extra.dictionaries.xml_tags import XmlTag, read_document
-from cfepy.extra.dictionaries.xtce_reader import ROOT as XTCE_ROOT
-from cfepy.extra.dictionaries.xtce_reader import read_xtce
 from cfepy.ground import ForeignDeclarations
 from cfepy.mission import MissionSpec, find_compiled
 from cfepy.msg import Command, Layout, Telemetry
-from cfepy.reading.input_files import read_limited
-from cfepy.reading.input_limits import LINE_FILE_BYTES
-from cfepy.status import UsageError
 from cfepy.tbl import TableType
+
+if TYPE_CHECKING:
+    from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
 
 FOLDER = "dictionary"
 """The folder of a mission with the files of its dictionary."""
@@ -102,30 +97,11 @@ def _stamp(file: Path) -> tuple[int, int]:
 @lru_cache(8)  # a mission is read for each of its tools
 def _contents(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent, ...]:
     """Read files; their times and sizes distinguish them from earlier versions."""
-    unread = SourceContent("files")
-    sheets: list[XmlTag] = []
-    texts: list[Path] = []
-    systems: list[XmlTag] = []
-    for file, *_ in files:
-        try:
-            if file.suffix.lower() != ".xml":
-                texts += [file] if _is_cosmos(file) else []
-                continue
-            root = read_document(file)
-            if root.name in ROOTS:
-                sheets.append(root)
-            elif root.name == XTCE_ROOT:
-                systems.append(root)
-        except UsageError as error:
-            unread.add_problem(error, file)
-    found: list[SourceContent] = []
-    if sheets:
-        found.append(DataSheets(sheets).content())
-    if texts:
-        found.append(read_cosmos(texts))
-    if systems:
-        found.append(read_xtce(systems))
-    return (*found, unread) if unread.problems else tuple(found)
+    if not files:
+        return ()
+    from cfepy.extra.dictionaries.file_sources import contents_of_files  # most missions need no reader
+
+    return contents_of_files(file for file, *_ in files)
 
 
 @lru_cache(8)
@@ -137,13 +113,6 @@ def _debug_data(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent
 
     found = read_debug_data(file for file, *_ in files)
     return (found,)
-
-
-def _is_cosmos(file: Path) -> bool:
-    try:
-        return is_cosmos(read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace"))
-    except OSError as error:
-        raise UsageError(f"cannot be read: {error.strerror}; correct the path", file=file) from None
 
 
 def _as_packet(packet: DeclaredPacket) -> Command | Telemetry:

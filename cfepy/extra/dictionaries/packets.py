@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from cfepy.extra.dictionaries.placed_types import Array, Struct
 from cfepy.msg import Layout
 from cfepy.status import UsageError
+
+if TYPE_CHECKING:
+    from cfepy.extra.dictionaries.placed_types import Struct
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,19 +111,3 @@ class SourceContent:
         problem = SourceProblem(Path(error.file or file), error.line or 0, text)
         if problem not in self.problems:
             self.problems.append(problem)
-
-
-def lines_of(struct: Struct, path: str = "") -> dict[str, int]:
-    """Return the lines of the fields of a struct, by path without indices."""
-    found: dict[str, int] = {}
-    for each in struct.fields:
-        if not each.name:
-            continue
-        inner = f"{path}.{each.name}" if path else each.name
-        found[inner] = each.line
-        kind = each.type
-        while isinstance(kind, Array):
-            kind = kind.item
-        if isinstance(kind, Struct):
-            found |= lines_of(kind, inner)
-    return found

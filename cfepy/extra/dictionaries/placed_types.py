@@ -197,3 +197,19 @@ def without_wrapper(struct: Struct) -> Struct:
     if len(struct.fields) == 1 and isinstance(struct.fields[0].type, Struct):
         return struct.fields[0].type
     return struct
+
+
+def lines_of(struct: Struct, path: str = "") -> dict[str, int]:
+    """Return the lines of the fields of a struct, by path without indices."""
+    found: dict[str, int] = {}
+    for each in struct.fields:
+        if not each.name:
+            continue
+        inner = f"{path}.{each.name}" if path else each.name
+        found[inner] = each.line
+        kind = each.type
+        while isinstance(kind, Array):
+            kind = kind.item
+        if isinstance(kind, Struct):
+            found |= lines_of(kind, inner)
+    return found
