@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
+    from cfepy.extra.dictionaries.c_header import header_difference
     from cfepy.extra.dictionaries.cosmos_reader import read_cosmos
     from cfepy.extra.dictionaries.cosmos_writer import cosmos_text
     from cfepy.extra.dictionaries.ctf_writer import ctf_files
@@ -37,6 +38,7 @@ __all__ = [
     "contents_of_files",
     "cosmos_text",
     "ctf_files",
+    "header_difference",
     "memory_layout",
     "python_text",
     "read_cosmos",
@@ -50,6 +52,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
+            ".c_header": ("header_difference",),
             ".cosmos_reader": ("read_cosmos",),
             ".cosmos_writer": ("cosmos_text",),
             ".ctf_writer": ("ctf_files",),
