@@ -18,14 +18,14 @@ BASE = (*STRICT_FLAGS, "-Wno-format", "-Wno-format-security", "-O1")
 @pytest.mark.parametrize("target", ["here", "arm"])
 def test_texts_are_those_of_printf(tmp_path: Path, target: str) -> None:
     there = target_named(target)
-    program = compile_program(tmp_path / "formats", [FOLDER / "formats.cpp", *FORMATS], base=BASE, target=there)
+    program = compile_program(tmp_path / "formats", [FOLDER / "printf_texts.cpp", *FORMATS], base=BASE, target=there)
     done = subprocess.run([*there.runner, str(program), "5000"], capture_output=True, text=True, check=False)
     assert done.stdout == "60003 texts, 0 different\n"
 
 
 @pytest.mark.parametrize("profile", ["POOL", "STRICT"])
 def test_log_stream_writes_the_characters_of_ostringstream(tmp_path: Path, profile: str) -> None:
-    sources = [FOLDER / "log_stream.cpp", FOLDER / "stubs.cpp", ROSCFE / "src/log_stream.cpp", *FORMATS]
+    sources = [FOLDER / "stream_lines.cpp", FOLDER / "stubs.cpp", ROSCFE / "src/log_stream.cpp", *FORMATS]
     program = compile_program(tmp_path / "lines", sources, f"-DROSCFE_PROFILE_{profile}", base=BASE)
     done = subprocess.run([str(program)], capture_output=True, text=True, check=False)
     assert done.stdout == "40016 lines, 0 different\n"

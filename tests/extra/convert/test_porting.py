@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 import shlex
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
 
 from cfepy.cli.main import main
+from cfepy.extra.c import headers_folder
 from tests.test_docs import FENCE
 
 ROOT = Path(__file__).parents[3]
@@ -32,6 +34,23 @@ SHOWN = {
     9: ("the same run as tank.cfepy",),
     10: ("drops /pump #3",),
 }
+
+
+EM_ARM = 40
+ARM = "arm-linux-gnueabihf-g++"
+STAND_IN_TREE = """cmake_minimum_required(VERSION 3.16)
+project(tree C)
+add_compile_options(-std=c99 -pedantic -Wstrict-prototypes)
+add_library(core_api INTERFACE)
+target_include_directories(core_api INTERFACE {headers})
+function(add_cfe_app NAME)
+    add_library(${{NAME}} MODULE ${{ARGN}})
+    set_target_properties(${{NAME}} PROPERTIES PREFIX "")
+endfunction()
+add_subdirectory(ros_nodes/gauge)
+add_subdirectory(ros_nodes/pump)
+"""
+"""What a mission tree of cFS does with applications, as far as roscfe.cmake uses it."""
 
 
 def commands() -> dict[int, list[str]]:
@@ -66,3 +85,28 @@ def test_command_of_a_step_prints_the_text_of_the_page(
         assert main(words[1:]) == 0
     shown = "".join(capfd.readouterr())
     assert [text for text in SHOWN[number] if text not in shown] == []
+
+
+@pytest.mark.slow
+def test_toolchain_file_of_the_page_builds_the_nodes_for_arm(tmp_path: Path) -> None:
+    missing = next((each for each in (ARM, "cmake", "make") if shutil.which(each) is None), None)
+    if missing is not None:
+        pytest.skip(f"{missing} is not installed")
+    toolchain = next(block for block in FENCE.findall(GUIDE) if block.startswith("```cmake\n"))
+    file = tmp_path / "toolchain-arm-linux.cmake"
+    file.write_text("\n".join(toolchain.splitlines()[1:-1]) + "\n", encoding="utf-8")
+    launch = str(ROOT / "examples/tank/launch/tank.launch")
+    assert main(["convert", launch, "-o", str(tmp_path / "ros_nodes"), "--no-check"]) == 0
+    text = STAND_IN_TREE.format(headers=headers_folder())
+    (tmp_path / "CMakeLists.txt").write_text(text, encoding="utf-8")
+    made = tmp_path / "build"
+    for command in (
+        ["cmake", "-S", str(tmp_path), "-B", str(made), f"-DCMAKE_TOOLCHAIN_FILE={file}"],
+        ["cmake", "--build", str(made)],
+    ):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+    for name in ("gauge", "pump"):
+        head = (made / f"ros_nodes/{name}/{name}.so").read_bytes()[:20]
+        assert head[:5] == b"\x7fELF\x01"
+        assert int.from_bytes(head[18:20], "little") == EM_ARM
