@@ -6,6 +6,7 @@ the C++ library that they need. On Linux libc is shared and not counted, and on 
 
 from __future__ import annotations
 
+import argparse
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -44,4 +45,5 @@ def table() -> Iterator[str]:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m dev.roscfe.images.sizes", description=__doc__).parse_args()
     print("\n".join(table()))

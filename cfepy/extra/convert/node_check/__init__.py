@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.extra.convert.node_check.arena import ArenaSize, arena_size
+    from cfepy.extra.convert.node_check.arena_size import ArenaSize, arena_size
     from cfepy.extra.convert.node_check.checking import check_program
     from cfepy.extra.convert.node_check.compiler import ABOUT_HEADERS, rule_of
     from cfepy.extra.convert.node_check.findings import (
@@ -53,7 +53,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".arena": ("ArenaSize", "arena_size"),
+            ".arena_size": ("ArenaSize", "arena_size"),
             ".checking": ("check_program",),
             ".findings": ("RuleFinding", "GraphName", "SubscriptionMemory", "SourcePlace", "CheckReport"),
             ".compiler": ("ABOUT_HEADERS", "rule_of"),

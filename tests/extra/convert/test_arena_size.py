@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cfepy.extra.convert.message_headers import Profile
 from cfepy.extra.convert.node_check import SourcePlace, SubscriptionMemory, arena_size
-from cfepy.extra.convert.node_check.arena import GRAIN, OF_LIBRARY, OF_NODE
+from cfepy.extra.convert.node_check.arena_size import GRAIN, OF_LIBRARY, OF_NODE
 
 PLACE = SourcePlace(Path("node.cpp"), 1)
 
