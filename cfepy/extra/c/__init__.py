@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from cfepy.extra.c.linking import wanted_names
     from cfepy.extra.c.loading import CompiledLoader
     from cfepy.extra.c.macros import Macros, macros_of
+    from cfepy.extra.c.refused import refusal_of
     from cfepy.extra.c.runtime import CRuntime
     from cfepy.extra.c.structs import CStruct, FieldType, StructField, StructPlace, Structs, structs_of
     from cfepy.extra.c.toolchain import (
@@ -79,6 +80,7 @@ __all__ = [
     "headers_folder",
     "macros_of",
     "read_shared_object",
+    "refusal_of",
     "split_list",
     "start_bounded",
     "structs_of",
@@ -101,6 +103,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".loading": ("CompiledLoader",),
             ".macros": ("Macros", "macros_of"),
             ".structs": ("CStruct", "FieldType", "StructField", "StructPlace", "Structs", "structs_of"),
+            ".refused": ("refusal_of",),
             ".runtime": ("CRuntime",),
             ".toolchain": (
                 "Built",

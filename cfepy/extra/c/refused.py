@@ -68,3 +68,8 @@ BY_REASON: dict[str, tuple[str, ...]] = {
 
 REASONS: dict[str, str] = {name: reason for reason, names in BY_REASON.items() for name in names}
 """By name."""
+
+
+def refusal_of(name: str) -> str | None:
+    """Return why compiled code must not call a function; None if it may."""
+    return REASONS.get(name)

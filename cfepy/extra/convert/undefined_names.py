@@ -1,4 +1,4 @@
-"""Names that a node uses and that nothing defines, as the linker reports them before the node is flown."""
+"""Names that a node uses and that nothing defines, or that end it, as its object files have them before the flight."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from cfepy.extra.c import function_names
+from cfepy.extra.c import function_names, refusal_of
 
 ASK = ("-Wl,-z,defs", "-Wl,--warn-unresolved-symbols")
 """Flags of the linker that make it report undefined names, and link nevertheless."""
 _SAID = re.compile(
     r"(?:\S+: )?(?P<file>[^:\n]+):(?:(?P<line>\d+)|\([^)\n]*\)): (?:warning: )?undefined reference to `(?P<name>.+)'"
 )
+_WANTED = re.compile(r"^ +U (\w+)(?:\t([^\t\n]*?):(\d+|\?))?$", re.MULTILINE)
 _PROVIDED = re.compile(
     r"(?:(?:vtable|typeinfo|typeinfo name|VTT|guard variable|non-virtual thunk) (?:for|to) )?"
     r"(?:ros|roscfe|tf|tf2|tf2_ros|actionlib|XmlRpc|message_filters|nodelet|pluginlib|class_loader|dynamic_reconfigure"
@@ -50,6 +51,21 @@ def undefined_names(said: str, with_library: bool) -> list[UndefinedName]:
         if not known:
             found.setdefault(each.name, each)
     return list(found.values())
+
+
+def ending_calls(said: str, replaced: Iterable[str]) -> list[tuple[UndefinedName, str]]:
+    """Return calls of functions of the host that end a node, each with the reason.
+
+    Args:
+        said: output of `nm -u -l` for its object files.
+        replaced: functions that the interface library has in place of the host's.
+    """
+    found = []
+    for name, file, line in _WANTED.findall(said):
+        reason = None if name in replaced else refusal_of(name)
+        if reason is not None:
+            found.append((UndefinedName(file, int(line) if line.isdigit() else 0, name), reason))
+    return found
 
 
 def _uses(lines: Iterable[str]) -> Iterator[UndefinedName]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.convert.message_headers import Profile
-from cfepy.extra.convert.node_check import CheckReport, check_program, programs_of
+from cfepy.extra.convert.node_check import CheckReport, Level, check_program, programs_of
 from cfepy.extra.convert.undefined_names import undefined_names
 from dev.roscfe.building import needs_cpp
 
@@ -72,6 +72,21 @@ int main(int argc, char **argv)
     return filtered(count);
 }
 """
+FILES = """
+#include <cstdio>
+#include <ros/ros.h>
+#include <unistd.h>
+int main(int argc, char **argv)
+{
+    ros::init(argc, argv, "files");
+    if (access("/tmp", 0) == 0)
+    {
+        std::fopen("/tmp/x", "w");
+    }
+    usleep(10);
+    return fopen("/tmp/y", "r") == nullptr;
+}
+"""
 
 
 def checked(tmp_path: Path, text: str) -> CheckReport:
@@ -101,6 +116,17 @@ def test_memory_is_known_of_callbacks_of_any_form(tmp_path: Path) -> None:
 def test_name_that_nothing_defines_is_an_error_before_flight(tmp_path: Path) -> None:
     errors = [each for each in checked(tmp_path, LOST).findings if each.rule == "undefined-name"]
     assert [(each.place.line, each.message) for each in errors] == [(10, "nothing defines count, filtered(double)")]
+
+
+@needs_cpp
+@pytest.mark.slow
+def test_function_of_the_host_that_ends_the_node_is_an_error(tmp_path: Path) -> None:
+    report = checked(tmp_path, FILES)
+    errors = [(each.rule, each.place.line, each.message.partition(":")[0]) for each in report.at(Level.ERROR)]
+    assert errors == [
+        ("host-function", line, call) for line, call in ((8, "access()"), (10, "fopen()"), (13, "fopen()"))
+    ]
+    assert {each.rule for each in report.at(Level.WARNING)} == {"sleep"}
 
 
 def test_undefined_names_are_read_from_the_linker() -> None:

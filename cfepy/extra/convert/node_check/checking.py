@@ -97,6 +97,7 @@ def _compile(
         report.names[:] = sources.with_types(report.names, calls)
         _measure(report, compiler, sources, scratch)
         _find_undefined(report, compiler, known, scratch)
+        _find_ending_calls(report, compiler, sources)
 
 
 def _calls_of_program(
@@ -121,6 +122,20 @@ def _find_undefined(report: CheckReport, compiler: Compiler, files: Sequence[Pat
         names.setdefault(SourcePlace(file, each.line), []).append(each.name)
     for place, missing in names.items():
         report.add("undefined-name", place, f"nothing defines {', '.join(missing)}")
+
+
+def _find_ending_calls(report: CheckReport, compiler: Compiler, sources: ProgramSources) -> None:
+    """Add the calls that end the node, in place of milder findings of the same line."""
+    unused = sources.unused()
+    for each, reason in compiler.ending_calls():
+        place = SourcePlace(Path(os.path.normpath(each.file)), each.line)
+        if place.file not in sources.files or place.file in unused:
+            continue
+        same = [found for found in report.findings if found.message.removeprefix("std::") == f"{each.name}()"]
+        if not any(map(report.is_error, same)):
+            report.findings = [found for found in report.findings if found not in same]
+            for found in [found.place for found in same] or [place]:
+                report.add("host-function", found, f"{each.name}(): {reason}")
 
 
 def _measure(report: CheckReport, compiler: Compiler, sources: ProgramSources, scratch: Path) -> None:

@@ -13,12 +13,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.extra.c import CompilerError, call_bounded, cpp_compiler
-from cfepy.extra.convert.build import profile_flags
+from cfepy.extra.convert.build import ALLOCATING, WRAPPED, profile_flags
 from cfepy.extra.convert.message_headers import Profile
 from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace
 from cfepy.extra.convert.node_check.headers import SYSTEM, is_of_ros
 from cfepy.extra.convert.node_check.rules import RULES
-from cfepy.extra.convert.undefined_names import ASK, UndefinedName, undefined_names
+from cfepy.extra.convert.undefined_names import ASK, UndefinedName, ending_calls, undefined_names
 
 _SAID = re.compile(r"^#error \"?(?:roscfe: )?(.*?) ?\[([a-z-]+)\]\"?$")
 _MOST = 50  # reported errors of a source; GCC's own -fmax-errors drops all of them with this format
@@ -120,6 +120,14 @@ class Compiler:
         """
         command = [*cpp_compiler(), "-shared", *ASK, "-o", str(scratch / "linked.so"), *map(str, self.objects)]
         return undefined_names(_call(command)[1], with_library=False)
+
+    def ending_calls(self) -> list[tuple[UndefinedName, str]]:
+        """Return the calls of functions that end the node, each with the reason.
+
+        Raises:
+            UsageError: binutils are not installed.
+        """
+        return ending_calls(_call(["nm", "-u", "-l", *map(str, self.objects)])[1], (*WRAPPED, *ALLOCATING))
 
     def sizes(self, types: Sequence[str], scratch: Path) -> dict[str, int]:
         """Return the bytes of messages, by type; empty if the compiler does not report them."""

@@ -125,6 +125,10 @@ class CheckReport:
         """Return the findings of a level, by place."""
         return sorted(each for each in self.findings if RULES[each.rule].level(self.profile) is level)
 
+    def is_error(self, finding: RuleFinding) -> bool:
+        """Return True if a finding refuses the node."""
+        return RULES[finding.rule].level(self.profile) is Level.ERROR
+
     @property
     def is_refused(self) -> bool:
         """Whether the node is not converted."""

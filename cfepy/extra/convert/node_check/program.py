@@ -79,7 +79,7 @@ class ProgramSources:
             self._look_at_include(report, include)
         self._look_at_mains(report)
         callbacks = {"lambda"}.union(*(each.callbacks for each in self.files.values()))
-        unused = self._unused()
+        unused = self.unused()
         for file in self.files.values():
             for met in file.met:
                 if met.rule in CARRIED_OUT and file.path in unused:
@@ -273,7 +273,7 @@ class ProgramSources:
             if main.takes not in ("nothing", "arguments"):
                 report.add("main-form", main.place, f"main takes ({main.takes})")
 
-    def _unused(self) -> set[Path]:
+    def unused(self) -> set[Path]:
         """Return sources without functions that another file can call, and headers that only they include.
 
         They define only methods of their own classes, and no object that is made when the program is loaded. Such

@@ -224,6 +224,12 @@ RULES: dict[str, CheckRule] = {
             "use OSAL's files, parameters or a table",
         ),
         CheckRule(
+            *("host-function", _E, _E, _E),
+            "a call of a function of C or POSIX that needs the operating system, such as fopen() or access()",
+            "cfepy ends the node at the call",
+            "use the function of OSAL or cFE that the message names, or a call of ROS",
+        ),
+        CheckRule(
             *("process", _E, _E, _E),
             "another process is started",
             "cFE runs all applications as tasks of one process",
