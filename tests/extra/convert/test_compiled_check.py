@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.convert.message_headers import Profile
-from cfepy.extra.convert.node_check import CheckReport, Level, check_program, programs_of
+from cfepy.extra.convert.node_check import CheckReport, Level, SourcePlace, check_program, programs_of, rule_of
+from cfepy.extra.convert.node_check.compiler import Diagnostic, causes
 from cfepy.extra.convert.undefined_names import undefined_names
 from dev.roscfe.building import needs_cpp
 
@@ -127,6 +128,31 @@ def test_function_of_the_host_that_ends_the_node_is_an_error(tmp_path: Path) -> 
         ("host-function", line, call) for line, call in ((8, "access()"), (10, "fopen()"), (13, "fopen()"))
     ]
     assert {each.rule for each in report.at(Level.WARNING)} == {"sleep"}
+
+
+def test_one_cause_has_one_message(tmp_path: Path) -> None:
+    source = tmp_path / "node.cpp"
+    source.write_text("int a;\nros::Gone gone(1);\ngone.call();\nother();\n", encoding="utf-8")
+
+    def error(line: int, message: str) -> Diagnostic:
+        return Diagnostic(message, SourcePlace(source, line, 1))
+
+    gone = error(2, "'Gone' is not a member of 'ros'")
+    other = error(4, "'other' was not declared in this scope")
+    follow = [error(2, "expected ';' before 'gone'"), error(3, "'gone' was not declared in this scope")]
+    assert causes([gone, *follow, other]) == [gone, other]
+
+
+@pytest.mark.parametrize(
+    ("message", "rule"),
+    [
+        ("'Gone' is not a member of 'ros'", "api-missing"),
+        ("'Tiem' is not a member of 'ros'; did you mean 'Time'?", "compile-error"),
+        ("'Own' is not a member of 'own'", "compile-error"),
+    ],
+)
+def test_api_is_missing_only_where_ros_has_it(message: str, rule: str) -> None:
+    assert rule_of(message, Profile.HOST)[0] == rule
 
 
 def test_undefined_names_are_read_from_the_linker() -> None:

@@ -7,6 +7,7 @@ never reported as clean, for any reason: an error of its own, its end, or too mu
 from __future__ import annotations
 
 import json
+import linecache
 import re
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -34,6 +35,8 @@ _MISSING = re.compile(
     r"|is not a namespace|could not convert"
     r"|no viable|cannot convert|incomplete type|no match for"
 )
+_UNDECLARED = re.compile(r"'(\w+)' was not declared in this scope|has no member named '(\w+)'")
+_DECLARED = re.compile(r"[\s*&>](\w+)\s*[;=({\[]")
 _EXCEPTIONS = re.compile(r"exception handling disabled")
 _TYPES = re.compile(r"'(?:dynamic_cast|typeid)'|-fno-rtti")
 _MARK = "is deprecated: roscfe: it subscribes"
@@ -151,11 +154,15 @@ def tell(report: CheckReport, source: Path, compiled: Compiled, shown: Callable[
         compiled: the compiler's result.
         shown: returns the place to show for a file that the user does not know; None for the file itself.
     """
-    told = [(*rule_of(each.message, report.profile), each.place) for each in compiled.errors]
+    told = [(*rule_of(each.message, report.profile), each.place) for each in causes(compiled.errors)]
     without_header = [each for each in told if each[0] in ABOUT_HEADERS]
     for rule, message, place in (without_header or told)[:_MOST]:  # a missing header causes more errors
         at = shown(place.file) or place
-        seen = any(each.rule == rule and each.place[:2] == at[:2] for each in report.findings if rule in _SEEN_BEFORE)
+        same = (each for each in report.findings if each.rule == rule)
+        if rule in _SEEN_BEFORE:
+            seen = any(each.place[:2] == at[:2] for each in same)
+        else:
+            seen = rule in _BY_TEXT and any(each.message == message for each in same)
         if not seen:
             report.add(rule, at, message)
     if not compiled.ok and (compiled.problem or not compiled.errors):
@@ -165,6 +172,24 @@ def tell(report: CheckReport, source: Path, compiled: Compiled, shown: Callable[
         installed = used.startswith(f"{SYSTEM}/") and is_of_ros(package)
         if installed or used.startswith("/opt/ros/"):
             report.add("system-ros", SourcePlace(source), f"{used} was taken")
+
+
+def causes(errors: Sequence[Diagnostic]) -> list[Diagnostic]:
+    """Return errors without those that follow from an earlier one.
+
+    These are further errors of a line, and uses of a name whose declaration was not understood.
+    """
+    kept: list[Diagnostic] = []
+    lines: set[tuple[Path, int]] = set()
+    lost: set[str] = set()
+    for each in errors:
+        missing = _UNDECLARED.search(each.message)
+        follows = each.place[:2] in lines or (missing is not None and (missing[1] or missing[2]) in lost)
+        if not follows or not each.place.line or any(mark.search(each.message) for mark in (_EXCEPTIONS, _TYPES)):
+            kept.append(each)
+            lines.add(each.place[:2])
+            lost.update(_DECLARED.findall(linecache.getline(str(each.place.file), each.place.line)))
+    return kept
 
 
 def rule_of(message: str, profile: Profile) -> tuple[str, str]:
@@ -179,7 +204,7 @@ def rule_of(message: str, profile: Profile) -> tuple[str, str]:
         return "throw", message
     if profile is not Profile.HOST and _TYPES.search(message):
         return "rtti", message
-    if _MISSING.search(message) and _OF_ROS.search(message):
+    if _MISSING.search(message) and _OF_ROS.search(message) and "; did you mean" not in message:
         return "api-missing", message
     return "compile-error", message
 
@@ -227,6 +252,8 @@ ABOUT_HEADERS = (
     *("message-definition", "capacity-missing", "configuration"),
 )
 """Rules about missing headers."""
+_BY_TEXT = ("compile-error", "api-missing")
+"""Rules whose message names the cause, so that a program has it once."""
 _SEEN_BEFORE = ("throw", "catch", "rtti")
 """Rules that are also checked without the compiler, with other columns."""
 _BAD = ("error", "fatal error", "internal compiler error", "sorry, unimplemented")
