@@ -54,3 +54,13 @@ def test_results_equal_a_real_ros(tmp_path: Path) -> None:
     assert done.returncode == 0, done.stderr
     cases = inputs(CASES)
     assert answers(ours(tmp_path, *STRICT), cases) == answers(real, cases)
+
+
+@pytest.mark.slow
+def test_cloud_of_points_is_transformed(tmp_path: Path) -> None:
+    messages = tmp_path / "messages"
+    write_headers(["sensor_msgs/PointCloud2", "geometry_msgs/TransformStamped"], messages, Profile.HOST, shipped())
+    sources = [HERE / "clouds.cpp", HERE / "stubs.cpp"]
+    made = compiled(tmp_path, sources, *STRICT, name="clouds", headers=(messages, HEADERS, BOOST))
+    said = subprocess.run([str(made)], capture_output=True, text=True, check=True).stdout
+    assert said == "to 9.5000 1.0000 -2.0000 7.0 9.5000 2.0000 -2.0000 7.0\n"
