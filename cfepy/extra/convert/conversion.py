@@ -10,7 +10,7 @@ from typing import Any
 
 from cfepy.extra.convert.build import library_includes, provided_packages
 from cfepy.extra.convert.configurations import CONFIGURATION_TYPES, configuration_headers
-from cfepy.extra.convert.cpp_package import Program
+from cfepy.extra.convert.cpp_package import CppPackage, Program
 from cfepy.extra.convert.cpp_sources import SourceSet, collect, main_form, message_types
 from cfepy.extra.convert.entry import NodeEntry, parameter_rows
 from cfepy.extra.convert.packages import MANIFEST, program_of, read_package
@@ -154,6 +154,7 @@ def converted(
     config: RosConfig,
     judge: Callable[[Program], str] = lambda program: "",
     ground: Mapping[str, NodeGround] | None = None,
+    adjust: Callable[[CppPackage], None] = lambda package: None,
 ) -> Conversion:
     """Convert the nodes of a task.
 
@@ -162,6 +163,7 @@ def converted(
         config: MsgIds of a mission and its lock file.
         judge: returns why a program is not converted; an empty text if it is.
         ground: what the ground has of nodes, by full name. Others get a free MsgId for their housekeeping.
+        adjust: called with each package that was read, whose targets it may change.
 
     Raises:
         UsageError: two names have one MsgId, or there are no more.
@@ -173,7 +175,8 @@ def converted(
     everyone = [*task.scripts, *(each.full_name for each in task.nodes)]
     for node in task.nodes:
         try:
-            made = _node(node, task, packages, library, [each for each in everyone if each != node.full_name])
+            others = [each for each in everyone if each != node.full_name]
+            made = _node(node, task, packages, library, others, adjust)
         except UsageError as error:
             refused[node.full_name] = str(error)
             continue
@@ -195,9 +198,15 @@ def converted(
 
 
 def _node(
-    node: CppNode, task: ConversionTask, packages: Packages, library: Library, others: Sequence[str]
+    node: CppNode,
+    task: ConversionTask,
+    packages: Packages,
+    library: Library,
+    others: Sequence[str],
+    adjust: Callable[[CppPackage], None],
 ) -> ConvertedNode:
     package = read_package(node.folders[0], node.package)
+    adjust(package)
     program = program_of(package, node.type, packages, provided_packages())
     sources = collect(program.sources, program.includes)
     own = SourceNames(list(sources.texts.values()), texts_below(task.params, node.full_name))

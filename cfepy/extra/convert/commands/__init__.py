@@ -69,6 +69,11 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     convert.add_argument(
         "--ids", metavar="MISSION", help="take the MsgIds of this mission and its topics.lock, and its cpp_nodes"
     )
+    convert.add_argument(
+        "--cmake",
+        action="store_true",
+        help="ask CMake for the sources of nodes, which executes the commands of their CMakeLists.txt",
+    )
     convert.add_argument("--force", action="store_true", help="write over files that were changed by hand, too")
     convert.add_argument(
         "--sarif",

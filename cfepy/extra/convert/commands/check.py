@@ -21,7 +21,7 @@ from cfepy.extra.convert.commands import cpp_nodes_config
 from cfepy.extra.convert.node_check import arena_size
 from cfepy.status import UsageError
 
-_ONLY_TO_CONVERT = {"output": "-o", "ids": "--ids", "force": "--force", "no_check": "--no-check"}
+_ONLY_TO_CONVERT = {"output": "-o", "ids": "--ids", "force": "--force", "no_check": "--no-check", "cmake": "--cmake"}
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -22,6 +22,7 @@ from cfepy.extra.convert import (
     task_of,
     write_files,
 )
+from cfepy.extra.convert.cmake_answers import CMakeAnswers
 from cfepy.extra.convert.commands import check, cpp_nodes_config
 from cfepy.extra.convert.node_check import ArenaSize, arena_size
 from cfepy.mission import LOCK_FILE, CppNodesConfig, read_lock, read_mission
@@ -48,7 +49,13 @@ def run(arguments: argparse.Namespace) -> int:
     folder = Path(arguments.output or task.made_from.stem).resolve()
     judge = _Judge(config)
     checked = (lambda program: "") if arguments.no_check else judge
-    made = converted(task, _ids(arguments, folder), checked, config.ground)
+    ids = _ids(arguments, folder)
+    if arguments.cmake:
+        answers = CMakeAnswers()
+        tell([f"the sources of nodes are those that CMake {answers.version} lists"])
+        made = converted(task, ids, checked, config.ground, answers.adjust)
+    else:
+        made = converted(task, ids, checked, config.ground)
     if not made.nodes:
         raise UsageError(f"has no node that can be converted: {'; '.join(made.refused.values())}", file=task.made_from)
     files = project_files(made, judge.sized(), folder)
