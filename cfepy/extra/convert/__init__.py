@@ -15,6 +15,7 @@ from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
     from cfepy.extra.convert.capacities import wrong_capacities
+    from cfepy.extra.convert.cmake_answers import CMakeAnswers
     from cfepy.extra.convert.conversion import converted, task_of
     from cfepy.extra.convert.cpp_package import Program
     from cfepy.extra.convert.flight_build import build_for_flight
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "RULES",
+    "CMakeAnswers",
     "CheckReport",
     "Level",
     "Profile",
@@ -47,6 +49,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".capacities": ("wrong_capacities",),
             ".node_check": ("RULES", "CheckReport", "Level", "check_program", "programs_of", "sarif_of"),
+            ".cmake_answers": ("CMakeAnswers",),
             ".conversion": ("converted", "task_of"),
             ".flight_build": ("build_for_flight",),
             ".message_headers": ("Profile",),

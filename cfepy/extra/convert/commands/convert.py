@@ -12,6 +12,7 @@ from cfepy.cli.json_output import check_json, write_json
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.user_notes import tell, writing
 from cfepy.extra.convert import (
+    CMakeAnswers,
     Level,
     Profile,
     Program,
@@ -22,7 +23,6 @@ from cfepy.extra.convert import (
     task_of,
     write_files,
 )
-from cfepy.extra.convert.cmake_answers import CMakeAnswers
 from cfepy.extra.convert.commands import check, cpp_nodes_config
 from cfepy.extra.convert.node_check import ArenaSize, arena_size
 from cfepy.mission import LOCK_FILE, CppNodesConfig, read_lock, read_mission
