@@ -84,6 +84,7 @@ def _add_tree(options: argparse._ArgumentGroup) -> None:
     options.add_argument(
         "--cmake",
         action="store_true",
-        help="let CMake read the tree, which executes what its files contain; cfepy's own reader executes nothing",
+        help="ask CMake for the sources of the tree, which executes what its files contain; cfepy's own reader "
+        "executes nothing",
     )
     options.add_argument("--json", metavar="FILE|-", help="write the report as JSON; - writes to standard output")
