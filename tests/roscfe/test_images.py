@@ -78,5 +78,8 @@ def test_two_nodes_fly_in_one_image_on_a_bare_computer(tmp_path: Path) -> None:
     lines = flown(image)
     heard = [line.partition("]: ")[2] for line in lines if "heard" in line]
     assert heard == [f"heard {number}" for number in range(1, 1001)]
-    assert lines[:2] == ["LISTENER 2: /listener started", "TALKER 2: /talker started"]
+    arenas = [line.partition(": ")[2] for line in lines if "of the arena are used" in line]
+    assert sorted(re.sub(r"\d+ of", "N of", line) for line in arenas) == [
+        f"/{name}: N of 4096 bytes of the arena are used" for name in ("listener", "talker")
+    ]
     assert "1001 packets sent, 1008 received, 0 lost" in lines

@@ -44,7 +44,10 @@ def test_a_node_that_converts(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     assert checked(tmp_path, NODE, "--node-profile", profile) == 0
-    found, memory, count = capsys.readouterr().out.splitlines()
+    found, memory, *arena, count = capsys.readouterr().out.splitlines()
+    assert [line.partition(": ")[2].partition(" bytes: ")[2].split(",")[:2] for line in arena] == (
+        [] if profile == "host" else [["29", "696 for subscriptions"]]
+    )
     assert found.startswith("ear.cpp:8:25: warning: a queue of 1,000: 64 messages are kept: ")
     assert found.endswith(" [queue-large]")
     size = {"host": 32, "pool": 32, "strict": 72}[profile]
