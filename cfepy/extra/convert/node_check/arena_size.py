@@ -1,4 +1,4 @@
-"""The size of a node's arena in the profiles pool and strict: what its subscriptions take, and what the rest does.
+"""The size of a node's arena in the profiles pool and strict, with its reasons: subscriptions, the library, own code.
 
 Blocks of the arena are powers of two, with a few bytes in front of each (roscfe/src/heap.cpp). A subscription has one
 block for all its messages, each with room for the shared pointers to it, and one for the events that wait.
