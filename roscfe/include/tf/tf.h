@@ -2,6 +2,10 @@
 #ifndef TF_TF_H
 #define TF_TF_H
 
+#include <bitset> // these three come with ROS's header, and nodes rely on it
+#include <deque>
+#include <optional>
+
 #include <geometry_msgs/TwistStamped.h>
 
 #include <algorithm>

@@ -2,6 +2,8 @@
 #ifndef TF_TRANSFORMLISTENER_H
 #define TF_TRANSFORMLISTENER_H
 
+#include <sensor_msgs/PointCloud.h>
+
 #include <std_msgs/Empty.h>
 
 #include <string>

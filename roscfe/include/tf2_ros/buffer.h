@@ -2,6 +2,10 @@
 #ifndef TF2_ROS_BUFFER_H
 #define TF2_ROS_BUFFER_H
 
+#include <bitset> // these three come with ROS's header, and nodes rely on it
+#include <deque>
+#include <optional>
+
 #include <tf2_msgs/FrameGraph.h>
 
 #include <cstdio>

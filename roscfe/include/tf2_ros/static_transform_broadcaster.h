@@ -2,6 +2,8 @@
 #ifndef TF2_ROS_STATICTRANSFORMBROADCASTER_H
 #define TF2_ROS_STATICTRANSFORMBROADCASTER_H
 
+#include <tf2_msgs/TFMessage.h>
+
 #include <geometry_msgs/TransformStamped.h>
 
 #include <vector>

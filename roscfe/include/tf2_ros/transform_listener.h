@@ -2,6 +2,10 @@
 #ifndef TF2_ROS_TRANSFORMLISTENER_H
 #define TF2_ROS_TRANSFORMLISTENER_H
 
+#include <tf2_msgs/TFMessage.h>
+
+#include <boost/thread/recursive_mutex.hpp>
+
 #include <std_msgs/Empty.h>
 
 #include "ros/callback_queue.h"

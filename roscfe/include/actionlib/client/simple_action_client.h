@@ -2,6 +2,12 @@
 #ifndef ROSCFE_ACTIONLIB_CLIENT_SIMPLE_ACTION_CLIENT_H
 #define ROSCFE_ACTIONLIB_CLIENT_SIMPLE_ACTION_CLIENT_H
 
+#include <boost/thread/recursive_mutex.hpp>
+
+#include <bitset> // these three come with ROS's header, and nodes rely on it
+#include <deque>
+#include <optional>
+
 #include <string>
 
 #include <boost/function.hpp>

@@ -2,6 +2,12 @@
 #ifndef ROSCFE_ACTIONLIB_SERVER_SIMPLE_ACTION_SERVER_H
 #define ROSCFE_ACTIONLIB_SERVER_SIMPLE_ACTION_SERVER_H
 
+#include <boost/thread/recursive_mutex.hpp>
+
+#include <bitset> // these three come with ROS's header, and nodes rely on it
+#include <deque>
+#include <optional>
+
 #include <string>
 
 #include "actionlib/server/action_server.h"
