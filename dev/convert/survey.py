@@ -28,6 +28,8 @@ from cfepy.extra.convert.node_check import ABOUT_HEADERS, Level, RuleFinding, ch
 from cfepy.status import UsageError
 
 LIST = Path(__file__).parent / "survey.tsv"
+FRESH = LIST.with_name("fresh.tsv")
+"""Nodes that were drawn at random from repositories of no other list."""
 DOCUMENT = Path(__file__).parents[2] / "docs" / "how_to" / "convertor.md"
 BEGIN, END = "<!-- survey: made by python -m dev.convert.survey --report -->", "<!-- end of survey -->"
 CODE = ("cfepy/extra/convert", "roscfe", "rospy_shim/types/msgs")
@@ -80,10 +82,10 @@ def code_digest() -> str:
     return digest.hexdigest()
 
 
-def listed() -> list[Node]:
-    """Return all nodes of the list."""
-    with LIST.open(encoding="utf-8") as stream:
-        return [Node(**row) for row in csv.DictReader(stream, delimiter="\t")]
+def listed(file: Path = LIST) -> list[Node]:
+    """Return all nodes of a list. It may have more columns than a node."""
+    with file.open(encoding="utf-8") as stream:
+        return [Node(*(row[name] for name in Node._fields)) for row in csv.DictReader(stream, delimiter="\t")]
 
 
 def verdict_of(node: Node, sources: Path) -> Verdict:
@@ -182,6 +184,7 @@ def main() -> None:
     """Check all nodes, or the nodes of some repositories."""
     parser = argparse.ArgumentParser(prog="python -m dev.convert.survey", description=__doc__)
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
+    parser.add_argument("--list", type=Path, default=LIST, help=f"another list, such as {FRESH.name}")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
     parser.add_argument("--json", type=Path, help="verdicts, read by --report")
     parser.add_argument("--missing", type=Path, help="write the missing features, most frequent first")
@@ -193,7 +196,7 @@ def main() -> None:
     code = code_digest()
     known = {(each.repository, each.file): each for each in read_verdicts(arguments.json) if each.code == code}
     verdicts: list[Verdict] = []
-    for node in listed():
+    for node in listed(arguments.list):
         if node.kind != "messages" and arguments.only in f"{node.repository}/{node.file}":
             verdict = known.get((node.repository, node.file))
             if verdict is None:

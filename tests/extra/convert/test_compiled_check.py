@@ -155,6 +155,14 @@ def test_api_is_missing_only_where_ros_has_it(message: str, rule: str) -> None:
     assert rule_of(message, Profile.HOST)[0] == rule
 
 
+@needs_cpp
+@pytest.mark.slow
+def test_missing_header_of_a_header_is_reported_once(tmp_path: Path) -> None:
+    (tmp_path / "own.h").write_text("#include <gone/gone.h>\n", encoding="utf-8")
+    report = checked(tmp_path, '#include "own.h"\nint main() {}\n')
+    assert [(each.rule, each.place.line) for each in report.findings] == [("include-unknown", 1)]
+
+
 def test_undefined_names_are_read_from_the_linker() -> None:
     said = """/usr/bin/ld: node.o: in function `main':
 /home/a/node.cpp:7: warning: undefined reference to `help(int)'

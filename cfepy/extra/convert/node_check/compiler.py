@@ -254,7 +254,7 @@ ABOUT_HEADERS = (
 """Rules about missing headers."""
 _BY_TEXT = ("compile-error", "api-missing")
 """Rules whose message names the cause, so that a program has it once."""
-_SEEN_BEFORE = ("throw", "catch", "rtti")
+_SEEN_BEFORE = (*ABOUT_HEADERS, "throw", "catch", "rtti")
 """Rules that are also checked without the compiler, with other columns."""
 _BAD = ("error", "fatal error", "internal compiler error", "sorry, unimplemented")
 
