@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.extra.dictionaries.nasa_names import snake
-from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
-from cfepy.extra.dictionaries.placed_items import header_value, payload_of
+from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
+from cfepy.extra.dictionaries.placed_items import header_value, payload_of, plain_or_bits
 from cfepy.extra.dictionaries.placed_types import MOST_BITS, MOST_CELLS
 from cfepy.msg import FieldPlace, Measurement, ValueNames
 from cfepy.reading.input_files import read_limited
@@ -95,7 +95,7 @@ class _Item:
 
 @dataclass(slots=True)
 class _Packet:
-    """A packet under construction: `end` is the bit after its last item."""
+    """A packet or a table under construction: `end` is the bit after its last item, `rows` those of a table."""
 
     target: str
     name: str
@@ -105,6 +105,7 @@ class _Packet:
     line: int
     items: list[_Item] = field(default_factory=list)
     end: int = 0
+    rows: int = 0
 
 
 def read_cosmos(files: Iterable[Path]) -> SourceContent:
@@ -123,7 +124,7 @@ def read_cosmos(files: Iterable[Path]) -> SourceContent:
 
 def is_cosmos(text: str) -> bool:
     """Return whether a text has commands or telemetry of COSMOS."""
-    return re.search(r"^\s*(COMMAND|TELEMETRY)\s+\S+\s+\S+", text, re.MULTILINE) is not None
+    return re.search(r"^\s*(COMMAND|TELEMETRY|TABLE)\s+\S+\s+\S+", text, re.MULTILINE) is not None
 
 
 class _Reader:
@@ -158,9 +159,9 @@ class _Reader:
             return
         elif keyword in ("GENERIC_READ_CONVERSION_START", "GENERIC_WRITE_CONVERSION_START"):
             self._generic = True
-        elif keyword in ("COMMAND", "TELEMETRY"):
+        elif keyword in ("COMMAND", "TELEMETRY", "TABLE"):
             self._finish()
-            self._packet = _begun(keyword, words, line)
+            self._packet = _begun_table(words, line) if keyword == "TABLE" else _begun(keyword, words, line)
             self._skips = False
         elif keyword in ("SELECT_COMMAND", "SELECT_TELEMETRY"):
             self._finish()
@@ -188,7 +189,10 @@ class _Reader:
         if packet is None or self._skips:
             return
         try:
-            self._content.packets.append(_declared(packet, self._file))
+            if packet.rows:
+                self._content.tables.append(_declared_table(packet, self._file))
+            else:
+                self._content.packets.append(_declared(packet, self._file))
         except UsageError as error:
             self._content.add_problem(UsageError(error.text, file=self._file, line=packet.line), self._file)
 
@@ -208,6 +212,19 @@ def _begun(keyword: str, words: list[str], line: int) -> _Packet:
         raise UsageError(f"{keyword} requires a target, a name, and BIG_ENDIAN or LITTLE_ENDIAN")
     text = words[4] if len(words) > 4 else ""
     return _Packet(words[1], words[2], keyword == "COMMAND", _ORDERS[words[3].upper()], text, line)
+
+
+def _begun_table(words: list[str], line: int) -> _Packet:
+    """Return a table from its line: `TABLE APP.Name LITTLE_ENDIAN ROW_COLUMN 4 "Text"`, or KEY_VALUE without rows."""
+    kind = words[3].upper() if len(words) > 3 else ""
+    if kind not in ("KEY_VALUE", "ROW_COLUMN") or words[2].upper() not in _ORDERS:
+        raise UsageError("TABLE requires a name, BIG_ENDIAN or LITTLE_ENDIAN, and KEY_VALUE or ROW_COLUMN with rows")
+    rest = words[4:]
+    rows = _integer(_next(rest, "the number of rows")) if kind == "ROW_COLUMN" else 1
+    if not 1 <= rows <= MOST_CELLS:
+        raise UsageError(f"a table has 1 to {MOST_CELLS:,} rows, not {rows}")
+    text = rest[0] if rest else ""
+    return _Packet("", words[1], True, _ORDERS[words[2].upper()], text, line, rows=rows)
 
 
 def _item(packet: _Packet, kinds: set[str], words: list[str], line: int) -> _Item:
@@ -332,13 +349,31 @@ _DETAILS = {
 }
 
 
-def _declared(packet: _Packet, file: Path) -> DeclaredPacket:
+def _items_of(packet: _Packet) -> list[_Item]:
+    """Return the items of a packet.
+
+    Raises:
+        UsageError: if two have the same name.
+    """
     items = [each for each in packet.items if each.kind != "derived"]
     names: set[str] = set()
     for each in items:
         if each.name in names:
             raise UsageError(f"{packet.name}: the item {each.name} is declared twice; rename one of them")
         names.add(each.name)
+    return items
+
+
+def _declared_table(table: _Packet, file: Path) -> DeclaredTable:
+    items = _items_of(table)
+    places = [place for each in items for place in each.places()]
+    row = plain_or_bits(table.name, places, -(-table.end // 8))
+    lines = {each.name: each.line for each in items}
+    return DeclaredTable(table.name, row, table.rows, file, table.line, table.text, lines)
+
+
+def _declared(packet: _Packet, file: Path) -> DeclaredPacket:
+    items = _items_of(packet)
     ids = [(next(each.places()), each.value) for each in items if each.value is not None and each.kind in "ui"]
     known = [(place, value) for place, value in ids if value is not None]
     msg_id = header_value(known, 0, _MID_BITS)

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 
 from cfepy.extra.dictionaries.nasa_names import snake
 from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
-from cfepy.extra.dictionaries.placed_items import header_value, payload_of
+from cfepy.extra.dictionaries.placed_items import header_value, payload_of, plain_or_bits
 from cfepy.extra.dictionaries.placed_types import MOST_BITS, MOST_CELLS
 from cfepy.extra.dictionaries.xml_tags import XmlTag
-from cfepy.msg import FieldPlace, Measurement, ValueNames
+from cfepy.msg import FieldPlace, Layout, Measurement, ValueNames
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
@@ -78,23 +78,25 @@ class _Entries:
 def read_xtce(roots: Iterable[XmlTag]) -> SourceContent:
     """Return the packets of documents."""
     content = SourceContent("XTCE")
+    structs: dict[str, Layout] = {}
     for root in roots:
-        _read_system(root, content)
+        _read_system(root, content, structs)
+    content.layout = structs.get
     return content
 
 
-def _read_system(system: XmlTag, content: SourceContent) -> None:
-    _System(system, content).read()
+def _read_system(system: XmlTag, content: SourceContent, structs: dict[str, Layout]) -> None:
+    _System(system, content, structs).read()
     for inner in system.all(ROOT):
-        _read_system(inner, content)
+        _read_system(inner, content, structs)
 
 
 class _System:
     """A space system: its types, parameters and containers by name."""
 
-    def __init__(self, tag: XmlTag, content: SourceContent) -> None:
-        self._tag = tag
+    def __init__(self, tag: XmlTag, content: SourceContent, structs: dict[str, Layout]) -> None:
         self._content = content
+        self._structs = structs
         telemetry, commands = tag.first("TelemetryMetaData"), tag.first("CommandMetaData")
         self._parts = [part for part in (telemetry, commands) if part is not None]
         self._types = {
@@ -129,6 +131,10 @@ class _System:
     def _add_telemetry(self, container: XmlTag) -> None:
         entries = _Entries()
         self._walk(container, entries, {}, 0)
+        if container.first("BaseContainer") is None:  # no packet, but perhaps the row of a table
+            name = container.need("name")
+            self._structs.setdefault(name, plain_or_bits(name, entries.places, -(-entries.end // 8)))
+            return
         msg_id = self._msg_id(container, entries)
         if msg_id & 0x1000:
             return  # the container of a command
@@ -217,6 +223,8 @@ class _System:
             self._walk(inner, entries, arguments, depth + 1)
         elif tag.name == "FixedValueEntry":
             bits = _number(tag, tag.need("sizeInBits"))
+            if not 1 <= bits <= MOST_BITS:
+                raise tag.fail(f"sizeInBits must be from 1 to {MOST_BITS:,}, not {bits}")
             value = _hex(tag)
             entries.fixed.append((FieldPlace((tag.attributes.get("name", ""),), "u", start, bits), value))
             entries.end = max(entries.end, start + bits)
@@ -347,9 +355,10 @@ def _measurement(tag: XmlTag, encoding: XmlTag, word: str) -> Measurement | None
     """Return unit, calibration and limits of a type, or None if it has none."""
     unit = next((each.text.strip() for each in tag.inside("UnitSet", "Unit")), "")
     terms = list(encoding.inside("DefaultCalibrator", "PolynomialCalibrator", "Term"))
-    degree = max((_number(each, each.need("exponent")) for each in terms), default=-1)
-    if degree > 20:
-        raise encoding.fail("a polynomial has at most 20 as exponent")
+    exponents = [_number(each, each.need("exponent")) for each in terms]
+    degree = max(exponents, default=-1)
+    if degree > 20 or min(exponents, default=0) < 0:
+        raise encoding.fail("the exponents of a polynomial must be from 0 to 20")
     polynomial = [0.0] * (degree + 1)
     for each in terms:
         polynomial[_number(each, each.need("exponent"))] = _float(each, "coefficient")
@@ -371,10 +380,11 @@ def _limit(tag: XmlTag, name: str) -> float | None:
 
 
 def _float(tag: XmlTag, name: str) -> float:
+    text = tag.need(name)
     try:
-        return float(tag.need(name))
+        return float(text)
     except ValueError:
-        raise tag.fail(f"{name} must be a number, not {tag.attributes[name]!r}") from None
+        raise tag.fail(f"{name} must be a number, not {text!r}") from None
 
 
 def _comparisons(base: XmlTag) -> Iterator[XmlTag]:
@@ -390,10 +400,11 @@ def _number(tag: XmlTag, text: str) -> int:
 
 
 def _hex(tag: XmlTag) -> int:
+    text = tag.need("binaryValue")
     try:
-        return int(tag.need("binaryValue"), 16)
+        return int(text, 16)
     except ValueError:
-        raise tag.fail(f"binaryValue must be hexadecimal digits, not {tag.attributes['binaryValue']!r}") from None
+        raise tag.fail(f"binaryValue must be hexadecimal digits, not {text!r}") from None
 
 
 def _last(reference: str) -> str:

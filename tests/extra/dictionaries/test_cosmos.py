@@ -134,6 +134,25 @@ def test_bad_line_is_named_and_other_packets_stay(tmp_path: Path, text: str) -> 
     assert {"TO_LAB_OUTPUT_ENABLE", "CFE_EVS_LONG_EVENT_MSG"} <= {each.name for each in content.packets}
 
 
+def test_table_has_rows_and_columns(tmp_path: Path) -> None:
+    text = """
+    TABLE TANK.Limits LITTLE_ENDIAN ROW_COLUMN 4 "Limits of levels"
+      APPEND_PARAMETER LOW 16 UINT 0 100 1 "Low"
+      APPEND_PARAMETER HIGH 16 UINT 0 100 99 "High"
+    TABLE TANK.Name BIG_ENDIAN KEY_VALUE
+      APPEND_PARAMETER NAME 64 STRING "TANK"
+    """
+    content = read(tmp_path, text)
+    assert not content.problems
+    first, second = content.tables
+    assert (first.name, first.rows, first.text) == ("TANK.Limits", 4, "Limits of levels")
+    assert type(first.row) is Layout
+    assert first.row.pack(LOW=1, HIGH=2) == bytes([1, 0, 2, 0])
+    assert (second.name, second.rows, second.row.size) == ("TANK.Name", 1, 8)
+    bad = read(tmp_path, "TABLE TANK.Limits LITTLE_ENDIAN ROW_COLUMN 0")
+    assert "a table has 1 to 100,000 rows, not 0" in str(bad.problems[0])
+
+
 def test_plain_struct_becomes_a_plain_layout(tmp_path: Path) -> None:
     (packet,) = read(tmp_path, EVENT).packets
     assert type(packet.payload) is Layout

@@ -79,6 +79,7 @@ BAD = {
         "<DynamicValue/></Loc",
     ): "a place that depends on other values is not supported",
     ('<Comparison parameterRef="A" value="32"/>', ""): "",
+    ('<Comparison parameterRef="T" value="0"/>', '<Comparison parameterRef="T"/>'): "missing attribute value",
     ('value="1" label="On"', 'label="On"'): "missing attribute value",
 }
 
@@ -97,6 +98,16 @@ def test_document_with_aggregates_and_places_is_read(tmp_path: Path) -> None:
     values = Telemetry(packet.name, packet.msg_id, packet.payload).read(bytes(16) + bytes.fromhex("0100 01feff 000200"))
     assert values == {"Mode": 1, "Rows": [{"a": 1, "b": -2}, {"a": 0, "b": 2}]}
     assert next(packet.payload.cells()).names is not None
+
+
+def test_container_without_base_is_the_row_of_a_table(tmp_path: Path) -> None:
+    row = '<SequenceContainer name="Row"><EntryList><ParameterRefEntry parameterRef="Rows"/></EntryList>'
+    content = read(tmp_path, DOCUMENT.replace("</ContainerSet>", f"{row}</SequenceContainer></ContainerSet>"))
+    assert not content.problems
+    layout = content.layout("Row")
+    assert layout is not None
+    assert layout.pack(Rows=[{"a": 1, "b": 2}]).hex() == "010200000000"
+    assert content.layout("Nothing") is None
 
 
 @pytest.mark.parametrize("change", BAD)
