@@ -61,17 +61,33 @@ def check_dictionary(script: Path, entries: list[StartupEntry], said: MissionSec
 
 def _differences(contents: Sequence[SourceContent]) -> Iterator[MissionProblem]:
     first: dict[tuple[int, int], tuple[SourceContent, DeclaredPacket]] = {}
+    named: dict[str, tuple[SourceContent, DeclaredPacket]] = {}
     for content in contents:
         new: dict[tuple[int, int], tuple[SourceContent, DeclaredPacket]] = {}
         for packet in content.packets:
             key = packet.msg_id, packet.code or 0
             known = first.get(key)
-            if known is None:
+            same = named.setdefault(_plain(packet.name), (content, packet))
+            if same[0] is not content and key != (same[1].msg_id, same[1].code or 0):
+                yield _moved(*same, content, packet)
+            elif known is None:
                 new.setdefault(key, (content, packet))
             elif known[0] is not content:
                 yield from _compared(*known, content, packet)
         yield from _missing(first, content, new)
         first |= new
+
+
+def _moved(
+    source: SourceContent, packet: DeclaredPacket, other: SourceContent, there: DeclaredPacket
+) -> MissionProblem:
+    """Return the difference of packets with the same name, but another MsgId or function code."""
+    if packet.msg_id != there.msg_id:
+        what = f"the MsgId 0x{packet.msg_id:04X} in the {source.kind}, but 0x{there.msg_id:04X}"
+    else:
+        what = f"the code {packet.code} in the {source.kind}, but {there.code}"
+    text = f"{packet.name}: has {what} in {_shown(other, there)}; {_REMEDY}"
+    return MissionProblem(packet.file, packet.line, text, is_warning=True)
 
 
 def _missing(

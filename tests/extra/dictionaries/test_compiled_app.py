@@ -190,6 +190,28 @@ def test_check_names_a_header_that_is_newer_than_the_object(tmp_path: Path) -> N
     ).replace(f"{Path.cwd()}/", "")
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "text"),
+    [
+        (
+            'value="2"',
+            'value="7"',
+            "THERMAL_SET_VALUE: has the code 7 in the EDS, but 2 in the debug data of",
+        ),
+        (
+            "+ 0xBB",
+            "+ 0xBC",
+            "THERMAL_HK_TLM: has the MsgId 0x08BC in the EDS, but 0x08BB in the debug data of",
+        ),
+    ],
+)
+def test_other_code_or_msg_id_of_a_packet_is_named(thermal: Path, old: str, new: str, text: str) -> None:
+    file = with_sheet(thermal, SHEET.replace(old, new))
+    (found,) = [each for each in warnings_of(thermal) if " has the code " in each or " has the MsgId " in each]
+    assert found.startswith(f"{file}:")
+    assert text in found
+
+
 def test_command_that_a_sheet_lacks_is_named(thermal: Path) -> None:
     with_sheet(thermal)
     found = [each for each in warnings_of(thermal) if "has no command with the code" in each]
