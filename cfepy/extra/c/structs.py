@@ -23,11 +23,15 @@ BIT_FIELD = "bit field"
 
 
 class FieldType(NamedTuple):
-    """The type of a field: a word or a struct, and the lengths of an array from the outermost."""
+    """The type of a field: a word or a struct, and the lengths of an array from the outermost.
+
+    `names` are the enumerators of an enumeration and their values.
+    """
 
     base: str | CStruct
     counts: tuple[int, ...]
     size: int
+    names: tuple[tuple[str, int], ...] = ()
 
     def __str__(self) -> str:
         base = self.base if isinstance(self.base, str) else self.base.name
@@ -178,11 +182,19 @@ class Structs:
             size = item.size
             for count in counts:
                 size *= count
-            return FieldType(item.base, counts + item.counts, size)
+            return FieldType(item.base, counts + item.counts, size, item.names)
         size = _size(entry)
         if entry.tag in _STRUCTS:
             return FieldType(self._struct(entry, name or "struct"), (), size)
-        return FieldType(_word(entry, size), (), size)
+        return FieldType(_word(entry, size), (), size, _enumerators(entry))
+
+
+def _enumerators(entry: Any) -> tuple[tuple[str, int], ...]:
+    """Return the enumerators of an enumeration; none for another type."""
+    if entry.tag != "DW_TAG_enumeration_type":
+        return ()
+    children = [each for each in entry.iter_children() if "DW_AT_const_value" in each.attributes]
+    return tuple((_text(each), int(each.attributes["DW_AT_const_value"].value)) for each in children)
 
 
 def _word(entry: Any, size: int) -> str:

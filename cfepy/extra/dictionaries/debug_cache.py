@@ -16,12 +16,12 @@ from typing import Any
 from cfepy import __version__
 from cfepy.extra.c import cache_folder
 from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
-from cfepy.msg import Layout
+from cfepy.msg import Layout, ValueNames
 from cfepy.reading.input_files import read_limited
 from cfepy.status import UsageError
 
 FOLDER = "packets"
-_FORM = 1
+_FORM = 2
 _MOST_BYTES = 8 << 20
 
 
@@ -100,14 +100,18 @@ def _packet(values: Mapping[str, Any]) -> DeclaredPacket:
 
 
 def _shape(kind: Any) -> Any:
-    """Return a type in JSON: a word, [item, count], or a struct."""
+    """Return a type in JSON: a word, [item, count], an enumeration, or a struct."""
     if isinstance(kind, Layout):
         fields = [[name, _shape(inner)] for name, inner in kind.types()]
         return {"name": kind.name, "fields": fields, "packed": kind.is_packed}
+    if isinstance(kind, ValueNames):
+        return {"type": kind.type, "values": dict(kind.values)}
     return [_shape(kind[0]), kind[1]] if isinstance(kind, tuple) else str(kind)
 
 
 def _type(shape: Any) -> Any:
+    if isinstance(shape, dict) and "values" in shape:
+        return ValueNames.of(str(shape["type"]), {str(name): int(value) for name, value in shape["values"].items()})
     if isinstance(shape, dict):
         fields = [(str(name), _type(inner)) for name, inner in shape["fields"]]
         return Layout(str(shape["name"]), fields, packed=bool(shape["packed"]))

@@ -7,7 +7,7 @@ HS_SetMaxResetsCmd_t is that of HS_SET_MAX_RESETS_CC, and HS_HkPacket_t or HS_Hk
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -16,13 +16,15 @@ from cfepy.extra.c import CStruct, FieldType, Macros, StructField, Structs, macr
 from cfepy.extra.dictionaries.debug_cache import cached_content
 from cfepy.extra.dictionaries.nasa_names import snake
 from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
-from cfepy.msg import NO_PAYLOAD, Layout, is_valid_msg_id
+from cfepy.msg import NO_PAYLOAD, Layout, ValueNames, is_valid_msg_id
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
 from cfepy.status import UsageError
 
 COMMAND_HEADER, TELEMETRY_HEADER = "CFE_MSG_CommandHeader", "CFE_MSG_TelemetryHeader"
 _HEADERS = (COMMAND_HEADER, TELEMETRY_HEADER)
+GAP = "spare_"
+"""The beginning of the names of padding; the rest is its offset."""
 _MID, _CODE = "_MID", "_CC"
 _COMMAND_BIT = 0x1000
 _FIRST = ("CFE_", "OS_", "CCSDS_")
@@ -218,14 +220,26 @@ def layout_of(struct: CStruct) -> Layout | None:
         if kind is None or not each.name:
             return None
         fields.append((each.name, kind))
-    for packed in (False, True):
-        try:
-            layout = Layout(struct.name, fields, packed=packed)
-        except UsageError:
-            return None
-        if layout.size == struct.size and all(layout.offsets[each.name] == each.offset for each in struct.fields):
-            return layout
-    return None
+    try:
+        layout = Layout(struct.name, fields)
+        if layout.size != struct.size or any(layout.offsets[each.name] != each.offset for each in struct.fields):
+            layout = Layout(struct.name, list(_with_gaps(struct, fields)), packed=True)
+    except UsageError:
+        return None
+    fits = all(layout.offsets[each.name] == each.offset for each in struct.fields)
+    return layout if fits and layout.size == struct.size else None
+
+
+def _with_gaps(struct: CStruct, fields: Sequence[tuple[str, object]]) -> Iterator[tuple[str, object]]:
+    """Yield the fields of a struct, and bytes for its padding, which the bytes of a union do not bring about."""
+    at = 0
+    for each, field in zip(struct.fields, fields, strict=True):
+        if each.offset > at:
+            yield f"{GAP}{at}", f"u8[{each.offset - at}]"
+        yield field
+        at = each.offset + each.type.size
+    if struct.size > at:
+        yield f"{GAP}{at}", f"u8[{struct.size - at}]"
 
 
 def _type_of(kind: FieldType) -> object | None:
@@ -242,8 +256,19 @@ def _type_of(kind: FieldType) -> object | None:
         base = kind.base
     if isinstance(base, str) and not re.fullmatch(r"[uif]\d+|bool|char", base):
         return None
+    if kind.names and isinstance(base, str) and base[0] in "ui":
+        base = ValueNames.of(base, _without_prefix(dict(kind.names)))
     if base == "char":
         return "char" + "".join(f"[{count}]" for count in kind.counts)
     for count in reversed(kind.counts):
         base = (base, count)
     return base
+
+
+def _without_prefix(names: dict[str, int]) -> dict[str, int]:
+    """Return enumerators without the words that all of them begin with: TANK_MODE_OFF, TANK_MODE_ON are OFF, ON."""
+    words = [name.split("_") for name in names]
+    shared = 0
+    while len(names) > 1 and all(len(each) > shared + 1 and each[shared] == words[0][shared] for each in words):
+        shared += 1
+    return {"_".join(each[shared:]): value for each, value in zip(words, names.values(), strict=True)}

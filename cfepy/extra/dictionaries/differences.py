@@ -21,6 +21,8 @@ from cfepy.msg import Cell, Layout
 from cfepy.pilot import MissionProblem
 
 _INDEX = re.compile(r"\[\d+\]")
+_GAP = re.compile(r"spare_\d+")
+"""Padding that the debug data has no field for."""
 _BYTES = ("u8", "i8", "bool", "char")
 _REMEDY = "correct the one that is wrong, or build again"
 
@@ -195,4 +197,4 @@ def members_of_struct(layout: Layout) -> list[tuple[str, str, int]]:
         name = re.split(r"[.\[]", cell.path, maxsplit=1)[0]
         kind = cell.type if _array_path(cell) == name else ""
         found[name] = (kind, found.get(name, ("", 0))[1] + 1)
-    return [(name, kind, count) for name, (kind, count) in found.items()]
+    return [(name, kind, count) for name, (kind, count) in found.items() if not _GAP.fullmatch(name)]
