@@ -63,10 +63,10 @@ def test_csv_of_a_mission_a_journal_and_a_bag(
     assert main(["export", "csv", *sources[source], "/joint_states.position[1:3]", "/joint_states.header.seq"]) == 0
     rows = rows_of(capsys.readouterr().out)
     assert list(rows[0]) == ["time", "stamp", "position[1:3][0]", "position[1:3][1]", "header.seq"]
-    assert rows[0]["stamp"] == "316533800.550017000"
+    assert rows[0]["stamp"] == "316533800.550016000"
     assert [row["header.seq"] for row in rows] == [str(number) for number in range(len(rows))]
     if source != "bag":  # whose times begin with the first message
-        assert rows[0]["time"] == "0.550017000"
+        assert rows[0]["time"] == "0.550016000"
 
 
 def test_a_part_of_the_run(sources: dict[str, list[str]], capsys: pytest.CaptureFixture[str]) -> None:

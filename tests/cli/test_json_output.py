@@ -10,6 +10,7 @@ import pytest
 from cfepy.cli.main import main
 from dev.convert.ping import ping_package
 from tests.cli.parsers import options, parsers
+from tests.extra.c.trees.small_trees import write_tree
 
 DATA = Path(__file__).parents[1] / "data"
 LAB = ["lab", "--for", "0.7"]
@@ -20,6 +21,7 @@ COMMANDS: dict[str, list[str]] = {
     "board report": ["board", "report", *LAB],
     "explore": ["explore", *LAB, "--seeds", "1", "--jobs", "1", "--no-stuck"],
     "graph --mids": ["graph", "--mids", *LAB],
+    "build": ["build", "{tree}", "-o", "{made}"],
     "check": ["check", "lab"],
     "convert": ["convert", "{ping}/launch/ping.launch", "--no-check", "-o", "{made}"],
     "graph": ["graph", *LAB],
@@ -47,7 +49,11 @@ FLOWN_ALIKE = (
 @pytest.mark.parametrize("command", COMMANDS)
 def test_nothing_else_is_on_standard_output(command: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     ping = ping_package(tmp_path) if command == "convert" else None
-    main([word.format(data=DATA, ping=ping, made=tmp_path / "made") for word in COMMANDS[command]] + ["--json", "-"])
+    tree = tmp_path / "tree"
+    if command == "build":
+        write_tree(tree)
+    places = {"data": DATA, "ping": ping, "tree": tree, "made": tmp_path / "made"}
+    main([word.format(**places) for word in COMMANDS[command]] + ["--json", "-"])
     out = capsys.readouterr().out
     for text in out.splitlines() if command in LINES else [out]:
         json.loads(text)

@@ -68,7 +68,7 @@ def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> 
     )
     assert (list(said.ros_bridge.publish), said.ros_bridge.subscribe) == (["/c"], ("/e",))
     assert list(said.demands) == ["invariants"]
-    assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions"}
+    assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions", "dictionary"}
 
 
 def test_run_raises_all_mistakes_of_the_file_by_line(tmp_path: Path) -> None:
