@@ -303,6 +303,15 @@ bool has_row(const std::string &name)
     return false;
 }
 
+// Table Services are told, for a table that is to be kept in the Critical Data Store, and for dumps.
+void tell_change()
+{
+    if (g_node.has_table && CFE_TBL_Modified(g_node.table) != CFE_SUCCESS)
+    {
+        CFE_EVS_SendEvent(kParameterEid, CFE_EVS_EventType_ERROR, "%s: CFE_TBL_Modified failed", g_node.name.c_str());
+    }
+}
+
 void set_rows(const std::string &name, const XmlRpcValue &value)
 {
     bool good = false;
@@ -312,10 +321,7 @@ void set_rows(const std::string &name, const XmlRpcValue &value)
         erase_values_above(rows, name);
         good = put_all(rows, name, value);
     }
-    if (g_node.has_table)
-    {
-        CFE_TBL_Modified(g_node.table);
-    }
+    tell_change();
     if (!good)
     {
         CFE_EVS_SendEvent(kParameterEid, CFE_EVS_EventType_ERROR, "%s: no row is free for the parameter %s",
@@ -334,7 +340,7 @@ bool erase_rows(const std::string &name)
         Rows rows;
         erase(rows, name);
     }
-    CFE_TBL_Modified(g_node.table);
+    tell_change();
     return true;
 }
 

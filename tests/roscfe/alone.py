@@ -6,6 +6,7 @@ several applications, or cFE's own timing, fly on cfepy and on NASA's cFE instea
 
 from __future__ import annotations
 
+import os
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
@@ -49,6 +50,25 @@ class Alone:
 
     def fly(self, source: Path) -> list[str]:
         """Return a node's output. It has the name, the namespace and the remappings of `dev.roscfe.probing`."""
+        done = self.run(self.program(source))
+        assert done.returncode == 0, (done.returncode, done.stderr[-3000:])
+        return list(marked(done.stdout.splitlines()))
+
+    def run(self, program: Path, fails: str = "") -> subprocess.CompletedProcess[str]:
+        """Run a program of `program` to its end.
+
+        Args:
+            program: the program.
+            fails: name of a function of cFE that fails; empty if none does.
+        """
+        command = [*self._target.runner, str(program)]
+        environ = {**os.environ, "CFE_FAILS": fails}
+        return subprocess.run(
+            command, capture_output=True, check=False, timeout=300, text=True, errors="replace", env=environ
+        )
+
+    def program(self, source: Path) -> Path:
+        """Return the program of a node; see `fly`."""
         main = self._folder / "main.h"
         main.write_text(main_header(True), encoding="utf-8")
         ids = {f"/probes/{name}": (FIRST_ID + at, False) for at, name in enumerate(TOPICS)}
@@ -61,10 +81,7 @@ class Alone:
         node = self._objects([source], ["-std=c++17", "-Wall", "-include", str(main)], "node")
         parts = [*node, *self._objects([entry], STRICT_FLAGS), *self._library]
         wrapped = f"-Wl,--wrap={',--wrap='.join(WRAPPED)}"
-        made = link_program(self._folder / source.stem, parts, wrapped, *self._flags, target=self._target)
-        done = subprocess.run([*self._target.runner, str(made)], capture_output=True, check=False, timeout=300)
-        assert done.returncode == 0, (done.returncode, done.stderr.decode(errors="replace")[-3000:])
-        return list(marked(done.stdout.decode(errors="replace").splitlines()))
+        return link_program(self._folder / source.stem, parts, wrapped, *self._flags, target=self._target)
 
     def _objects(self, sources: Sequence[Path], base: Sequence[str], part: str = "library") -> list[Path]:
         return compile_objects(self._folder / part, sources, *self._flags, target=self._target, base=base)

@@ -102,6 +102,13 @@ void report_one(std::uint32_t id)
     put(packet_of(CFE_SB_ONESUB_TLM_MID, report));
 }
 
+// Whether a test wants a function to fail: its name is the value of CFE_FAILS in the environment.
+bool fails(const char *function)
+{
+    const char *wanted = std::getenv("CFE_FAILS");
+    return wanted != nullptr && std::strcmp(wanted, function) == 0;
+}
+
 [[noreturn]] void end(int status)
 {
     std::fflush(stdout);
@@ -143,9 +150,18 @@ void CFE_ES_ExitApp(uint32 status)
 
 void CFE_ES_PerfLogAdd(uint32, uint32) {}
 
+CFE_Status_t CFE_ES_WriteToSysLog(const char *format, ...)
+{
+    va_list values;
+    va_start(values, format);
+    std::vfprintf(stderr, format, values);
+    va_end(values);
+    return CFE_SUCCESS;
+}
+
 CFE_Status_t CFE_EVS_Register(const void *, uint16, uint16)
 {
-    return CFE_SUCCESS;
+    return fails("CFE_EVS_Register") ? CFE_EVS_APP_NOT_REGISTERED : CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_EVS_SendEvent(uint16, CFE_EVS_EventType_Enum_t, const char *format, ...)
@@ -249,7 +265,7 @@ CFE_Status_t CFE_SB_CreatePipe(CFE_SB_PipeId_t *pipe, uint16 depth, const char *
 {
     *pipe   = kPipe;
     g_depth = depth;
-    return CFE_SUCCESS;
+    return fails("CFE_SB_CreatePipe") ? CFE_SB_MAX_PIPES_MET : CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_SB_GetPipeName(char *name, size_t size, CFE_SB_PipeId_t)
@@ -260,6 +276,10 @@ CFE_Status_t CFE_SB_GetPipeName(char *name, size_t size, CFE_SB_PipeId_t)
 
 CFE_Status_t CFE_SB_SubscribeEx(CFE_SB_MsgId_t id, CFE_SB_PipeId_t, CFE_SB_Qos_t, uint16)
 {
+    if (fails("CFE_SB_SubscribeEx") && (id.Value & 0xFF00) == 0x0A00)
+    {
+        return CFE_SB_MAX_MSGS_MET;
+    }
     if (!is_subscribed(id.Value))
     {
         g_subscriptions.push_back(id.Value);

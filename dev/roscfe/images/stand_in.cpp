@@ -223,6 +223,11 @@ void CFE_ES_ExitApp(uint32 status)
     end_task();
 }
 
+CFE_Status_t CFE_ES_WriteToSysLog(const char *, ...)
+{
+    return CFE_SUCCESS;
+}
+
 CFE_Status_t CFE_EVS_Register(const void *, uint16, uint16)
 {
     return CFE_SUCCESS;

@@ -34,7 +34,11 @@ constexpr int kRefused                     = 134; // exit status of a program th
 
 [[noreturn]] void run_node(const NodeDescription &node)
 {
-    CFE_EVS_Register(nullptr, 0, CFE_EVS_EventFilter_BINARY);
+    if (CFE_EVS_Register(nullptr, 0, CFE_EVS_EventFilter_BINARY) != CFE_SUCCESS)
+    {
+        CFE_ES_WriteToSysLog("%s: CFE_EVS_Register failed\n", node.app); // no event can say so
+        CFE_ES_ExitApp(CFE_ES_RunStatus_APP_ERROR);
+    }
     if (g_node.description != nullptr) // in an image without loadable objects its variables are as its first life left them
     {
         refuse("the node has run already", "it starts again with its processor only");
