@@ -30,7 +30,7 @@ class FieldPlace(NamedTuple):
         bits: number of its bits; whole bytes for a text.
         big_endian: byte order of a number of several whole bytes. Other numbers have their highest bit first.
         names: the names of its values.
-        measurement: what it measures.
+        measurement: its unit, calibration and limits.
     """
 
     steps: tuple[Step, ...]
@@ -138,7 +138,7 @@ class BitLayout(Layout):
 
     Args:
         name: the struct's name, for messages.
-        places: the fields in order; those of one array or nested struct stand together.
+        places: the fields in order; the fields of an array or a nested struct stand together.
         size: bytes of the whole struct.
 
     >>> flags = BitLayout("Flags", [FieldPlace(("Mode",), "u", 0, 3), FieldPlace(("Count",), "u", 3, 13)], 2)

@@ -518,7 +518,7 @@ def _parse_type(kind: Any, path: str) -> _Type:
 
 
 def _declared_type(kind: _Type) -> Any:
-    """Return what a declaration has for a type."""
+    """Return a type in the form of a declaration."""
     if isinstance(kind, _Array):
         return _declared_type(kind.item), kind.count
     if isinstance(kind, _Scalar):

@@ -40,6 +40,7 @@ connection_delay: 20 parsecs
 ros_bridge: {publish: {a: X, /b: {raw: true}, /c: Y}, subscribe: [d, /e], clock: 0, hear: []}
 sweep: {rate: fast, topics: [a], points: 3}
 launch: [nothing.launch, {args: {}}]
+dictionary: [nothing.xml, 3]
 invariants: 3
 """
 
@@ -58,7 +59,7 @@ def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> 
     fields += "cpp_nodes.profile cpp_nodes.arena_bytes "
     fields += "connection_delay ros_bridge.publish.a ros_bridge.publish./b ros_bridge.subscribe[0] "
     fields += "ros_bridge.clock ros_bridge.hear "
-    fields += "sweep.rate sweep.topics[0] sweep.points launch[0] launch[1]"
+    fields += "sweep.rate sweep.topics[0] sweep.points launch[0] launch[1] dictionary[0] dictionary[1]"
     assert [error.field for error in mistakes.errors] == fields.split()
     assert (said.name, said.board, said.ordered_sets, said.launch) == (None, None, False, ())
     assert (dict(said.limits.values), list(said.nodes), list(said.topics)) == (
@@ -68,7 +69,7 @@ def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> 
     )
     assert (list(said.ros_bridge.publish), said.ros_bridge.subscribe) == (["/c"], ("/e",))
     assert list(said.demands) == ["invariants"]
-    assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions", "dictionary"}
+    assert set(said.places) == set(SECTIONS) - {"results", "deadlines", "inversions"}
 
 
 def test_run_raises_all_mistakes_of_the_file_by_line(tmp_path: Path) -> None:

@@ -1,7 +1,7 @@
 """Packets of command and telemetry text of COSMOS and OpenC3 (`cmd_tlm/*.txt`).
 
 A file has lines such as `COMMAND HS NOOP LITTLE_ENDIAN "No operation"`, and below each the items of the whole packet,
-header included. Text between `<%` and `%>` is a program in Ruby: it is not executed, so write what it prints.
+header included. Text between `<%` and `%>` is a program in Ruby: it is not executed, so write its output.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ class _Item:
 
 @dataclass(slots=True)
 class _Packet:
-    """A packet or a table under construction: `end` is the bit after its last item, `rows` those of a table."""
+    """A packet or a table under construction: `end` is the bit after its last item, `rows` are the rows of a table."""
 
     target: str
     name: str

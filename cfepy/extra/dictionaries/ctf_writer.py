@@ -66,7 +66,7 @@ def _code(command: Command) -> dict[str, Any]:
 
 
 def _parameters(layout: Layout) -> list[dict[str, Any]]:
-    """Return the fields of a layout, with those of nested structs inside."""
+    """Return the fields of a layout, including the fields of nested structs."""
     return _tree([(cell.path, cell) for cell in layout.cells()])
 
 

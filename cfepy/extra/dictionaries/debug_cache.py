@@ -26,7 +26,7 @@ _MOST_BYTES = 8 << 20
 
 
 def cached_content(data: bytes, read: Callable[[], SourceContent]) -> SourceContent:
-    """Return what a shared object declares.
+    """Return the declarations of a shared object.
 
     Args:
         data: its bytes.

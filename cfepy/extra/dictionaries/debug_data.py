@@ -1,7 +1,7 @@
 """Packets of a compiled application, from its debug data: structs, enumerators, and macros (`-g3`).
 
-NASA's conventions tell what belongs together: the macro HS_CMD_MID is the MsgId of the commands HS_..._CC, the struct
-HS_SetMaxResetsCmd_t is that of HS_SET_MAX_RESETS_CC, and HS_HkPacket_t or HS_HkTlm_t that of HS_HK_TLM_MID.
+NASA's conventions connect them: the macro HS_CMD_MID is the MsgId of the commands HS_..._CC, the struct
+HS_SetMaxResetsCmd_t belongs to HS_SET_MAX_RESETS_CC, and HS_HkPacket_t or HS_HkTlm_t to HS_HK_TLM_MID.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ class _Application:
         """Return the struct of a packet.
 
         It is the one with the same name without underscores and endings, or to which the function of that name gets a
-        pointer; otherwise that of the only function that has all words of the name and the fewest others.
+        pointer; otherwise the struct of the only function that has all words of the name and the fewest others.
         """
         wanted = _key(name.removeprefix(f"{owner}_"))
         for find, names in ((self._structs.find, self._names), (self._structs.argument_of, self._functions)):
@@ -178,7 +178,7 @@ def _words_of(name: str) -> set[str]:
 
 
 def _key(name: str) -> str:
-    """Return what the names of a macro and of a struct have in common."""
+    """Return the common part of the names of a macro and of its struct."""
     short = name.replace("_", "")
     for long, other in _SAME:
         short = short.replace(long, other)

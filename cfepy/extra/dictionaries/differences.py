@@ -44,7 +44,7 @@ class _Member(NamedTuple):
 
 
 def check_dictionary(script: Path, entries: list[StartupEntry], said: MissionSections) -> Iterator[MissionProblem]:
-    """Yield what sources of a dictionary could not be read, and in what they differ.
+    """Yield the unreadable parts of the sources of a dictionary, and their differences.
 
     Args:
         script: the startup script.

@@ -1,6 +1,6 @@
 """Values of parameters of electronic data sheets, for missions that do not bring the files that define them.
 
-They are those of NASA's example mission, for which cfepy's headers are made, too: a mission's own file comes first.
+They are the values of NASA's example mission, as in cfepy's headers. A mission's own file comes first.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
-"""The sources of a mission's dictionary: which there are, what they declare, and which of them names a packet.
+"""The sources of a mission's dictionary, their declarations, and the choice among them.
 
 A mission names them under `dictionary:` of its mission file, and has them in a folder `dictionary` beside its startup
-script. The content of a file tells its kind. Where two sources declare a packet of the same MsgId and function code,
+script. cfepy recognizes a file by its content. Where two sources declare a packet of the same MsgId and function code,
 the first of electronic data sheets, COSMOS, XTCE and debug data is used.
 """
 
@@ -30,7 +30,7 @@ _SUFFIXES = (".xml", ".txt")
 
 
 def declarations_of(spec: MissionSpec) -> ForeignDeclarations:
-    """Return what the sources of a mission declare, each packet once."""
+    """Return the declarations of all sources of a mission, each packet once."""
     contents = contents_of(spec)
     packets: dict[tuple[int, int], Command | Telemetry] = {}
     tables: dict[str, TableType] = {}

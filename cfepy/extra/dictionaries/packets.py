@@ -1,4 +1,4 @@
-"""What a source of a dictionary declares: packets and tables with their layouts, and where."""
+"""Declarations of a source of a dictionary: packets and tables with their layouts and places."""
 
 from __future__ import annotations
 

@@ -22,7 +22,7 @@ def payload_of(name: str, places: Iterable[FieldPlace], bits: int, is_command: b
 
 
 def plain_or_bits(name: str, places: Sequence[FieldPlace], size: int) -> Layout:
-    """Return a plain layout for places that are those of a C struct without nested structs, otherwise a `BitLayout`."""
+    """Return a plain layout if a C struct without nested structs has the same places, otherwise a `BitLayout`."""
     layout = BitLayout(name, places, size)
     plain = _plain(name, places)
     same = plain is not None and plain.size == size and _shape(plain) == _shape(layout)

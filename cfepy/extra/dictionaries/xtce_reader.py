@@ -175,7 +175,7 @@ class _System:
     # -- entries -------------------------------------------------------------------------------------------------------
 
     def _walk(self, container: XmlTag, entries: _Entries, arguments: dict[str, XmlTag], depth: int) -> None:
-        """Add the entries of a container, after those of its base."""
+        """Add the entries of the base of a container, then its own."""
         if depth > _DEEP:
             raise container.fail(f"is derived from itself, or more than {_DEEP} containers deep; correct its base")
         base = container.first("BaseContainer")

@@ -1,4 +1,4 @@
-"""Electronic data sheets: types, packets, tables, and what is wrong with a bad one."""
+"""Electronic data sheets: types, packets, tables, and errors of bad ones."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""XTCE documents as a source: what cfepy writes is read back, and documents of other tools."""
+"""XTCE documents as a source: cfepy reads its own documents back, and documents of other tools."""
 
 from __future__ import annotations
 
