@@ -40,7 +40,7 @@ class CppNodesError(UsageError):
 
 @dataclass(frozen=True, slots=True)
 class NodeGround:
-    """What the ground has of a node.
+    """The numbers of a node for the ground.
 
     Attributes:
         msg_id: MsgId of its housekeeping packet; its commands have the command bit added.
@@ -104,7 +104,7 @@ def _profile(entry: Marked) -> str:
 
 
 def _read_ground(section: Marked, mistakes: Mistakes) -> dict[str, NodeGround]:
-    """Return what the ground has of each node, without invalid entries."""
+    """Return the numbers of each node for the ground, without invalid entries."""
     found: dict[str, NodeGround] = {}
     holders: dict[int, str] = {}
     for node, entry in mistakes.mapping(section).items():

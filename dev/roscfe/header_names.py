@@ -1,7 +1,7 @@
 """The names that a node sees behind one #include, with Debian's ROS: `python -m dev.roscfe.header_names --write`.
 
-Nodes rely on what headers of ROS bring along, such as std::cout behind ros/ros.h. header_names.tsv lists, for each
-header, the names that Debian's ROS 1 gives (libroscpp-dev and the other packages of its headers). The interface library
+Nodes rely on names that headers of ROS bring along, such as std::cout behind ros/ros.h. header_names.tsv lists, for
+each header, the names that Debian's ROS 1 gives (libroscpp-dev and the other packages of its headers). The interface library
 must give the same, except for `REASONS`.
 """
 
@@ -146,7 +146,7 @@ def listed() -> dict[str, list[str]]:
 
 
 def lacking(header: str, names: Iterable[str], folders: Sequence[str]) -> list[str]:
-    """Return the names that the interface library does not give behind a header, without those of `REASONS`."""
+    """Return the names that the interface library does not give behind a header, without the names in `REASONS`."""
     ours = set(seen(header, folders))
     return [name for name in names if name not in ours and name not in REASONS]
 

@@ -3,7 +3,7 @@
 The scripts have bad lines: missing, extra and too long parts, unknown types, two of one name, numbers in odd bases and
 out of range, and ends that are missing. The program compares the lines of Executive Services in the system log.
 CFEPY_REAL_CFE names the folder of NASA's core-cpu1, with the lab applications in its cf. cfepy runs the release that
-the executable names, or that of `--release`.
+the executable names, or `--release`.
 """
 
 from __future__ import annotations
@@ -114,7 +114,9 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m dev.twin.startup_scripts", description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the first script")
     parser.add_argument("--count", type=int, default=60, help="how many scripts, with seeds that count up")
-    parser.add_argument("--release", choices=tuple(RELEASES), help="of cfepy; that of NASA's executable if not given")
+    parser.add_argument(
+        "--release", choices=tuple(RELEASES), help="of cfepy; by default the release of NASA's executable"
+    )
     parser.add_argument("--record", action="store_true", help="keep the real one's lines for tests without it")
     options = parser.parse_args()
     built = installed()

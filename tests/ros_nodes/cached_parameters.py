@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Test node: the cache of parameters behind `rospy.get_param_cached`, and what `rospy.get_param` reads from it."""
+"""Test node: the cache of parameters behind `rospy.get_param_cached`, and `rospy.get_param`, which reads it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Undecided:
 
 
 def tell(what: str, act: Callable[..., Any], *arguments: Any) -> None:
-    """Print what a call returns or raises."""
+    """Print the result or the error of a call."""
     try:
         outcome = repr(act(*arguments))
     except Exception as error:

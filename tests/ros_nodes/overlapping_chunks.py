@@ -27,7 +27,7 @@ def shown(entry: Any) -> str:
 
 
 def tell(what: str, act: Callable[[], Any]) -> None:
-    """Print what a call returns or raises."""
+    """Print the result or the error of a call."""
     try:
         outcome = act()
     except Exception as error:

@@ -16,7 +16,7 @@ BASE = (*STRICT_FLAGS, "-Wno-format", "-Wno-format-security", "-O1")
 
 
 @pytest.mark.parametrize("target", ["here", "arm"])
-def test_texts_are_those_of_printf(tmp_path: Path, target: str) -> None:
+def test_texts_equal_printf_s(tmp_path: Path, target: str) -> None:
     there = target_named(target)
     program = compile_program(tmp_path / "formats", [FOLDER / "printf_texts.cpp", *FORMATS], base=BASE, target=there)
     done = subprocess.run([*there.runner, str(program), "5000"], capture_output=True, text=True, check=False)

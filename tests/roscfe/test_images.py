@@ -1,4 +1,4 @@
-"""Nodes as flight software links them: no larger than the documentation says, and flown on a bare Cortex-M7."""
+"""Nodes as flight software links them: no larger than in the documentation, and flown on a bare Cortex-M7."""
 
 from __future__ import annotations
 

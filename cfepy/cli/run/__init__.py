@@ -100,7 +100,7 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         "folder from a cFS mission tree or from an application in C, check it, and fly it for 10 virtual seconds. It "
         "ends with the flight, or with a list of at most ten things to do.",
         examples=("cfepy new mission rover", "cfepy new mission --from cFS"),
-        epilog="exit status: 0 written, and with --from flown; with --from, that of cfepy run if the flight had a "
+        epilog="exit status: 0 written, and with --from flown; with --from, cfepy run's status if the flight had a "
         "problem, and 1 if nothing could be built; 2 bad usage",
     )
     mission.set_defaults(c=False, hint="; only applications can be in C: cfepy new app NAME --c")

@@ -342,7 +342,7 @@ class CatkinReader(CMakeScript):
         return f"{self.variables['PROJECT_NAME'][0]}_LIBRARIES"
 
     def _export(self, words: list[str], is_simple: bool) -> None:
-        """Record the exports of `catkin_package` for other packages. Those of catkin_simple are its libraries."""
+        """Record the exports of `catkin_package` for other packages. catkin_simple exports its libraries."""
         said: dict[str, list[str]] = {}
         section = ""
         for each in words:

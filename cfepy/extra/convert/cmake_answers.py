@@ -1,6 +1,6 @@
 """CMake's own list of a package's targets, by its File API, for `cfepy convert --cmake`.
 
-CMake executes what a CMakeLists.txt says, so a check never starts it, and a conversion only if it is asked to.
+CMake executes a CMakeLists.txt, so a check never starts it, and a conversion only if it is asked to.
 """
 
 from __future__ import annotations

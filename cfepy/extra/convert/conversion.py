@@ -162,7 +162,7 @@ def converted(
         task: the task.
         config: MsgIds of a mission and its lock file.
         judge: returns why a program is not converted; an empty text if it is.
-        ground: what the ground has of nodes, by full name. Others get a free MsgId for their housekeeping.
+        ground: MsgIds and marks of nodes for the ground, by full name. Others get a free MsgId for their housekeeping.
         adjust: called with each package that was read, whose targets it may change.
 
     Raises:

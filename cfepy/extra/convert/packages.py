@@ -40,7 +40,7 @@ def read_package(folder: Path, name: str, variables: Mapping[str, Sequence[str]]
     Args:
         folder: folder of its package.xml.
         name: of the package.
-        variables: of CMake that are set, such as those of a build with tests.
+        variables: set variables of CMake, such as a build with tests has.
 
     Returns:
         Its contents; no C++ when it has no CMakeLists.txt.

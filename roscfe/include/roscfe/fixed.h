@@ -88,7 +88,7 @@ class FixedString
         append(first, last);
     }
 
-    FixedString &operator=(const FixedString &other) { return assign(other.view()); }
+    FixedString &operator=(const FixedString &other) { return this == &other ? *this : assign(other.view()); }
     FixedString &operator=(const char *text) { return assign(text); }
     FixedString &operator=(const std::string &text) { return assign(text); }
     FixedString &operator=(std::string_view text) { return assign(text); }

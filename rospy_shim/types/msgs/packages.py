@@ -188,7 +188,7 @@ def has_definitions(folder: Path) -> bool:
 
 
 def folders_of_definitions(folder: Path, kind: str) -> list[Path]:
-    """Return the folders that genmsg takes definitions from: those of `add_message_files(DIRECTORY ...)` and its kin.
+    """Return the folders that genmsg takes definitions from; `add_message_files(DIRECTORY ...)` and its kin name them.
 
     Args:
         folder: of the package.

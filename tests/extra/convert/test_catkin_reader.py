@@ -86,7 +86,7 @@ def made_by(folder: Path, cmake: str, *names: str) -> CppPackage:
     return write(folder, {"package.xml": MANIFEST, "CMakeLists.txt": HEAD + cmake, **dict.fromkeys(names, "")})
 
 
-def test_targets_are_those_of_cmake_s_language(tmp_path: Path) -> None:
+def test_targets_follow_cmake_s_language(tmp_path: Path) -> None:
     package = write(tmp_path, FILES)
     assert package.executables() == ["demo_one", "extra", "inner", "plain", "split"]
     made = {name: [each.name for each in source_files(target)] for name, target in package.targets.items()}
@@ -101,7 +101,7 @@ def test_targets_are_those_of_cmake_s_language(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.skipif(shutil.which("cmake") is None, reason="CMake is not installed")
-def test_targets_are_those_that_cmake_makes(tmp_path: Path) -> None:
+def test_targets_equal_cmake_s_own(tmp_path: Path) -> None:
     package = write(tmp_path / "demo", FILES)
     cmake = by_cmake(tmp_path / "demo", tmp_path / "build")
     assert not isinstance(cmake, str), cmake

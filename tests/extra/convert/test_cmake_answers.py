@@ -36,7 +36,7 @@ def package(folder: Path, cmake: str = CMAKE) -> Path:
 
 @needs_cmake
 @pytest.mark.slow
-def test_targets_are_those_of_cmake(tmp_path: Path) -> None:
+def test_targets_come_from_cmake(tmp_path: Path) -> None:
     found = read_package(package(tmp_path), "demo")
     assert found.targets["core"].sources == ["src/.cpp"]
     CMakeAnswers().adjust(found)

@@ -76,7 +76,7 @@ def test_each_converted_node_has_a_msg_id_for_the_ground(package: Path, tmp_path
     assert f"    0x{by_node['/arm/left']:04X}, roscfe::kNoMarks}};" in entry
 
 
-def test_a_mission_chooses_what_the_ground_has_of_a_converted_node(package: Path, tmp_path: Path) -> None:
+def test_a_mission_chooses_the_ground_s_numbers_of_a_converted_node(package: Path, tmp_path: Path) -> None:
     mission = tmp_path / "mission"
     mission.mkdir()
     (mission / "startup.scr").write_text("!\n", encoding="utf-8")

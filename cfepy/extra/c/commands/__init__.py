@@ -22,7 +22,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         ),
         description="Compile a cFS application, a folder with fsw/src, to NAME.so and its table files; cfepy has the "
         "headers of cFE, OSAL and the PSP. Of a mission tree, a folder with NAME_defs/targets.cmake, make a mission "
-        "folder, and report what was built, stood in for or left out, and why.",
+        "folder, and report its parts: built, stood in for, or left out.",
         epilog="exit status: 0 built, 1 a file was refused or an application left out, 2 bad usage or no compiler",
     )
     build.add_argument("folder", metavar="FOLDER", nargs="?", help="an application's folder, or a mission tree")
@@ -73,6 +73,6 @@ def _add_tree(options: argparse._ArgumentGroup) -> None:
     options.add_argument(
         "--cmake",
         action="store_true",
-        help="ask CMake for the sources; it executes what the tree's files contain",
+        help="ask CMake for the sources; it executes the tree's files",
     )
     options.add_argument("--json", metavar="FILE|-", help="write the report as JSON; - writes to standard output")

@@ -96,7 +96,7 @@ class Project:
         tables: calls of `add_cfe_tables`.
         headers: headers that the build makes: their name, and the file that stands for each unless the mission has
             one; None for an empty one.
-        mission_headers: those of `headers` that all processors of the mission share.
+        mission_headers: the entries of `headers` that all processors of the mission share.
         generated: files that a custom command makes, with the command.
         written: texts of `file(WRITE)`, by path.
         installed: files that `install(FILES)` puts into a folder of the target.

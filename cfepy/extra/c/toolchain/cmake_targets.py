@@ -85,7 +85,7 @@ class CMakeTargets:
         return [each.removeprefix("-D") for each in self._used(target, DEFINITIONS)]
 
     def sources(self, target: Target) -> list[str]:
-        """Return the sources of a target, with those of object libraries that it names or links."""
+        """Return the sources of a target, and of object libraries that it names or links."""
         found = [each for word in target.sources for each in self.evaluated(word, target)]
         for each in self._linked(target):
             if each.kind in (OBJECT, STATIC, SHARED):

@@ -106,7 +106,7 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
 
 
 def _sources_of_cmake(folder: Path, headers: list[Path]) -> Sources:
-    """Return the sources that a CMakeLists.txt names; those by convention for what it leaves out."""
+    """Return the sources that a CMakeLists.txt names; the conventional ones for the rest."""
     here = Path(os.path.abspath(folder))
     project, target, used = read_project(here)
     name = folder.resolve().name if target is None else target.name
@@ -173,7 +173,7 @@ def read_project(folder: Path) -> tuple[Project, Target | None, dict[str, Path]]
 def _neighbours(folder: Path) -> dict[str, Path]:
     """Return the folders of other applications and libraries: beside this one, or in `libs` or `apps` one level up.
 
-    A link to the folder has the neighbours of the link, then those of the folder itself. An empty folder, such as a git
+    A link to the folder has the neighbours of the link, then the folder's own. An empty folder, such as a git
     submodule that was not fetched, is none.
     """
     found: dict[str, Path] = {}
@@ -186,7 +186,7 @@ def _neighbours(folder: Path) -> dict[str, Path]:
 
 
 def sources_of(project: Project, target: Target) -> list[Path]:
-    """Return the sources of a target in C and C++, with those of libraries of the tree that it links."""
+    """Return the sources of a target in C and C++, and of the tree's libraries that it links."""
     return [Path(each) for each in project.targets.sources(target) if Path(each).suffix in SOURCE_SUFFIXES]
 
 

@@ -1,4 +1,4 @@
-"""The report of a tree's build: what was built, what stands in for a missing part, and what was left out and why."""
+"""The report of a tree's build: the parts that were built, stood in for, or left out, with the reasons."""
 
 from __future__ import annotations
 

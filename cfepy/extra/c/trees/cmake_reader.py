@@ -1,9 +1,9 @@
 """Reading a mission tree with CMake itself, through its File API.
 
 CMake configures a project of ours (`cmake/CMakeLists.txt`), in which cFS's functions are replaced: an application
-becomes a plain target. The File API then tells the sources, include folders and definitions of each target, with all
-conditions followed. Nothing of cFE, OSAL or a PSP is needed, and nothing is compiled. But CMake executes what the files
-of the tree contain, as a build would. So only `cfepy build --cmake` starts it.
+becomes a plain target. The File API then lists the sources, include folders and definitions of each target, with all
+conditions followed. Nothing of cFE, OSAL or a PSP is needed, and nothing is compiled. But CMake executes the files
+of the tree, as a build would. So only `cfepy build --cmake` starts it.
 """
 
 from __future__ import annotations

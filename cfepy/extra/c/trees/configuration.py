@@ -259,7 +259,7 @@ class _Reader:
                 self._found.notes.append(text)
 
     def _osal(self, defaults: PlatformConfig) -> None:
-        """Read OSAL's options: default_osconfig.cmake, then those of the toolchain and of the processor."""
+        """Read OSAL's options: default_osconfig.cmake, then the toolchain's and the processor's."""
         definitions, cpu = self._model.layout.definitions, self._model.cpu
         files = [definitions / f"{each}_osconfig.cmake" for each in ("default", "native", cpu)]
         files = [each for each in files if each.is_file()]

@@ -185,7 +185,7 @@ class _Build:
             self._report.add(KEPT, each.name, "differs from the table in the tree; --tables overwrites it")
 
     def _own_tables(self, sources: Sources, built: Built, options: Options, progress: WorkProgress) -> None:
-        """Build the application's own tables for those of the mission that the compiler refused."""
+        """Build the application's own tables in place of the mission's tables that the compiler refused."""
         for file, error in list(built.refused.items()):
             inside, reason = self._inside(file), self._first_error(error)
             own = sources.replaced.get(file)
@@ -331,7 +331,7 @@ _BASE_WORDS = {
 
 
 def _steps(report: BuildReport, model: TreeModel) -> Iterator[str]:
-    """Yield what the user can do about parts that are missing, the most useful first; equal reasons are one step."""
+    """Yield steps for the user about missing parts, the most useful first; equal reasons are one step."""
     fetched = [each for each in report.entries if "git submodule" in each.text]
     if fetched:
         yield f"fetch the git submodules: git -C {model.layout.tree} submodule update --init --recursive"

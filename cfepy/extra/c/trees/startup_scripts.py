@@ -73,7 +73,7 @@ def made_startup(built: Iterable[tuple[str, Sequence[str], Sequence[str]]]) -> S
 
     Args:
         built: the name of each shared object, its functions, and the full names of its tables. The application must
-            have the name that is in those of its tables.
+            have the name that its tables' names begin with.
     """
     libraries, applications = [], []
     for name, functions, tables in built:

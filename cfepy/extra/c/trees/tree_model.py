@@ -1,7 +1,7 @@
 """A mission tree as one of its processors needs it: modules with their sources, headers, files and notes.
 
 `make_model` makes it from a project whose files have been read, by cfepy's own reader (`tree_reader`) or by CMake
-(`cmake_reader`). The order in which the mission's own headers, tables and files are preferred is that of cFS's build.
+(`cmake_reader`). It prefers the mission's own headers, tables and files in the order of cFS's build.
 """
 
 from __future__ import annotations

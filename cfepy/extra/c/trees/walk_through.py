@@ -37,7 +37,7 @@ def mission_from(source: Path, folder: Path | None) -> int:
         folder: the new mission folder; named after the source when None.
 
     Returns:
-        The exit status: that of the flight, or 1 if there was none.
+        The exit status of the flight, or 1 if there was none.
 
     Raises:
         UsageError: the source is neither, there is no compiler, or the folder exists already.

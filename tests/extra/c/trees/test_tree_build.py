@@ -1,4 +1,4 @@
-"""From a mission tree to a mission folder: what is built, what stands in, what is left out, and the flight."""
+"""From a mission tree to a mission folder: built, stood in, left out, and flown."""
 
 from __future__ import annotations
 

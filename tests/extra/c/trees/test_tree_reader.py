@@ -95,7 +95,7 @@ def test_processors_come_from_their_lists_when_the_environment_names_them(tmp_pa
         (["small_defs/tables/cpu2_rows.c"], "apps/one/fsw/tables/rows.c"),
     ],
 )
-def test_table_of_the_processor_replaces_those_of_the_mission_and_the_app(
+def test_table_of_the_processor_goes_before_the_mission_and_the_app(
     files: list[str], chosen: str, tmp_path: Path
 ) -> None:
     model = read(write_tree(tmp_path, dict.fromkeys(files, "")))
@@ -114,7 +114,7 @@ def test_table_of_the_processor_replaces_those_of_the_mission_and_the_app(
         (["small_defs/cpu2/one_msgids.h"], "apps/one/config/default_one_msgids.h"),
     ],
 )
-def test_header_of_the_processor_replaces_those_of_the_mission_and_the_app(
+def test_header_of_the_processor_goes_before_the_mission_and_the_app(
     files: list[str], chosen: str, tmp_path: Path
 ) -> None:
     model = read(write_tree(tmp_path, dict.fromkeys(files, "")))
