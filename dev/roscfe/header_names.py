@@ -1,8 +1,8 @@
 """The names that a node sees behind one #include, with Debian's ROS: `python -m dev.roscfe.header_names --write`.
 
 Nodes rely on names that headers of ROS bring along, such as std::cout behind ros/ros.h. header_names.tsv lists, for
-each header, the names that Debian's ROS 1 gives (libroscpp-dev and the other packages of its headers). The interface library
-must give the same, except for `REASONS`.
+each header, the names that Debian's ROS 1 gives (libroscpp-dev and the other packages of its headers). The interface
+library must give the same, except for `REASONS`.
 """
 
 from __future__ import annotations
