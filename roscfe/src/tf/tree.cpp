@@ -82,7 +82,7 @@ Buffer::Buffer(const Capacity &capacity, std::int64_t keep_ns)
       names_(new char[static_cast<std::size_t>(capacity_.frames + 1) * capacity_.name]),
       authorities_(new char[static_cast<std::size_t>(capacity_.frames + 1) * capacity_.name]),
       steps_(new Step[capacity_.frames + 1]),
-      chain_(new FrameId[2 * (capacity_.frames + 2)])
+      chain_(new FrameId[2 * (static_cast<std::size_t>(capacity_.frames) + 2)])
 {
 }
 
