@@ -174,7 +174,7 @@ class TimeTask:
             self.take_tone(self._tone.clock.local() if latch is None else latch)
 
     def _data_command(self, packet: bytes) -> None:
-        if len(packet) < pk.DATA_CMD.length:  # NASA's code reads what is behind the packet in memory
+        if len(packet) < pk.DATA_CMD.length:  # NASA's code reads the bytes behind the packet in memory
             self._commands.reject_length(packet, pk.DATA_CMD)
             return
         fields = pk.DATA_CMD.read(packet)

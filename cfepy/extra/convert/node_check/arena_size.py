@@ -15,7 +15,7 @@ from cfepy.extra.convert.node_check.findings import SubscriptionMemory
 OF_LIBRARY = 4096
 """Bytes for names, publishers, timers, and the list of subscriptions of the processor."""
 OF_NODE = {Profile.POOL: 32768, Profile.STRICT: 4096}
-"""Bytes for memory that the node's own code takes, which nobody knows before it runs."""
+"""Bytes for memory that the node's own code takes, which is unknown before it runs."""
 OF_SUBSCRIPTION = 1024
 """Bytes for the names and the objects of one subscription."""
 OF_POINTER, OF_EVENT, OF_CALLBACK = 112, 64, 32
