@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from cfepy.ground.mission_names import ROS, LiveNames, kind_of, names_in, names_of
+from cfepy.ground.mission_names import DICTIONARY, ROS, ForeignDeclarations, LiveNames, kind_of, names_in, names_of
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
@@ -20,10 +20,6 @@ if TYPE_CHECKING:
     from cfepy.ground.dictionary import Decoded, Dictionary, dictionary_of, struct_layout, table_type, table_types
     from cfepy.ground.events import EVENT_IDS, EVENT_TYPES, DecodedEvent
     from cfepy.ground.fields import MessageDecoder, steps_of, value_at
-    from cfepy.ground.foreign_declarations import (
-        FOREIGN_DECLARATIONS,
-        ForeignDeclarations,
-    )
     from cfepy.ground.json_messages import message_from_json
     from cfepy.ground.json_packets import EVENTS, PACKETS, event_json, log_schema, packet_json, packet_schema
     from cfepy.ground.layout_sources import DeclaredField, DeclaredLayout, declared_layouts
@@ -61,10 +57,10 @@ __all__ = [
     "APPLICATIONS",
     "CI_PORT",
     "CLOCK",
+    "DICTIONARY",
     "EVENTS",
     "EVENT_IDS",
     "EVENT_TYPES",
-    "FOREIGN_DECLARATIONS",
     "LOOK_S",
     "PACKAGE",
     "PACKETS",
@@ -173,10 +169,6 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "table_type",
                 "struct_layout",
                 "table_types",
-            ),
-            ".foreign_declarations": (
-                "FOREIGN_DECLARATIONS",
-                "ForeignDeclarations",
             ),
             ".events": (
                 "EVENT_IDS",

@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 from cfepy import msg, tbl
 from cfepy.es import NODE_SYMBOL
 from cfepy.fs import HEADER_SIZE, TABLE_HEADER_SIZE
-from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS
-from cfepy.ground.mission_names import CORE_PACKETS
+from cfepy.ground.mission_names import CORE_PACKETS, foreign_declarations
 from cfepy.ground.topics import Topic
 from cfepy.ground.values import flat, int_of, line_of, measured_fields, texts_of, violations_of
 from cfepy.mission import MissionSpec, read_mission
@@ -252,8 +251,7 @@ def dictionary_of(spec: MissionSpec | None) -> Dictionary:
         items = declared(each, (*DECLARATIONS, TABLES), found.problems)
         found.add(item for item in items if not isinstance(item, TableType))
         if each is not None:
-            for read in FOREIGN_DECLARATIONS.all():
-                foreign = read(each)
+            for foreign in foreign_declarations(each):
                 found.problems += foreign.problems
                 new = [packet for packet in foreign.packets if not found.knows(packet)]
                 found.add(packet for packet in new if packet.payload.size)
@@ -312,7 +310,7 @@ def struct_layout(mission: str | None, name: str) -> Layout | None:
         name: such as "HS_AMTEntry_t".
     """
     spec = None if mission is None else read_mission(mission)
-    found = (read(spec).layout(name) for read in FOREIGN_DECLARATIONS.all()) if spec is not None else ()
+    found = (each.layout(name) for each in foreign_declarations(spec)) if spec is not None else ()
     return next((layout for layout in found if layout is not None), None)
 
 
@@ -330,8 +328,7 @@ def table_types(mission: str | None, problems: list[str]) -> dict[str, TableType
     if mission is None:
         return found
     spec = read_mission(mission)
-    for read in FOREIGN_DECLARATIONS.all():
-        foreign = read(spec)
+    for foreign in foreign_declarations(spec):
         found = {kind.name: kind for kind in foreign.tables} | found
         problems += foreign.problems
     return found | {kind.name: kind for kind in declared(spec, ("TABLES",), problems)}

@@ -9,21 +9,22 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 from cfepy.es import NODE_SYMBOL
 from cfepy.es import packets as es
 from cfepy.evs import packets as evs
-from cfepy.ground.foreign_declarations import FOREIGN_DECLARATIONS
 from cfepy.interpreter.syntax_trees import parsed_input
-from cfepy.mission import Mission, MissionSpec, find_declarations
-from cfepy.msg import is_valid_msg_id, topics
+from cfepy.mission import Mission, MissionSpec, find_compiled, find_declarations
+from cfepy.msg import Command, Layout, Telemetry, is_valid_msg_id, topics
+from cfepy.plugins import Hook
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import PYTHON_BYTES
 from cfepy.sb import packets as sb
+from cfepy.tbl import TableType
 from cfepy.tbl import packets as tbl
 from cfepy.time import packets as time
 
@@ -35,6 +36,44 @@ ROS = "ROS"
 COMMAND_BIT = 0x1000  # bit of commands: a ROS service's requests have the MsgId of its answers with this bit
 
 
+class ForeignDeclarations(NamedTuple):
+    """The declarations of a mission in files that are not Python.
+
+    Attributes:
+        packets: commands and telemetry.
+        tables: types of tables.
+        names: names of MsgIds.
+        problems: a line for each declaration that could not be read.
+        layout: returns a struct by its name in C, such as "HS_AMTEntry_t", or None.
+    """
+
+    packets: Sequence[Command | Telemetry] = ()
+    tables: Sequence[TableType] = ()
+    names: Mapping[int, str] = {}
+    problems: Sequence[str] = ()
+    layout: Callable[[str], Layout | None] = lambda name: None
+
+
+FOREIGN_DECLARATIONS: Hook[Callable[[MissionSpec], ForeignDeclarations]] = Hook("declarations")
+"""Reads the packets and tables of a mission that files other than Python declare."""
+DICTIONARY = "dictionary"
+"""The folder of a mission with files that declare packets and tables."""
+
+
+def foreign_declarations(spec: MissionSpec) -> Iterator[ForeignDeclarations]:
+    """Yield what each add-on reads of a mission.
+
+    A mission that has neither a dictionary nor a compiled application declares nothing outside Python, and loads no
+    add-on.
+    """
+    if (
+        spec.dictionary
+        or (spec.folder / DICTIONARY).is_dir()
+        or any(entry.symbol != NODE_SYMBOL and find_compiled(entry.path, spec.folder) for entry in spec.entries)
+    ):
+        yield from (read(spec) for read in FOREIGN_DECLARATIONS.all())
+
+
 def names_of(spec: MissionSpec) -> dict[int, str]:
     """Return names by MsgId, as far as known without running the mission; core services first, topics last."""
     names = core_names()
@@ -42,8 +81,8 @@ def names_of(spec: MissionSpec) -> dict[int, str]:
         if entry.symbol != NODE_SYMBOL:
             for name, msg_id in constants_in(find_declarations(entry.path, spec.folder)):
                 names.setdefault(msg_id, _with_prefix(name, entry.name))
-    for read in FOREIGN_DECLARATIONS.all():
-        for msg_id, name in read(spec).names.items():
+    for foreign in foreign_declarations(spec):
+        for msg_id, name in foreign.names.items():
             names.setdefault(msg_id, name)
     if spec.has_nodes:
         from rospy_shim.parameters import table

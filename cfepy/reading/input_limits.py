@@ -88,7 +88,7 @@ JSON_DEPTH = 100
 # CMakeLists.txt, including those of subfolders
 CMAKE_BYTES = 1 << 20  # of a file
 CMAKE_COMMANDS = 100_000  # executed commands, including loops
-CMAKE_CHARACTERS = 20_000_000  # of words read and generated
+CMAKE_CHARACTERS = 10_000_000  # of words read and generated
 CMAKE_DEPTH = 40  # nesting of blocks, calls, subfolders and brackets
 CMAKE_FILES = 50_000  # files and folders matched against patterns
 

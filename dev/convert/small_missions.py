@@ -5,7 +5,10 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from unittest.mock import patch
+
+import yaml
 
 from cfepy.extra.convert import build_for_flight
 from cfepy.mission import Mission, read_mission
@@ -42,7 +45,13 @@ def write_package(folder: Path, sources: Mapping[str, str]) -> Path:
     return package
 
 
-def small_mission(folder: Path, sources: Mapping[str, str], launch: str, profile: str = "host") -> Mission:
+def small_mission(
+    folder: Path,
+    sources: Mapping[str, str],
+    launch: str,
+    profile: str = "host",
+    capacities: Mapping[str, Mapping[str, int]] = MappingProxyType({}),
+) -> Mission:
     """Return the mission of a launch file, not started yet.
 
     Args:
@@ -50,12 +59,18 @@ def small_mission(folder: Path, sources: Mapping[str, str], launch: str, profile
         sources: see `write_package`.
         launch: content of the launch file.
         profile: profile of the nodes in C++.
+        capacities: the most items of each list, by message type and field.
     """
     write_package(folder, sources)
     (folder / "startup.scr").write_text("!\n", encoding="utf-8")
     (folder / "all.launch").write_text(f"<launch>{launch}</launch>\n", encoding="utf-8")
-    cpp = f"  profile: {profile}\n  arena_bytes: {ARENA_BYTES}\n"
-    (folder / "mission.yaml").write_text(f"launch: [all.launch]\ncpp_nodes:\n{cpp}", encoding="utf-8")
+    cpp = {
+        "profile": profile,
+        "arena_bytes": ARENA_BYTES,
+        "capacities": {name: dict(capacities[name]) for name in capacities},
+    }
+    content = yaml.safe_dump({"launch": ["all.launch"], "cpp_nodes": cpp})
+    (folder / "mission.yaml").write_text(content, encoding="utf-8")
     with patch.dict(os.environ, {"ROS_PACKAGE_PATH": str(folder)}):
         spec = read_mission(str(folder), build=build_for_flight)
     assert not spec.notes, spec.notes

@@ -2,8 +2,7 @@
 
 The commands come from a session with the real cFE. Each is damaged in one way or several, or left unchanged. A damaged
 command may be valid by chance. Commands that would rightly end an application or the processor, or clear the counters
-of
-the books, are removed by a rule: `MASKED` lists their function codes, and such a packet is replaced by the NOOP of the
+of the books, are removed by a rule: `MASKED` lists their function codes, and such a packet is replaced by the NOOP of the
 same application.
 """
 
@@ -21,9 +20,10 @@ import pytest
 from apps.ci_lab import packets as ci_lab
 from cfepy.ground.link import GroundLink
 from cfepy.mission import Mission
-from cfepy.msg import CommandTable, get_msg_id, get_size
+from cfepy.msg import Command, CommandTable, get_msg_id, get_size
 from cfepy.msg.dispatch import BAD_CODE, BAD_LENGTH, DONE, Dispatch
 from cfepy.sb.routing import Destination
+from cfepy.time.commands import TimeCommands
 from cfepy.units import NS_PER_MS
 from cfepy.writing.console import Console
 
@@ -84,7 +84,7 @@ NOT_COUNTED = {(TBL, BAD_LENGTH), (SAMPLE, BAD_CODE), (CI_LAB, BAD_CODE)}
 COUNTED_TOO = {
     **{msg_id: [(REQUESTS[msg_id], BAD_LENGTH)] for msg_id in (ES, EVS, SAMPLE)},
     SB: [(REQUESTS[SB], BAD_LENGTH), (0x180E, BAD_CODE), (0x180E, BAD_LENGTH)],
-    TIME: [(msg_id, BAD_LENGTH) for msg_id in (REQUESTS[TIME], 0x1810, 0x1811, 0x1860, 0x1862)],
+    TIME: [(0x1860, BAD_LENGTH)],  # TIME takes its other messages at any length
 }
 """What counts as a rejected command although it is none."""
 
@@ -247,14 +247,19 @@ def fly(folder: Path, seed: int, count: int, monkeypatch: pytest.MonkeyPatch) ->
     """Send damaged commands to a new mission. Returns its books."""
     (folder / "startup.scr").write_text(STARTUP, encoding="utf-8")
     outcomes: Counter[tuple[int, int]] = Counter()
-    dispatch = CommandTable.dispatch
+    dispatch, reject_length = CommandTable.dispatch, TimeCommands.reject_length
 
     def counting(table: CommandTable, packet: bytes) -> Dispatch:
         done = dispatch(table, packet)
         outcomes[done.msg_id, done.outcome] += 1
         return done
 
+    def counting_short(commands: TimeCommands, packet: bytes, command: Command) -> None:
+        reject_length(commands, packet, command)
+        outcomes[command.msg_id, BAD_LENGTH] += 1
+
     monkeypatch.setattr(CommandTable, "dispatch", counting)
+    monkeypatch.setattr(TimeCommands, "reject_length", counting_short)
     with Mission(str(folder), console=Console(quiet=True)) as mission, GroundLink(mission) as ground:
         mission.run_for(2)
         books = Books(mission, ground, outcomes)

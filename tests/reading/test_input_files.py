@@ -53,6 +53,8 @@ OPENERS = {
     "cfepy/mission/mission.py": "tables of shipped applications",
     "cfepy/pilot/mission_check/cfe_names.py": "cfepy's own sources",
     "cfepy/extra/reports/page.py": "cfepy's own page",
+    "cfepy/extra/convert/cmake_answers.py": "what CMake wrote",
+    "cfepy/extra/c/trees/mission_folder.py": "cfepy's own applications",
     "cfepy/extra/convert/configurations.py": "in the text of a program that is started",
 }
 """Modules of cfepy that open files by themselves, and which those are."""

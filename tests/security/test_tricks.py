@@ -18,7 +18,7 @@ SECONDS = 30
 MEMORY = 500 << 10
 """KB that a trick may take."""
 QUICKER = {
-    "cfepy.extra.c.toolchain.cmake_budget.CMAKE_CHARACTERS": 1_000_000,
+    "cfepy.extra.c.toolchain.cmake_budget.CMAKE_CHARACTERS": 2_000_000,
     "cfepy.extra.c.toolchain.cmake_budget.CMAKE_COMMANDS": 20_000,
     "cfepy.extra.c.toolchain.cmake_budget.CMAKE_FILES": 5_000,
     "cfepy.extra.convert.packages.CPP_FILES": 500,

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cfepy.es import NODE_SYMBOL, StartupEntry
-from cfepy.ground import ForeignDeclarations
+from cfepy.ground import DICTIONARY, ForeignDeclarations
 from cfepy.mission import MissionSpec, find_compiled
 from cfepy.msg import Command, Layout, Telemetry
 from cfepy.tbl import TableType
@@ -22,8 +22,6 @@ from cfepy.tbl import TableType
 if TYPE_CHECKING:
     from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, SourceContent
 
-FOLDER = "dictionary"
-"""The folder of a mission with the files of its dictionary."""
 DEBUG_DATA = "debug data"
 MOST_FILES = 2_000
 _SUFFIXES = (".xml", ".txt")
@@ -67,7 +65,7 @@ def contents_at(named: Iterable[Path], folder: Path, entries: Iterable[StartupEn
         folder: the folder of the mission.
         entries: the entries of the startup script.
     """
-    places = [*named, folder / FOLDER]
+    places = [*named, folder / DICTIONARY]
     files = tuple(dict.fromkeys(file for place in places for file in _files_at(place)))
     libraries = (find_compiled(entry.path, folder) for entry in entries if entry.symbol != NODE_SYMBOL)
     compiled = tuple(dict.fromkeys(each for each in libraries if each is not None))

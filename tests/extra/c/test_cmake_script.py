@@ -84,7 +84,7 @@ def test_commands_of_a_file_count_for_all_its_subfolders(tmp_path: Path, monkeyp
     [
         ("foreach(i RANGE 0 999999)\nendforeach()", "a loop of 1,000,000 iterations|a loop of 999,999 iterations"),
         ("macro(f)\nf()\nendmacro()\nf()", "nested"),
-        ("set(a x)\n" + 'set(a "${a}${a}")\n' * 40, "more than 20,000,000 characters"),
+        ("set(a x)\n" + 'set(a "${a}${a}")\n' * 40, "more than 10,000,000 characters"),
         ("if(" + "(" * 50 + "UNIX" + ")" * 50 + ")\nendif()", "nested"),
     ],
 )
