@@ -2,8 +2,8 @@
 
 The commands come from a session with the real cFE. Each is damaged in one way or several, or left unchanged. A damaged
 command may be valid by chance. Commands that would rightly end an application or the processor, or clear the counters
-of the books, are removed by a rule: `MASKED` lists their function codes, and such a packet is replaced by the NOOP of the
-same application.
+of the books, are removed by a rule: `MASKED` lists their function codes, and such a packet is replaced by the NOOP of
+the same application.
 """
 
 from __future__ import annotations
