@@ -125,10 +125,12 @@ class NodeEnd(NamedTuple):
     Attributes:
         name: the last label of its output.
         status: its exit status; None if it was ended from outside.
+        last_words: the last line of its standard error; empty for none, and for a node in C++.
     """
 
     name: str
     status: int | None
+    last_words: str = ""
 
 
 class RosRuntime:
@@ -247,7 +249,8 @@ class RosRuntime:
         finally:
             self._running.remove(node)
             self._pids.give(node.universe.pid)
-            self.ended[app_name] = NodeEnd(node.universe.name, node.universe.exit_status)
+            universe = node.universe
+            self.ended[app_name] = NodeEnd(universe.name, universe.exit_status, universe.last_words)
             node.abandon()
 
     def _crashed(self, node: Node, error: InjectedCrash) -> int:

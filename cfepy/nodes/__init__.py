@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.accesses import WHOLE, Accesses, Observer, Touch
     from cfepy.nodes.app_modules import AppModules, make_app_universe
     from cfepy.nodes.busy_waits import turn_hook
-    from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, Overlay, below_root
+    from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, WRITES_FILE, FilePoints, Overlay, below_root
     from cfepy.nodes.importer import imported, show_only
     from cfepy.nodes.reachable_objects import held_by, is_private, reaches
     from cfepy.nodes.refused_modules import RefusedError
@@ -44,11 +44,13 @@ __all__ = [
     "PREFIX",
     "ROSCORE_PARAMS",
     "WHOLE",
+    "WRITES_FILE",
     "Accesses",
     "AppModules",
     "BridgedPacket",
     "CppNode",
     "Factory",
+    "FilePoints",
     "NodeConfig",
     "Observer",
     "Overlay",
@@ -78,7 +80,17 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".accesses": ("WHOLE", "Touch", "Accesses", "Observer"),
             ".app_modules": ("AppModules", "make_app_universe"),
             ".busy_waits": ("turn_hook",),
-            ".files": ("ASKED", "LISTED", "MADE", "NEEDED", "PREFIX", "Overlay", "below_root"),
+            ".files": (
+                "ASKED",
+                "LISTED",
+                "MADE",
+                "NEEDED",
+                "PREFIX",
+                "WRITES_FILE",
+                "FilePoints",
+                "Overlay",
+                "below_root",
+            ),
             ".importer": ("imported", "show_only"),
             ".reachable_objects": ("held_by", "is_private", "reaches"),
             ".refused_modules": ("RefusedError",),

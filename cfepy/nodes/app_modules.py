@@ -170,7 +170,11 @@ def os_module(universe: Universe) -> ModuleType:
     from cfepy.nodes.stdlib.os_module import paths
     from cfepy.nodes.stdlib.users import identity
 
+    points = universe.file_points
+
     def write(fd: int, data: Any) -> int:
+        if points is not None:
+            points.pause()
         written = os.write(fd, data)
         if universe.overlay is not None:
             universe.overlay.wrote(fd)

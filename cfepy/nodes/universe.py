@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 from cfepy.interpreter.host_system import check_own_builtins
 from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.busy_waits import HOOK, turn_hook
-from cfepy.nodes.files import OpenFiles
+from cfepy.nodes.files import OpenFiles, file_points
 from cfepy.nodes.importer import Factory, Importer, ShownNames
 from cfepy.nodes.module_origins import Provision
 from cfepy.nodes.node_sources import doubts_of
@@ -152,13 +152,15 @@ class Universe:
         self._ending = False
         self._thread_ends: dict[int, list[Callable[[], None]]] = {}
         kept = {key: os.environ[key] for key in _KEPT_ENVIRONMENT if key in os.environ}
-        self.environ = os_module.Environ(kept if env is None else env)
+        self.file_points = file_points(kernel)
+        self.environ = os_module.Environ(kept if env is None else env, self.file_points)
         self.stdout = ConsoleStream("<stdout>", 1, self._write_line)
-        self.stderr = ConsoleStream("<stderr>", 2, self._write_line)
+        self.last_words = ""  # the last line of its standard error
+        self.stderr = ConsoleStream("<stderr>", 2, self._write_error_line)
         self.terminal = self._make_terminal(keys) if keys is not None else None
         self.stdin: io.TextIOBase = TypedInput(self.terminal) if self.terminal is not None else NoInput()
         self.sockets = SocketTable(self, network)
-        self.files = OpenFiles(self.resolve if overlay is None else self.absolute, overlay)
+        self.files = OpenFiles(self.resolve if overlay is None else self.absolute, overlay, self.file_points)
         self.signals = signal_module.SignalTable(self)
         self.clock = time_module.VirtualClock(self, epoch_ns)
         self.locks = make_lock_types(self)
@@ -400,6 +402,10 @@ class Universe:
 
     def _write_line(self, line: str) -> None:
         self._sink(f"[{self.name}] {line}")
+
+    def _write_error_line(self, line: str) -> None:
+        self.last_words = line or self.last_words
+        self._write_line(line)
 
 
 def process_number(name: str) -> int:

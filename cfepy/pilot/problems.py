@@ -6,6 +6,7 @@ them. A run without problems went well. Other notes for the user, such as a faul
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,12 +17,15 @@ from cfepy.monitors import DeadlineRecord, InvariantRecords
 from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
 from cfepy.rtos import InjectedCrash
 from cfepy.units import NS_PER_S, instant_text
+from cfepy.writing.escapes import visible_line
 
 if TYPE_CHECKING:
     from cfepy.script import Outcome
 
 LONG_WAIT_NS = 2 * NS_PER_S
 """A table's load that waits for a held address is a problem from here on; applications use tables for shorter times."""
+_COLOURS = re.compile(r"\x1b\[[\d;]*m")
+_LONGEST_WORDS = 200  # characters of a program's last words
 BESIDE = "beside"
 """The table of the record with a row for each mission that flew together with it."""
 
@@ -186,11 +190,12 @@ def _bad_ends(mission: Mission) -> Iterator[RunProblem]:
 
 
 def end_of(mission: Mission, name: str) -> str:
-    """Return the status with which an application ended: for a node, its program's exit status."""
+    """Return the status with which an application ended: for a node, its program's exit status and last words."""
     end = None if mission.ros is None else mission.ros.ended.get(name)
     if end is None or not end.status:
         return "CFE_ES_RunStatus_APP_ERROR"
-    return f"exit status {end.status} (node /{end.name})"
+    words = visible_line(_COLOURS.sub("", end.last_words)).strip()
+    return f"exit status {end.status} (node /{end.name}){words and f': {words[:_LONGEST_WORDS]}'}"
 
 
 def _ended_badly(mission: Mission) -> list[str]:

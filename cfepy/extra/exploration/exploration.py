@@ -21,7 +21,7 @@ from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.extent import Breadth, PointCounter
 from cfepy.extra.exploration.fork_server import ForkingNotes
 from cfepy.extra.exploration.longest import Distribution, MeasuredTrial, Worst, WorstSearch, worst_of
-from cfepy.extra.exploration.missing_points import gaps_of
+from cfepy.extra.exploration.missing_points import unseen_by
 from cfepy.extra.exploration.mission_transfer import files_read, identity_of, ship
 from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.progress import make_progress
@@ -265,7 +265,7 @@ class Expedition:
         self._keep(report)
         if not report.findings and not tally.interrupted and not self.points:
             try:
-                breadth.gaps = gaps_of(bare, options)
+                breadth.gaps, breadth.files = unseen_by(bare, options)
             except KeyboardInterrupt:  # keep the findings so far
                 tally.interrupted = True
         if distribution is not None and isinstance(trial, MeasuredTrial):

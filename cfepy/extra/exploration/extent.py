@@ -24,6 +24,8 @@ _KINDS = {
     "rospy_shim.client.rostime": "clocks",
     "cfepy.time": "clocks",
     "cfepy.osal.clock": "clocks",
+    "cfepy.nodes.files": "files",
+    "cfepy.osal.files": "files",
     "rospy_shim.client.timer": "timers",
     "rospy_shim.client.service": "services",
     "rospy_shim.client.service_proxy": "services",
@@ -90,6 +92,7 @@ class Breadth:
         orders: digests of the runs that differ from each other.
         pct: by depth, the number of PCT schedules for bugs of that depth.
         gaps: functions that access objects that other tasks also access, with no preemption point between; a line each.
+        files: files that two tasks used, one of them to change it; a line each.
         seen: the extent of a search of orders.
         steps: the most decisions that a PCT run had, or was drawn for.
     """
@@ -100,6 +103,7 @@ class Breadth:
     pct: Counter[int] = field(default_factory=Counter)
     steps: int = 1
     gaps: list[str] = field(default_factory=list)
+    files: list[str] = field(default_factory=list)
     seen: OrdersSeen | None = None
 
     def take(self, verdict: Verdict) -> None:
@@ -138,6 +142,9 @@ class Breadth:
                 "accesses without a call between them were one step; --points attributes adds points between them:"
             )
             found += [f"  {gap}" for gap in self.gaps]
+        if self.files:
+            found.append("files that more than one task used:")
+            found += [f"  {file}" for file in self.files]
         return found
 
     def to_dict(self) -> dict[str, object]:
@@ -151,5 +158,6 @@ class Breadth:
             "tasks": self.tasks,
             "steps": self.steps,
             "gaps": self.gaps,
+            "files": self.files,
             "chances": {depth: self.chance(depth) for depth in sorted(self.pct)},
         }

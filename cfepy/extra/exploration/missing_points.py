@@ -1,8 +1,8 @@
-"""Gaps of an exploration: functions that access shared objects twice with no scheduling point between.
+"""What an exploration without a failure leaves open: gaps between points, and files that two tasks use.
 
-No schedule of an exploration at calls alone lets another task in there. One more run, of the default schedule, finds
-them. It watches accesses as the race watch does. Two accesses of one function form a pair when its task has called
-nothing between.
+A gap is a function that accesses a shared object twice with no scheduling point between. No schedule of an exploration
+at calls alone lets another task in there. One more run, of the default schedule, finds them. It watches accesses as the
+race watch does. Two accesses of one function form a pair when its task has called nothing between.
 """
 
 from __future__ import annotations
@@ -10,19 +10,31 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import PurePath
 from types import CodeType
-from typing import Any
+from typing import Any, NamedTuple
 
 from cfepy.extra.exploration.trial import Trial
 from cfepy.monitors import RaceWatch
-from cfepy.nodes import Touch
+from cfepy.nodes import WRITES_FILE, FilePoints, Touch
 from cfepy.rtos import Task
 from cfepy.schedules import CALLS, CallPointKernel, Schedule
 
 MOST_TOLD = 5
 
 
-def gaps_of(trial: Trial, options: Schedule) -> list[str]:
-    """Fly the run once more. Returns the gaps of all schedules with these options, a line each.
+class Unseen(NamedTuple):
+    """What no schedule has tried, or what none has shown to be safe.
+
+    Attributes:
+        gaps: functions that access shared objects twice with no point between; a line each.
+        files: files that two tasks used, one of them to change it; a line each.
+    """
+
+    gaps: list[str]
+    files: list[str]
+
+
+def unseen_by(trial: Trial, options: Schedule) -> Unseen:
+    """Fly the run once more. Returns what all schedules with these options leave open.
 
     Args:
         trial: the trial.
@@ -31,7 +43,7 @@ def gaps_of(trial: Trial, options: Schedule) -> list[str]:
     watch = GapWatch()
     plain = replace(trial, plan=replace(trial.plan, races=False), waits=None, reference=None)
     plain.fly(options.at({}).with_points(CALLS), [watch])
-    return watch.lines()
+    return Unseen(watch.lines(), watch.files.lines())
 
 
 class GapWatch(RaceWatch):
@@ -46,6 +58,8 @@ class GapWatch(RaceWatch):
         super().begin(mission)
         self._kernel: CallPointKernel = mission.kernel
         mission.accesses.observers.append(self._pair)
+        self.files = SharedFiles(mission.kernel)
+        mission.kernel.watch(self.files)
 
     def _pair(self, touch: Touch) -> None:
         """Record a pair if the function accessed the same variable before, and no task could run since."""
@@ -64,6 +78,49 @@ class GapWatch(RaceWatch):
             if place in self.racing:
                 where = f"{code.co_qualname} ({PurePath(code.co_filename).name}:{first.line})"
                 found.setdefault(where, []).append(name)
-        lines = [f"{where}: {' and '.join(names)}" for where, names in found.items()]
-        more = [f"and {len(lines) - MOST_TOLD} more"] if len(lines) > MOST_TOLD else []
-        return [*lines[:MOST_TOLD], *more]
+        return _cut([f"{where}: {' and '.join(names)}" for where, names in found.items()])
+
+
+class SharedFiles:
+    """An observer of calls that keeps which tasks use which files.
+
+    Args:
+        kernel: kernel of the mission.
+    """
+
+    def __init__(self, kernel: CallPointKernel) -> None:
+        self._kernel = kernel
+        self._users: dict[str, dict[str, bool]] = {}  # by path: names of tasks, and whether they change it
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        """Keep an access; see `CallObserver.called`."""
+        if isinstance(subject, FilePoints):
+            users = self._users.setdefault(args[0], {})
+            task = self._kernel.current.name
+            users[task] = users.get(task, False) or call == WRITES_FILE
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        """Do nothing: an access counts when it begins."""
+
+    def failed(self, subject: Any, call: str) -> None:
+        """Do nothing."""
+
+    def lines(self) -> list[str]:
+        """Return a line for each file that two tasks used, one of them to change it."""
+        found = []
+        for path, users in self._users.items():
+            writers = [task for task, changes in users.items() if changes]
+            readers = [task for task, changes in users.items() if not changes]
+            if writers and len(users) > 1:
+                parts = [
+                    f"{' and '.join(names)} {verb}"
+                    for names, verb in ((writers, "changed"), (readers, "read"))
+                    if names
+                ]
+                found.append(f"{path}: {', '.join(parts)} it")
+        return _cut(found)
+
+
+def _cut(lines: list[str]) -> list[str]:
+    more = [f"and {len(lines) - MOST_TOLD} more"] if len(lines) > MOST_TOLD else []
+    return [*lines[:MOST_TOLD], *more]

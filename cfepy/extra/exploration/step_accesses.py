@@ -1,9 +1,9 @@
 """The accesses of a mission's steps, as far as cfepy observes them: an attachment that keeps a run's steps.
 
-cfepy observes pipes and messages, locks, semaphores and queues, waits, tables, parameters and the ROS graph. In code of
-the mission it also observes attributes, items of containers, and variables that functions share. If the accesses of a
-call are not known, it counts as an access to all of its service. Two things are not observed: the time of day, which
-differs by microseconds from one order to the next, and files.
+cfepy observes pipes and messages, locks, semaphores and queues, waits, tables, parameters, files and the ROS graph. In
+code of the mission it also observes attributes, items of containers, and variables that functions share. If the
+accesses of a call are not known, it counts as an access to all of its service. The time of day is not observed, which
+differs by microseconds from one order to the next.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import Any, cast
 from cfepy.attachment import Attachment
 from cfepy.extra.exploration.steps import GIVES, READS, TAKES, WRITES, StepLog, TaskStep, Touched, state_of
 from cfepy.mission import Mission, MissionSpec, Processor, find_compiled
-from cfepy.nodes import WHOLE, Touch
+from cfepy.nodes import WHOLE, WRITES_FILE, FilePoints, Touch
 from cfepy.ports import PEND_FOREVER
 from cfepy.rtos import Kernel, Task, WaitList, wrapping
 from cfepy.sb import Destination, Pipe, PutHook, SoftwareBus
@@ -118,7 +118,9 @@ class Footprints(Attachment):
         self._log.leave(task)
 
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
-        """Record a call of a cFE service or of a node's lock; see `CallObserver.called`."""
+        """Record a call of a cFE service, of a node's lock or of a file; see `CallObserver.called`."""
+        if isinstance(subject, FilePoints):
+            self.touch(f"file {args[0]}", WRITES if call == WRITES_FILE else READS)
         if self._is_of_calls(subject):
             wanted = self._name(subject, args) if call in _TAKING else ""
             self._log.begin(self._things(subject, call, args), wanted)

@@ -21,7 +21,7 @@ from cfepy.ground import dictionary_of, line_of, plain
 from cfepy.interpreter.own_code import is_shown
 from cfepy.mission import CORE_APPS, Mission, MissionSpec
 from cfepy.monitors import Heard, MessageWatch
-from cfepy.nodes import WHOLE, Touch
+from cfepy.nodes import WHOLE, WRITES_FILE, FilePoints, Touch
 from cfepy.pilot.determinism_look import place_text
 from cfepy.rtos import TIMEOUT, AskingPolicy, Decision, Kernel, Policy, Task, wrapping
 from cfepy.sb import PEND_FOREVER, Pipe, Route, SoftwareBus
@@ -235,6 +235,9 @@ class TaskLook(Attachment):
             self._call_of_app(task, subject, call, args, frame, ended=False)
         elif call == "__init__":
             self._things.made(subject, frame)
+        elif isinstance(subject, FilePoints):
+            verb = do.WRITES if call == WRITES_FILE else do.READS
+            self._shown(task, self._done(task, verb, f"file {args[0]}", frame), frame)
         elif hasattr(subject, "_at_fork_reinit"):
             self._call_of_node(task, subject, call, frame)
 

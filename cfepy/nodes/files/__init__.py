@@ -2,13 +2,15 @@
 
 Everything that determines a program's view of a path belongs here: the layers and copying on write (`overlay`), paths
 and places (`paths`), metadata (`stamps`), and Python's functions that take paths or descriptors: `open` (`opened`),
-those of `os` (`file_calls`) and those of modules that open files in C (`shared`). The files of OSAL are in
+those of `os` (`file_calls`) and those of modules that open files in C (`shared`). `file_points` lets other tasks run
+before file calls while schedules are explored. The files of OSAL are in
 `cfepy.osal`.
 """
 
 from __future__ import annotations
 
 from cfepy.nodes.files.file_calls import Entries, FileCalls
+from cfepy.nodes.files.file_points import READS_FILE, WRITES_FILE, FilePoints, file_points
 from cfepy.nodes.files.opened import OpenFiles
 from cfepy.nodes.files.overlay import PREFIX, Overlay
 from cfepy.nodes.files.paths import below_root
@@ -21,10 +23,14 @@ __all__ = [
     "MADE",
     "NEEDED",
     "PREFIX",
+    "READS_FILE",
     "USER",
+    "WRITES_FILE",
     "Entries",
     "FileCalls",
+    "FilePoints",
     "OpenFiles",
     "Overlay",
     "below_root",
+    "file_points",
 ]

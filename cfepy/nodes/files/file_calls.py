@@ -167,7 +167,8 @@ class FileCalls:
         found |= {name: self._changing(getattr(os, name)) for name in _CHANGES if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name), follow=False) for name in _LINK_CHANGES if hasattr(os, name)}
         found |= {name: self._writing(name, getattr(os, name)) for name in _WRITES if hasattr(os, name)}
-        return found
+        points = self._universe.file_points
+        return found if points is None else {name: points.around(name, found[name], self.where) for name in found}
 
     def where(self, path: Any, dir_fd: int | None = None) -> str:
         """Return the absolute path, as the program sees it, of an argument."""

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from itertools import count
 from typing import IO, TYPE_CHECKING, Any
@@ -17,6 +17,7 @@ from weakref import WeakValueDictionary
 from cfepy.nodes.files.stamps import BLOCK, Key, key_of
 
 if TYPE_CHECKING:
+    from cfepy.nodes.files.file_points import FilePoints
     from cfepy.nodes.files.overlay import Overlay
 
 _Opener = Callable[[Any, int], int]
@@ -58,14 +59,19 @@ class OpenFiles:
     Args:
         where: makes a path of the program absolute.
         overlay: files of its run; None for the host's files.
+        points: where other tasks may run; None for nowhere.
 
     Attributes:
         raw_type: `io.FileIO` of the program.
     """
 
-    def __init__(self, where: Callable[[Any], str], overlay: Overlay | None = None) -> None:
+    def __init__(
+        self, where: Callable[[Any], str], overlay: Overlay | None = None, points: FilePoints | None = None
+    ) -> None:
         self._where = where
         self._overlay = overlay
+        self._points = points
+        self._layers: Mapping[type, type] = {} if points is None else points.layers(where)
         self.raw_type = io.FileIO if overlay is None else self._raw_class(overlay)
         self._files: WeakValueDictionary[int, IO[Any]] = WeakValueDictionary()
         self._numbers = count()
@@ -89,8 +95,10 @@ class OpenFiles:
                 opened: IO[Any] = open(place, mode, buffering, closefd=closefd, opener=opener, **texts)  # noqa: SIM115
             else:
                 _check(mode, buffering, closefd, texts)
+                if self._points is not None:
+                    self._points.access(self._where(file), "r" not in mode or "+" in mode)
                 raw = self.raw_type(file, mode.replace("b", "").replace("t", ""), closefd, opener)
-                opened = _layered(raw, mode, buffering, texts)
+                opened = _layered(raw, mode, buffering, texts, self._layers)
             self._files[next(self._numbers)] = opened
             return opened
 
@@ -167,22 +175,27 @@ def _check(mode: str, buffering: int, closefd: bool, texts: dict[str, str | None
         raise ValueError("Cannot use closefd=False with file name")
 
 
-def _layered(raw: io.FileIO, mode: str, buffering: int, texts: dict[str, Any]) -> IO[Any]:
-    """Return a raw file with its buffer and its text."""
+def _layered(raw: io.FileIO, mode: str, buffering: int, texts: dict[str, Any], layers: Mapping[type, type]) -> IO[Any]:
+    """Return a raw file with its buffer and its text.
+
+    Args:
+        raw: the raw file.
+        mode: as for `open`.
+        buffering: as for `open`.
+        texts: encoding and the like, as for `open`.
+        layers: classes for the outermost layer, by Python's own; those that are missing are Python's own.
+    """
     if buffering == 0:
         return raw  # as `io.open` does
     is_line = buffering == 1 or (buffering < 0 and raw.isatty())
     size = buffering if buffering > 1 else BLOCK
     try:
-        if "+" in mode:
-            buffer: Any = io.BufferedRandom(raw, size)
-        else:
-            buffer = io.BufferedReader(raw, size) if "r" in mode else io.BufferedWriter(raw, size)
+        kind: type = io.BufferedRandom if "+" in mode else io.BufferedReader if "r" in mode else io.BufferedWriter
         if "b" in mode:
-            return buffer  # type: ignore[no-any-return]
-        text = io.TextIOWrapper(buffer, line_buffering=is_line, **texts)
+            return layers.get(kind, kind)(raw, size)  # type: ignore[no-any-return]
+        text = layers.get(io.TextIOWrapper, io.TextIOWrapper)(kind(raw, size), line_buffering=is_line, **texts)
     except BaseException:
         raw.close()
         raise
-    text.mode = mode  # type: ignore[misc]
-    return text
+    text.mode = mode
+    return text  # type: ignore[no-any-return]

@@ -6,7 +6,7 @@ import codecs
 import os
 from collections.abc import Callable
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 from urllib.parse import quote, unquote
 
 from cfepy.nodes.made_modules import proxy, rebind
@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 _PATHS = (str, bytes, os.PathLike)
 _IN_MEMORY = (":memory:", "")
+_BUSY_S = 0.001  # from one look at a database that is locked to the next
+_LOOKING = ("SELECT", "PRAGMA", "EXPLAI")
 _ARRAY_READERS = ("fromfile", "fromregex", "genfromtxt", "load", "loadtxt")
 _ARRAY_SUFFIXES = {"save": ".npy", "savez": ".npz", "savez_compressed": ".npz", "savetxt": ""}
 
@@ -26,8 +28,14 @@ def codecs_module(universe: Universe) -> ModuleType:
 
 
 def sqlite3_module(universe: Universe) -> ModuleType:
-    """`sqlite3`: its databases are files of the run; a host database is copied when it is opened."""
+    """`sqlite3`: its databases are files of the run; a host database is copied when it is opened.
+
+    A connection waits in virtual time for a lock that another connection has. Other tasks may run before a statement
+    while schedules are explored.
+    """
     import sqlite3
+
+    points = universe.file_points
 
     def place(database: Any) -> Any:
         plain = os.fsdecode(database)
@@ -42,20 +50,75 @@ def sqlite3_module(universe: Universe) -> ModuleType:
         where = universe.resolve(path) if reads else universe.claimed(path)
         return f"file:{quote(str(where))}{'?' if query else ''}{query}"
 
+    def patient(connection: Any, action: Callable[[], Any], statement: Any = "") -> Any:
+        """Execute a statement, as soon as no other connection has a lock against it."""
+        if points is not None and connection.path in _IN_MEMORY:
+            points.pause()
+        elif points is not None:
+            is_read = isinstance(statement, str) and statement.lstrip()[:6].upper() in _LOOKING
+            points.access(universe.absolute(connection.path), not is_read)
+        end_ns = universe.kernel.now + round(connection.patience * 1e9)
+        while True:
+            try:
+                return action()
+            except sqlite3.OperationalError as error:
+                if "locked" not in str(error) or universe.kernel.now >= end_ns:
+                    raise
+                universe.clock.wait(_BUSY_S)
+
+    class Cursor(sqlite3.Cursor):
+        __doc__ = sqlite3.Cursor.__doc__
+
+        def execute(self, *args: Any) -> Any:
+            return patient(self.connection, lambda: super(Cursor, self).execute(*args), *args[:1])
+
+        def executemany(self, *args: Any) -> Any:
+            return patient(self.connection, lambda: super(Cursor, self).executemany(*args), *args[:1])
+
+        def executescript(self, *args: Any) -> Any:
+            return patient(self.connection, lambda: super(Cursor, self).executescript(*args))
+
     class Connection(sqlite3.Connection):
         __doc__ = sqlite3.Connection.__doc__
 
-        def __init__(self, database: Any, *args: Any, **options: Any) -> None:
+        def __init__(self, database: Any, timeout: float = 5.0, *args: Any, **options: Any) -> None:
             is_uri = options.get("uri", False) and isinstance(database, str)
-            super().__init__(uri_place(database) if is_uri else place(database), *args, **options)
+            self.path = os.fsdecode(database)
+            self.patience = timeout
+            super().__init__(uri_place(database) if is_uri else place(database), 0.0, *args, **options)
 
-    Connection.__module__ = "sqlite3"
+        def cursor(self, factory: Any = Cursor) -> Any:
+            return super().cursor(factory)
+
+        def execute(self, *args: Any) -> Any:
+            return self.cursor().execute(*args)
+
+        def executemany(self, *args: Any) -> Any:
+            return self.cursor().executemany(*args)
+
+        def executescript(self, *args: Any) -> Any:
+            return self.cursor().executescript(*args)
+
+        def commit(self) -> None:
+            patient(self, super().commit)
+
+        def rollback(self) -> None:
+            patient(self, super().rollback)
+
+        def __exit__(self, kind: object, *error: object) -> Literal[False]:
+            if kind is None:
+                self.commit()
+            else:
+                self.rollback()
+            return False
+
+    Connection.__module__ = Cursor.__module__ = "sqlite3"
 
     def connect(database: Any, *args: Any, **options: Any) -> Any:
         options.setdefault("factory", Connection)
         return sqlite3.connect(database, *args, **options)
 
-    return proxy(sqlite3, connect=connect, Connection=Connection)
+    return proxy(sqlite3, connect=connect, Connection=Connection, Cursor=Cursor)
 
 
 def sqlite3_part(universe: Universe) -> ModuleType:
@@ -63,7 +126,7 @@ def sqlite3_part(universe: Universe) -> ModuleType:
     import sqlite3.dbapi2
 
     module = universe.importer.load("sqlite3")
-    return proxy(sqlite3.dbapi2, connect=module.connect, Connection=module.Connection)
+    return proxy(sqlite3.dbapi2, connect=module.connect, Connection=module.Connection, Cursor=module.Cursor)
 
 
 def array_files(universe: Universe, numpy: ModuleType) -> dict[str, Callable[..., Any]]:
@@ -74,8 +137,16 @@ def array_files(universe: Universe, numpy: ModuleType) -> dict[str, Callable[...
         numpy: the host's NumPy.
     """
 
+    points = universe.file_points
+
+    def pause(path: str, is_write: bool) -> None:
+        if points is not None:
+            points.access(universe.absolute(path), is_write)
+
     def reading(function: Callable[..., Any]) -> Callable[..., Any]:
         def read(file: Any, *args: Any, **options: Any) -> Any:
+            if isinstance(file, _PATHS):
+                pause(os.fsdecode(file), False)
             return function(universe.resolve(file) if isinstance(file, _PATHS) else file, *args, **options)
 
         return read
@@ -85,7 +156,9 @@ def array_files(universe: Universe, numpy: ModuleType) -> dict[str, Callable[...
             if not isinstance(file, _PATHS):
                 return function(file, *args, **options)
             path = os.fsdecode(file)
-            return function(universe.claimed(path if path.endswith(suffix) else path + suffix), *args, **options)
+            path = path if path.endswith(suffix) else path + suffix
+            pause(path, True)
+            return function(universe.claimed(path), *args, **options)
 
         return write
 
