@@ -423,6 +423,12 @@ def add_output(parser: argparse.ArgumentParser, text: str, default: str | None =
     parser.add_argument("-o", "--output", metavar="PATH", default=default, help=f"where to write (default: {text})")
 
 
+def add_cfe(parser: argparse.ArgumentParser) -> None:
+    """Add the option for the release of cFE that sources in C are written for."""
+    text = "the sources are for cFE 6: 6.5 or 6.7 (default: cFE 7)"
+    parser.add_argument("--cfe", metavar="RELEASE", help=text)
+
+
 def add_drawing(parser: argparse.ArgumentParser, kind: str, text: str) -> None:
     """Add the option for a drawing, or for the input of a drawing program.
 

@@ -11,6 +11,7 @@ from cfepy.cli.flight_options import add_flight
 from cfepy.cli.options import (
     RUN_OPTIONS,
     STATUS_HELP,
+    add_cfe,
     add_ci_outputs,
     add_json,
     add_mission,
@@ -106,6 +107,7 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
     mission.set_defaults(c=False, hint="; only applications can be in C: cfepy new app NAME --c")
     text = "a cFS mission tree, or the folder of an application in C; NAME may be left out"
     mission.add_argument("--from", dest="source", metavar="TREE|FOLDER", help=text)
+    add_cfe(mission)
     app.add_argument("name", metavar="NAME", help="also the name of the new folder")
     mission.add_argument("name", metavar="NAME", nargs="?", help="also the name of the new folder")
     for kind in (app, mission):

@@ -33,7 +33,7 @@ FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: after NASA's app
 FIRST_PERF_ID, PERF_IDS = 100, 28  # after NASA's apps, up to the last of cFE's 128
 
 Files = dict[str, bytes]
-MISSION_FROM: Hook[Callable[[Path, Path | None], int]] = Hook("mission_from")
+MISSION_FROM: Hook[Callable[[Path, Path | None, str | None], int]] = Hook("mission_from")
 """Makes a mission folder from a mission tree or an application in C, and flies it. Returns the exit status."""
 
 
@@ -48,7 +48,10 @@ def run(arguments: argparse.Namespace) -> int:
     """
     kind, name = arguments.kind, arguments.name
     if kind == "mission" and arguments.source is not None:
-        return MISSION_FROM.need("`--from`")(Path(arguments.source), None if name is None else Path(name))
+        made = None if name is None else Path(name)
+        return MISSION_FROM.need("`--from`")(Path(arguments.source), made, arguments.cfe)
+    if kind == "mission" and arguments.cfe is not None:
+        raise UsageError("only valid with --from", field="--cfe")
     if name is None:
         raise UsageError("missing name: cfepy new mission NAME", field="NAME")
     _check_name(kind, name)

@@ -13,6 +13,7 @@ from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.ground_check import ground_differences
 from cfepy.extra.c.linking import refused_names, undefined_on_linux, wanted_names
 from cfepy.extra.c.refused import BY_REASON, REASONS
+from cfepy.extra.c.toolchain.cfe6 import is_name_of_cfe_6
 from cfepy.mission import MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
 from cfepy.reading.input_files import read_limited
@@ -67,6 +68,8 @@ def _check_needs(
     unknown = {name for name in wanted if name not in REASONS}
     if unknown:
         text = f"{entry.name} needs {_listed(unknown)}, but cfepy and the libraries of the mission do not define them"
+        if any(map(is_name_of_cfe_6, unknown)):
+            text += ", because it was built for cFE 6; build its sources with cfepy build --cfe 6.5 or --cfe 6.7"
         nowhere = undefined_on_linux(source, sorted(unknown))
         so = f"; it cannot be loaded without {_listed(set(nowhere))}" if nowhere else "; calling it is a fault"
         yield MissionProblem(script, entry.line, text + so, is_warning=not nowhere)

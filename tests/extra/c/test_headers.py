@@ -22,7 +22,7 @@ from cfepy.extra.c.elf import elf_file
 from cfepy.extra.c.engine import compiler
 from cfepy.extra.c.toolchain.application import WITHOUT_DEPRECATED, WITHOUT_DEPRECATED_OSAL
 from cfepy.extra.c.toolchain.compiler import cpp_compiler
-from cfepy.extra.c.toolchain.headers import DECLARATIONS, headers_folder, names
+from cfepy.extra.c.toolchain.headers import DECLARATIONS, NAMES, NAMES_6, headers_folder, names
 from tests.extra.c.building import needs_compiler
 
 pytestmark = needs_compiler
@@ -146,7 +146,7 @@ def test_headers_compile_as_cpp(flags: list[str], tmp_path: Path) -> None:
 
 
 def test_each_declaration_file_is_used_by_a_header() -> None:
-    led_to = {each for ours in names().values() for each in ours}
+    led_to = {each for file in (NAMES, NAMES_6) for ours in names(file).values() for each in ours}
     there = {each.stem for each in DECLARATIONS.glob("*.h")}
     assert led_to <= there
     included = {

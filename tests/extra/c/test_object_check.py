@@ -117,3 +117,9 @@ def test_unknown_abi_profile_is_a_warning_when_debug_data_is_missing(tmp_path: P
     assert "cannot determine whether TEST.so have OMIT_DEPRECATED" in problem.text
     (tmp_path / "mission.yaml").write_text(OMITS.format("false"), encoding="utf-8")
     assert check_mission(folder) == []
+
+
+def test_object_that_was_built_for_cfe_6_is_named(tmp_path: Path) -> None:
+    compile_c(tmp_path, "OLD", "int CFE_SB_RcvMsg(void *, int, int);\nvoid OLD_Main(void) { CFE_SB_RcvMsg(0, 0, 0); }")
+    found = [each.text for each in check_mission(write_mission(tmp_path, "OLD"))]
+    assert any("because it was built for cFE 6; build its sources with cfepy build --cfe 6.5" in each for each in found)

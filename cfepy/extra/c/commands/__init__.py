@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.options import add_output
+from cfepy.cli.options import add_cfe, add_output
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -38,6 +38,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         metavar="DIR",
         help="a mission's headers, before the application's own; of a tree, its folder of definitions",
     )
+    add_cfe(build)
     build.add_argument(
         "--flag", metavar="FLAG", action="append", default=[], help="a flag of the compiler, as --flag=-DNAME=1"
     )

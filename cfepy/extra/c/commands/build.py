@@ -94,6 +94,7 @@ def _options(arguments: argparse.Namespace) -> Options:
     return Options(
         cfs=None if arguments.cfs is None else Path(arguments.cfs),
         definitions=None if arguments.defs is None else Path(arguments.defs),
+        cfe=arguments.cfe,
         optimize=arguments.optimize,
         debug=not arguments.no_debug,
         omit_deprecated=arguments.omit_deprecated,

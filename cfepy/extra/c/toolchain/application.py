@@ -17,9 +17,18 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.extra.c.elf import MACHINES, check_elf_reader, elf_file
+from cfepy.extra.c.toolchain.cfe6 import (
+    OPTION,
+    advice_about,
+    cfe6_flags,
+    check_release,
+    neighbour_headers,
+    removed_in,
+    shows_cfe_6,
+)
 from cfepy.extra.c.toolchain.compiler import CompileJob, CompilerError, compile_file, compile_files, is_cpp, link
 from cfepy.extra.c.toolchain.headers import CfsTree, headers_folder, read_tree
-from cfepy.extra.c.toolchain.source_files import Sources, find_sources
+from cfepy.extra.c.toolchain.source_files import Sources, find_sources, own_headers
 from cfepy.reading.contained_files import write_contained
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
@@ -56,6 +65,7 @@ class Options:
     Attributes:
         cfs: a cFS tree whose headers are used; None for cfepy's.
         definitions: a folder of a mission's headers, which go before the application's own.
+        cfe: the release of cFE 6 that the sources are written for, "6.5" or "6.7"; None for cFE 7.
         optimize: the compiler's -O, such as "2" or "g".
         debug: whether to include debug data (-g).
         omit_deprecated: whether deprecated names are left out, as with OMIT_DEPRECATED in a cFS build: table handles
@@ -70,6 +80,7 @@ class Options:
 
     cfs: Path | None = None
     definitions: Path | None = None
+    cfe: str | None = None
     optimize: str = "1"
     debug: bool = True
     omit_deprecated: bool = False
@@ -118,7 +129,22 @@ def build(folder: str | Path, library: str | Path | None = None, options: Option
         CompilerError: the compiler refused a file; the text is the compiler's.
     """
     options = options or Options()
+    check_options(options)
     return build_sources(find_sources(Path(folder), options.definitions), library, options)
+
+
+def check_options(options: Options) -> None:
+    """Check that options can be combined.
+
+    Raises:
+        UsageError: they cannot.
+    """
+    check_release(options.cfe)
+    if options.cfe is not None and options.omit_deprecated:
+        text = "cannot be combined with --omit-deprecated, because ids are numbers in cFE 6"
+        raise UsageError(text, field=OPTION)
+    if options.cfe is not None and options.cfs is not None:
+        raise UsageError("cannot be combined with --cfs; cfepy's headers have the names of cFE 6", field=OPTION)
 
 
 def build_sources(
@@ -180,6 +206,8 @@ class _Builder:
             write_contained(chosen, f"/{name}", b"" if file is None else f'#include "{file}"\n'.encode())
         headers = [headers_folder()] if options.cfs is None else tree.includes
         self._flags = [f"-I{each}" for each in (*sources.includes, chosen, *headers)]
+        if options.cfe is not None:
+            self._flags += [*cfe6_flags(options.cfe, headers_folder()), *neighbour_headers(sources.folder)]
         self._flags.append(f"-ffile-prefix-map={scratch}=.")  # so that two builds give the same bytes
         self._flags += [f"-D{each}" for each in sources.definitions]
         if options.omit_deprecated:
@@ -232,6 +260,10 @@ class _Builder:
             warnings = compile_files(jobs, lambda job: self._show(job.source), self._progress.refresh)
         except CompilerError as error:
             raise self._with_hint(error) from None
+        if self._options.cfe is not None:  # C only warns of a function that is declared nowhere
+            removed = removed_in("\n".join(warnings), self._all_sources())
+            if removed:
+                raise CompilerError("\n".join(map(str, removed)))
         self._built.warnings += filter(None, warnings)
         return [each.made for each in jobs]
 
@@ -283,8 +315,18 @@ class _Builder:
         total = len(self._sources.code) + len(self._table_sources)
         self._progress.show(f"compiling {self._sources.name}: {self._started} of {total}, {source.name}")
 
+    def _all_sources(self) -> list[Path]:
+        return [*self._sources.code, *self._table_sources, *own_headers(self._sources)]
+
     def _with_hint(self, error: CompilerError) -> CompilerError:
-        """Return an error with the neighbours that were not found, if a header is missing."""
+        """Return an error with advice: names of cFE 6, and neighbours that were not found if a header is missing."""
+        sources = self._all_sources()
+        if self._options.cfe is not None:
+            removed = [str(each) for each in removed_in(str(error), sources)]
+            if removed:
+                return CompilerError("\n".join([str(error), *removed]))
+        elif unknown := shows_cfe_6(str(error)):
+            return CompilerError(f"{error}\n{advice_about(unknown, sources)}")
         if not self._sources.missing or "No such file" not in str(error):
             return error
         missing = ", ".join(self._sources.missing)

@@ -17,11 +17,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from cfepy.extra.c.build_cache import cache_folder, writing_cache
+from cfepy.extra.c.toolchain.cfe6 import FOLDER
 from cfepy.extra.c.toolchain.source_files import chosen_headers
 from cfepy.status import UsageError
 
 DECLARATIONS = Path(__file__).parents[1] / "headers"
 NAMES = DECLARATIONS / "names.txt"
+NAMES_6 = DECLARATIONS / "names_cfe6.txt"
+"""Headers that only cFE 6 has."""
 INNER = "cfepy"
 """The folder of the declarations, relative to the names."""
 
@@ -46,11 +49,11 @@ def headers_folder() -> Path:
     return folder
 
 
-def names() -> dict[str, list[str]]:
+def names(file: Path = NAMES) -> dict[str, list[str]]:
     """Return cfepy's headers for each of NASA's names; all without `.h`."""
     found: dict[str, list[str]] = {}
     ours: list[str] = []
-    for line in NAMES.read_text(encoding="utf-8").splitlines():
+    for line in file.read_text(encoding="utf-8").splitlines():
         if line.endswith(":"):
             ours = line[:-1].split()
         elif not line.startswith("#"):
@@ -61,13 +64,15 @@ def names() -> dict[str, list[str]]:
 def _files() -> dict[str, str]:
     """Return the contents of the folder: path to text."""
     files = {f"{INNER}/{each.name}": each.read_text(encoding="utf-8") for each in DECLARATIONS.glob("*.h")}
-    for name, ours in names().items():
-        files[f"{name}.h"] = "".join(f'#include "{INNER}/{each}.h"\n' for each in ours)
+    for folder, listed in (("", NAMES), (f"{FOLDER}/", NAMES_6)):
+        for name, ours in names(listed).items():
+            files[f"{folder}{name}.h"] = "".join(f'#include "{INNER}/{each}.h"\n' for each in ours)
     return files
 
 
 def _write(files: dict[str, str], folder: Path) -> None:
     (folder / INNER).mkdir(parents=True)
+    (folder / FOLDER).mkdir()
     for name, text in files.items():
         (folder / name).write_text(text, encoding="utf-8")
 

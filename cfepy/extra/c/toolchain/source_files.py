@@ -96,6 +96,7 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
         found = sources_by_convention(folder)
         found.name = folder.resolve().name
         found.includes = headers + _folders(folder, INCLUDES)
+        found.table_includes = _folders(folder, CODE[:-1])
         _choose(found, folder, headers)
     else:
         found = _sources_of_cmake(folder, headers)
@@ -103,6 +104,13 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
         raise UsageError("missing C sources: add them to fsw/src, or name them in CMakeLists.txt", file=folder)
     found.includes = list(dict.fromkeys(found.includes))
     return found
+
+
+def own_headers(sources: Sources) -> list[Path]:
+    """Return the headers in an application's own folder, beside its sources and in its include folders."""
+    folders = {each for each in sources.includes if each.is_relative_to(sources.folder)}
+    folders |= {each.parent for each in sources.code}
+    return sorted({file for folder in folders for file in folder.glob("*.h")})
 
 
 def _sources_of_cmake(folder: Path, headers: list[Path]) -> Sources:

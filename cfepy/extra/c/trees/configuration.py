@@ -23,6 +23,7 @@ from cfepy.config.platform import NOT_LIMITS, PlatformConfig
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.extra.c.elf import elf_file
 from cfepy.extra.c.engine import compiler
+from cfepy.extra.c.toolchain.cfe6 import option_of
 from cfepy.extra.c.toolchain.cmake_project import Project, ProjectScript
 from cfepy.extra.c.toolchain.compiler import C_FLAGS, COMMON, CompilerError, call_bounded, compile_file
 from cfepy.extra.c.toolchain.headers import NEEDED, headers_folder, read_tree
@@ -208,7 +209,9 @@ class _Reader:
         if file.is_file():
             said = dict(_DEFINED.findall(text_limited(file, OBJECT_BYTES, "replace")))
             numbers = [said.get(each, "?").strip("() ") for each in _VERSION_PARTS]
-            self._found.notes.append(f"the tree has cFE {'.'.join(numbers)}; the mission runs on cFE {DEFAULT_RELEASE}")
+            text = f"the tree has cFE {'.'.join(numbers)}; the mission runs on cFE {DEFAULT_RELEASE}"
+            option = option_of(numbers)
+            self._found.notes.append(text if option is None else f"{text}, and the sources need {option}")
 
     def _limits(self, values: Mapping[str, int], defaults: PlatformConfig) -> None:
         seen = set()

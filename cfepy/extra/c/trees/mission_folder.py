@@ -15,7 +15,15 @@ from pathlib import Path
 
 from cfepy.es import CFE_APP
 from cfepy.extra.c.elf import ElfError, read_shared_object
-from cfepy.extra.c.toolchain.application import Built, Options, TableFiles, build_sources, build_tables
+from cfepy.extra.c.toolchain.application import (
+    Built,
+    Options,
+    TableFiles,
+    build_sources,
+    build_tables,
+    check_options,
+)
+from cfepy.extra.c.toolchain.cfe6 import ADVICE, BUILD_WITH, REMOVED_TEXT
 from cfepy.extra.c.toolchain.compiler import CompilerError
 from cfepy.extra.c.toolchain.source_files import Sources
 from cfepy.extra.c.trees.build_report import BUILT, KEPT, LEFT_OUT, STANDS_IN, BuildReport
@@ -41,12 +49,6 @@ _TABLE_PATH = re.compile(rb"/cf/((?:[\w.-]+/)+)([\w.-]+\.tbl)\0")
 _CODE_FOLDER = re.compile(r"/cf/((?:[\w.-]+/)*)[^/]*")
 _FUNCTION = re.compile(r"^def (\w+)\(", re.MULTILINE)
 _MOST_FILE = 64 << 20
-_CFE_6 = re.compile(
-    r"'(?:CFE_SB_(?:TLM|CMD)_HDR_SIZE|CFE_SB_MsgPtr_t|CFE_SB_Msg_t|CFE_SB_CmdHdr_t|CFE_EVS_BinFilter_t|boolean"
-    r"|CCSDS_\w+|CFE_ES_(?:APP_RUN|RegisterApp)|CFE_SB_(?:InitMsg|RcvMsg|SendMsg|GetMsgId))'"
-    r"|(?:network_includes|ccsds|cfe_\w+_events|osapi-os-\w+)\.h: No such file"
-)
-"""Errors of a compiler that show sources of cFE 6."""
 
 Reader = Callable[[TreeLayout, str | None, tuple[str, ...]], TreeModel]
 
@@ -89,6 +91,7 @@ def build_tree(tree: Path, folder: Path | None = None, options: TreeOptions | No
         UsageError: it is not a tree, it has no such processor, nothing can be built, or there is no compiler.
     """
     options = options or TreeOptions()
+    check_options(options.build)
     for name in options.stand_ins:
         if not (shipped("apps") / name).is_dir():
             known = [each.name for each in shipped("apps").iterdir() if (each / "app.py").is_file()]
@@ -204,9 +207,13 @@ class _Build:
         return os.path.relpath(path, self._model.layout.tree)
 
     def _first_error(self, error: object) -> str:
-        """Return the first error of a compiler, with a path relative to the tree."""
+        """Return the first error of a compiler, with a path relative to the tree, and advice about names of cFE 6."""
         lines = str(error).splitlines()
-        found = next((each for each in lines if " error: " in each), lines[0] if lines else "")
+        errors = [each for each in lines if " error: " in each] or lines
+        found = next((each for each in errors if REMOVED_TEXT in each), errors[0] if errors else "")
+        advice = next((each for each in lines if each.startswith(f"({ADVICE}")), None)
+        if advice is not None:
+            found = f"{found} {advice}"
         return found.replace(f"{self._model.layout.tree}/", "")
 
     def _without(self, name: str, reason: str) -> None:
@@ -335,9 +342,14 @@ def _steps(report: BuildReport, model: TreeModel) -> Iterator[str]:
     fetched = [each for each in report.entries if "git submodule" in each.text]
     if fetched:
         yield f"fetch the git submodules: git -C {model.layout.tree} submodule update --init --recursive"
-    older = [each.name for each in report.entries if _CFE_6.search(each.text)]
-    if older:
-        yield f"port to cFE 7: {', '.join(older)} use names of cFE 6, which cFE 7 has not"
+    older: dict[str, str] = {}
+    for each in report.entries:
+        _, found, option = each.text.partition(BUILD_WITH)
+        if found and ADVICE in each.text:
+            older[each.name] = option.removesuffix(".)")
+    for option in dict.fromkeys(older.values()):
+        several = [name for name, wanted in older.items() if wanted == option]
+        yield f"build the tree again with {option}, because of names of cFE 6 in {', '.join(several)}"
     reasons: dict[str, list[str]] = {}
     for each in report.named(LEFT_OUT):
         if each not in fetched and each.name not in older:

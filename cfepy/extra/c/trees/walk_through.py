@@ -9,10 +9,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, main
-from cfepy.extra.c.toolchain.application import build
+from cfepy.extra.c.toolchain.application import Options, build
 from cfepy.extra.c.toolchain.compiler import CompilerError
 from cfepy.extra.c.trees.configuration import Configuration, mission_file
-from cfepy.extra.c.trees.mission_folder import MISSION_FILE, build_tree, functions_of
+from cfepy.extra.c.trees.mission_folder import MISSION_FILE, TreeOptions, build_tree, functions_of
 from cfepy.extra.c.trees.startup_scripts import made_startup
 from cfepy.extra.c.trees.tree_layout import is_tree
 from cfepy.mission import STARTUP_SCRIPT
@@ -29,12 +29,13 @@ LABS = (
 """cfepy's own lab applications, which bring commands in, telemetry out and a schedule."""
 
 
-def mission_from(source: Path, folder: Path | None) -> int:
+def mission_from(source: Path, folder: Path | None, cfe: str | None = None) -> int:
     """Make a mission folder from a tree or an application, check it, and fly it.
 
     Args:
         source: the mission tree, or the folder of an application in C.
         folder: the new mission folder; named after the source when None.
+        cfe: the release of cFE 6 that the sources are written for; None for cFE 7.
 
     Returns:
         The exit status of the flight, or 1 if there was none.
@@ -42,7 +43,8 @@ def mission_from(source: Path, folder: Path | None) -> int:
     Raises:
         UsageError: the source is neither, there is no compiler, or the folder exists already.
     """
-    made, steps = _built_tree(source, folder) if is_tree(source) else _built_app(source, folder)
+    options = Options(cfe=cfe)
+    made, steps = _built_tree(source, folder, options) if is_tree(source) else _built_app(source, folder, options)
     if made is None:
         return _ended(steps)
     print(f"\ncheck: cfepy check {made}")
@@ -69,33 +71,38 @@ def _ended(steps: Iterable[str]) -> int:
     return FOUND_PROBLEMS
 
 
-def _built_tree(tree: Path, folder: Path | None) -> tuple[Path | None, list[str]]:
-    print(f"build: cfepy build {tree}")
+def _built_tree(tree: Path, folder: Path | None, options: Options) -> tuple[Path | None, list[str]]:
+    print(f"build: cfepy build {tree}{_shown(options)}")
     _check_free(folder)
-    report = build_tree(tree, folder)
+    report = build_tree(tree, folder, TreeOptions(build=options))
     for line in report.lines():
         print(f"  {line}")
     return Path(report.folder), list(report.steps)
 
 
-def _built_app(app: Path, folder: Path | None) -> tuple[Path | None, list[str]]:
+def _built_app(app: Path, folder: Path | None, options: Options) -> tuple[Path | None, list[str]]:
     made = Path(f"{app.resolve().name}_mission") if folder is None else folder
     _check_free(made)
-    print(f"build: cfepy build {app}")
+    print(f"build: cfepy build {app}{_shown(options)}")
     made.mkdir(parents=True)
     try:
-        built = build(app, made / f"{app.resolve().name}.so")
+        built = build(app, made / f"{app.resolve().name}.so", options)
     except CompilerError as error:
         print(error)
         made.rmdir()
         first = next((each for each in str(error).splitlines() if "error: " in each), str(error))
-        return None, [first, f"when it compiles: cfepy new mission --from {app}"]
+        steps = [first, *(each for each in str(error).splitlines() if "--cfe" in each)]
+        return None, [*steps, f"when it compiles: cfepy new mission --from {app}{_shown(options)}"]
     script = made_startup([(built.library.stem, functions_of(built.library), list(built.names.values()))])
     (made / STARTUP_SCRIPT).write_bytes(LABS.encode() + script.text)
     (made / MISSION_FILE).write_bytes(mission_file(app.resolve().name, Configuration()))
     for file in (built.library, *built.tables, made / STARTUP_SCRIPT, made / MISSION_FILE):
         print(f"  {file}")
     return made, []
+
+
+def _shown(options: Options) -> str:
+    return "" if options.cfe is None else f" --cfe {options.cfe}"
 
 
 def _check_free(folder: Path | None) -> None:

@@ -13,6 +13,7 @@ from cfepy.cli.main import main
 from cfepy.extra.c.toolchain import Options, TableFiles
 from cfepy.extra.c.trees.build_report import BUILT, KEPT, LEFT_OUT, STANDS_IN, BuildReport
 from cfepy.extra.c.trees.mission_folder import TreeOptions, build_tree
+from cfepy.extra.c.trees.tree_check import check_tree
 from cfepy.status import UsageError
 from cfepy.tbl import image
 from tests.extra.c.building import console_of, fly, needs_compiler
@@ -140,7 +141,40 @@ def test_msgid_bases_of_the_processor_reach_the_applications(tmp_path: Path) -> 
 def test_release_of_cfe_6_is_noted(tmp_path: Path) -> None:
     header = "#define CFE_MAJOR_VERSION 6 /* as it was */\n#define CFE_MINOR_VERSION 7\n#define CFE_REVISION (1)\n"
     report = built(tmp_path, {"cfe/fsw/cfe-core/src/inc/cfe_version.h": header})
-    assert report.notes == ["the tree has cFE 6.7.1; the mission runs on cFE 7.0.1"]
+    assert report.notes == ["the tree has cFE 6.7.1; the mission runs on cFE 7.0.1, and the sources need --cfe 6.7"]
+
+
+OLD_NAMES = """
+    #include "cfe.h"
+    void ONE_Main(void)
+    {
+        CFE_SB_MsgPtr_t Msg;
+        CFE_SB_PipeId_t Pipe;
+        uint32 Status = CFE_ES_APP_RUN;
+        CFE_EVS_Register(NULL, 0, CFE_EVS_EventFilter_BINARY);
+        CFE_SB_CreatePipe(&Pipe, 4, "ONE");
+        CFE_EVS_SendEvent(1, CFE_EVS_INFORMATION, "old ONE");
+        while (CFE_ES_RunLoop(&Status)) CFE_SB_RcvMsg(&Msg, Pipe, 500);
+    }
+"""
+
+
+def test_sources_of_cfe_6_need_the_option(tmp_path: Path) -> None:
+    files = {**OLD_FILES, "apps/one/fsw/src/one.c": OLD_NAMES, "apps/one/fsw/src/two.c": "int OS_SocketClose(int);\n"}
+    tree = write_tree(tmp_path / "tree", files=files)
+    report = build_tree(tree, tmp_path / "without")
+    assert report.steps == ["build the tree again with --cfe 6.7, because of names of cFE 6 in one"]
+    assert " (It uses names of cFE 6: CFE_SB_MsgPtr_t, CFE_ES_APP_RUN, " in text_of(report, "one")
+    found = [str(each) for each in check_tree(tree) or ()]
+    assert (
+        found[0]
+        == f"{tree}/apps/one/fsw/src/one.c:4: warning: one uses CFE_SB_MsgPtr_t of cFE 6; build it with --cfe 6.7"
+    )
+    report = build_tree(tree, tmp_path / "mission", TreeOptions(build=Options(cfe="6.7")))
+    assert names(report, BUILT)[0] == "one"
+    assert "old ONE" in console_of(fly(str(tmp_path / "mission")))
+    with pytest.raises(UsageError, match=r"--cfe: unknown release '7'"):
+        build_tree(tree, tmp_path / "other", TreeOptions(build=Options(cfe="7")))
 
 
 def test_startup_script_of_an_option_replaces_the_trees(tmp_path: Path) -> None:

@@ -1,0 +1,6 @@
+#ifndef VETERAN_MSGIDS_H
+#define VETERAN_MSGIDS_H
+#define VETERAN_CMD_MID     0x1890
+#define VETERAN_SEND_HK_MID 0x1891
+#define VETERAN_HK_TLM_MID  0x0890
+#endif
