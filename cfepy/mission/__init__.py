@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         CppNodesError,
         NodeGround,
     )
+    from cfepy.mission.device_config import DeviceConfig
     from cfepy.mission.drawn_parameters import CHOICE, INTEGERS, ParameterDistribution
     from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
     from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
@@ -108,6 +109,7 @@ __all__ = [
     "CppNodesConfig",
     "CppNodesError",
     "DataRace",
+    "DeviceConfig",
     "EndlessWait",
     "EndlessWaits",
     "FailedCode",
@@ -184,6 +186,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "HostCall",
             ),
             ".compiled_code": ("find_compiled",),
+            ".device_config": ("DeviceConfig",),
             ".cpp_nodes": (
                 "ARENA_BYTES",
                 "ARRAY",

@@ -154,6 +154,7 @@ def _with_sections(spec: MissionSpec, path: Path, said: MissionSections) -> Miss
         demands=said.demands,
         sweep=said.sweep,
         dictionary=said.dictionary,
+        devices=said.devices,
     )
 
 

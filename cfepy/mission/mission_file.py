@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 from cfepy.config.platform import REAL_TIME, SCHEDULINGS
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
+from cfepy.mission.device_config import DeviceConfig, read_devices
 from cfepy.mission.epoch import read_epoch, refuse_both
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
@@ -45,8 +46,8 @@ class MissionSections:
 
     Attributes:
         name, board, memory, cfe_version, safe, scheduling, epoch, compiled, cpp_nodes, limits, nodes, topics, params,
-            params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep, dictionary: the values of these
-            sections; `name`, `board`, `memory` and `epoch` are None if missing.
+            params_from, ordered_sets, connection_delay, ros_bridge, launch, sweep, dictionary, devices: the values of
+            these sections; `name`, `board`, `memory` and `epoch` are None if missing.
         demands: the sections of `DEMANDS`, unread.
         places: all known sections in the file, unread.
     """
@@ -71,6 +72,7 @@ class MissionSections:
     launch: tuple[LaunchFile, ...] = ()
     sweep: SweepConfig = field(default_factory=SweepConfig)
     dictionary: tuple[Path, ...] = ()
+    devices: Mapping[str, DeviceConfig] = field(default_factory=dict)
     demands: Mapping[str, Marked] = field(default_factory=dict)
     places: Mapping[str, Marked] = field(default_factory=dict)
 
@@ -416,6 +418,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "launch": read_launches,
     "sweep": read_sweep,
     "dictionary": read_dictionary,
+    "devices": read_devices,
 }
 """The readers of the sections, which return the attributes of `MissionSections`, or None for an invalid section."""
 

@@ -194,6 +194,7 @@ def _with_mission_file(spec: MissionSpec, path: Path, build: NodeBuilder | None)
         demands=said.demands,
         sweep=said.sweep,
         dictionary=said.dictionary,
+        devices=said.devices,
     )
     if not said.launch:
         if spec.startup is not None:

@@ -13,6 +13,7 @@ from cfepy.es import NODE_SYMBOL, StartupEntry
 from cfepy.es import entries as read_entries
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission.cpp_nodes import CppNodesConfig
+from cfepy.mission.device_config import DeviceConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.nodes import CppNode, NodeConfig, RosConfig
 from cfepy.psp import BoardProfile
@@ -110,6 +111,7 @@ class MissionSpec:
         ids: the identities of `cfepy.config.platform.IDENTITIES` that the run overrides.
         epoch_ns: date at which the computer is switched on, as Unix time in ns; None for the time of cFE's defaults.
         dictionary: files and folders that declare packets and tables of its applications, from its mission file.
+        devices: the devices at ports and buses of its compiled applications, by name.
         beside: the missions that fly together with it; this one can see the declarations of their applications.
     """
 
@@ -135,6 +137,7 @@ class MissionSpec:
     beside: tuple[MissionSpec, ...] = ()
     memory: str | None = None
     dictionary: tuple[Path, ...] = ()
+    devices: Mapping[str, DeviceConfig] = field(default_factory=dict)
 
     @property
     def startup_script(self) -> bytes:

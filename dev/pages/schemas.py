@@ -18,7 +18,7 @@ from typing import Any
 from cfepy.config.platform import COUNTED_BY_ID, IDENTITIES, MAY_BE_ZERO, MOST_ID, SCHEDULINGS, PlatformConfig
 from cfepy.config.versions import RELEASES
 from cfepy.faults import fault_plan, kinds
-from cfepy.mission import cpp_nodes, drawn_parameters, limits, mission_file, parameter_files
+from cfepy.mission import cpp_nodes, device_config, drawn_parameters, limits, mission_file, parameter_files
 from cfepy.monitors import deadlines, invariants, selected_results
 from cfepy.msg import HIGHEST_VALID_MSG_ID, RED, YELLOW
 from cfepy.psp import profile
@@ -185,6 +185,7 @@ def mission_schema() -> Schema:
         ),
         "sweep": _sweep(),
         "dictionary": _list(TEXT),
+        "devices": named(_device()),
         "invariants": named(_invariant()),
         "results": named(_result()),
         "deadlines": _deadlines(),
@@ -196,6 +197,11 @@ def mission_schema() -> Schema:
 
 def _list(item: Schema) -> Schema:
     return {"type": ["array", "null"], "items": item}
+
+
+def _device() -> Schema:
+    port = {"type": "integer", "minimum": 1, "maximum": device_config.MOST_PORT}
+    return record(device_config.DEVICE_FIELDS, {"python": TEXT, "udp": port, "to": SCALAR})
 
 
 def _files() -> Schema:

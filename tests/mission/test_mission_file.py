@@ -41,6 +41,7 @@ ros_bridge: {publish: {a: X, /b: {raw: true}, /c: Y}, subscribe: [d, /e], clock:
 sweep: {rate: fast, topics: [a], points: 3}
 launch: [nothing.launch, {args: {}}]
 dictionary: [nothing.xml, 3]
+devices: {can0: {udp: 0, to: 1}, can1: {udp: 7, to: 1}, can2: {udp: 7, to: 1}, can3: 1}
 invariants: 3
 """
 
@@ -59,7 +60,8 @@ def test_check_reports_all_mistakes_and_keeps_valid_sections(tmp_path: Path) -> 
     fields += "cpp_nodes.profile cpp_nodes.arena_bytes "
     fields += "connection_delay ros_bridge.publish.a ros_bridge.publish./b ros_bridge.subscribe[0] "
     fields += "ros_bridge.clock ros_bridge.hear "
-    fields += "sweep.rate sweep.topics[0] sweep.points launch[0] launch[1] dictionary[0] dictionary[1]"
+    fields += "sweep.rate sweep.topics[0] sweep.points launch[0] launch[1] dictionary[0] dictionary[1] "
+    fields += "devices.can0.udp devices.can2 devices.can3"
     assert [error.field for error in mistakes.errors] == fields.split()
     assert (said.name, said.board, said.ordered_sets, said.launch) == (None, None, False, ())
     assert (dict(said.limits.values), list(said.nodes), list(said.topics)) == (

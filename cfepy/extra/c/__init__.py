@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from cfepy.extra.c.abi import AbiProfile, abi_profile
     from cfepy.extra.c.api import function_names
     from cfepy.extra.c.build_cache import cache_folder, writing_cache
+    from cfepy.extra.c.devices import Device
     from cfepy.extra.c.elf import ElfError, check_elf_reader, read_shared_object
     from cfepy.extra.c.engine import GDB_SYMBOLS
     from cfepy.extra.c.ground_check import ground_differences
@@ -59,6 +60,7 @@ __all__ = [
     "CStruct",
     "CompiledLoader",
     "CompilerError",
+    "Device",
     "ElfError",
     "FieldType",
     "GeneratorExpressions",
@@ -96,6 +98,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".abi": ("AbiProfile", "abi_profile"),
             ".api": ("function_names",),
             ".build_cache": ("cache_folder", "writing_cache"),
+            ".devices": ("Device",),
             ".elf": ("ElfError", "check_elf_reader", "read_shared_object"),
             ".engine": ("GDB_SYMBOLS",),
             ".ground_check": ("ground_differences",),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from cfepy.extra.c.devices import DevicePorts
 from cfepy.extra.c.loading import CompiledLoader
 from cfepy.extra.c.runtime import CRuntime
 from cfepy.mission import DataRace, Overwrite
@@ -42,6 +43,7 @@ def compiled_loader(processor: Processor, polling_ns: int, start_ros: Callable[[
             on_stack=machine.record.note_stack,
             nodes={app: each.name for app, each in machine.spec.built.items()},
             publication_watch=CompiledWatch(cfe.sb, lambda: processor.ros),
+            devices=DevicePorts(machine.spec.devices, machine.network, lambda: machine.kernel.now),
         )
     cfe.es.core_memory = runtime.core_memory
     if runtime.tables is not None:

@@ -9,6 +9,7 @@ from pathlib import Path
 from cfepy.es import CFE_LIB, NODE_SYMBOL, StartupEntry
 from cfepy.extra.c.abi import AbiProfile, abi_profile
 from cfepy.extra.c.api import function_names
+from cfepy.extra.c.devices import DEVICE_FUNCTIONS
 from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.ground_check import ground_differences
 from cfepy.extra.c.linking import refused_names, undefined_on_linux, wanted_names
@@ -18,11 +19,14 @@ from cfepy.mission import MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
+from cfepy.reading.marked_yaml import load
 from cfepy.reading.mistakes import Mistakes
 from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import UsageError
 
 NO_SYMBOL = "NULL"
 PROFILE = "omit_deprecated"
+MISSION_FILE, DEVICES = "mission.yaml", "devices"
 
 
 def check_compiled(
@@ -38,7 +42,8 @@ def check_compiled(
     """
     try:
         source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
-        wanted = set(wanted_names(source)) - function_names() | refused_names(source)
+        given = set(DEVICE_FUNCTIONS) if _has_devices(script) else set()
+        wanted = (set(wanted_names(source)) - function_names() | refused_names(source)) - given
     except ElfError as error:
         yield MissionProblem(file, 0, str(error))
         return
@@ -48,6 +53,15 @@ def check_compiled(
         yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
     yield from _check_needs(script, entries, entry, source, wanted)
     yield from ground_differences(entry.path, script.parent)
+
+
+def _has_devices(script: Path) -> bool:
+    """Return True if the mission file connects devices, so that device files can be opened."""
+    beside = script.with_suffix(".yaml")
+    try:
+        return DEVICES in load(beside if beside.is_file() else script.parent / MISSION_FILE).mapping()
+    except UsageError:
+        return False
 
 
 def _check_needs(

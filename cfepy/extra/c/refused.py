@@ -14,10 +14,14 @@ BY_REASON: dict[str, tuple[str, ...]] = {
     "files of the host are not available; use OS_OpenCreate, OS_read and OS_write": (
         *("fclose", "fdopen", "fgetpos", "fmemopen", "fopen", "fopen64", "fread", "freopen", "freopen64", "fseek"),
         *("fseeko", "fsetpos", "ftell", "ftello", "open_memstream", "remove", "rename", "rewind", "tmpfile", "tmpnam"),
-        *("access", "chdir", "close", "closedir", "creat", "dup", "dup2", "fcntl", "fileno", "fstat", "fsync"),
-        *("ftruncate", "getcwd", "ioctl", "link", "lseek", "lstat", "mkdir", "mkstemp", "mmap", "munmap", "open"),
-        *("open64", "openat", "opendir", "pipe", "read", "readdir", "readlink", "realpath", "rmdir", "stat"),
-        *("statvfs", "symlink", "truncate", "unlink", "write"),
+        *("access", "chdir", "closedir", "creat", "dup", "dup2", "fileno", "fstat", "fsync"),
+        *("ftruncate", "getcwd", "link", "lseek", "lstat", "mkdir", "mkstemp", "mmap", "munmap"),
+        *("open64", "openat", "opendir", "pipe", "readdir", "readlink", "realpath", "rmdir", "stat"),
+        *("statvfs", "symlink", "truncate", "unlink"),
+    ),
+    "files of the host are not available; use OS_OpenCreate, or connect a device (`devices:` in the mission file)": (
+        *("cfgetispeed", "cfgetospeed", "cfmakeraw", "cfsetispeed", "cfsetospeed", "cfsetspeed", "close", "fcntl"),
+        *("ioctl", "open", "read", "tcdrain", "tcflush", "tcgetattr", "tcsetattr", "write"),
     ),
     "clocks of the host differ in each run; use CFE_TIME_GetTime, OS_GetLocalTime or OS_TaskDelay": (
         *("clock", "clock_getres", "clock_gettime", "clock_nanosleep", "clock_settime", "gettimeofday", "nanosleep"),

@@ -9,6 +9,7 @@ from cfepy.app import Cfe
 from cfepy.extra.c.arena import PAGE, Arena
 from cfepy.extra.c.calls import CallTable, Declarations
 from cfepy.extra.c.crashes import CFault, CJump, explained
+from cfepy.extra.c.devices import DEVICE_FUNCTIONS, DevicePorts
 from cfepy.extra.c.elf import SharedObject
 from cfepy.extra.c.engine import engine
 from cfepy.extra.c.guard import POISON, Guard, GuardedTables
@@ -21,6 +22,7 @@ from cfepy.extra.c.races import CompiledRaceWatch
 from cfepy.extra.c.source_places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.extra.c.stacks import LEAST, Stacks
 from cfepy.extra.c.unwinding import Unwinder
+from cfepy.osal import Network
 from cfepy.rtos import Kernel
 from cfepy.schedules import ExploringKernel, Race
 from cfepy.status import CfeError, OsalError
@@ -58,6 +60,7 @@ class CRuntime:
         on_stack: gets application and task, the bytes of its stack that the task has used, and the stack's size.
         nodes: names of ROS nodes by the names of their applications: their printed lines begin with these names.
         publication_watch: takes the messages of ROS nodes that reach no subscriber; None if there are no such nodes.
+        devices: the devices at its ports and buses; None if there are none.
 
     Attributes:
         arena, memory, constants, packets: the parts of the memory.
@@ -86,6 +89,7 @@ class CRuntime:
         on_stack: Callable[[str, str, int, int], object] = lambda app, task, used, size: None,
         nodes: Mapping[str, str] | None = None,
         publication_watch: PublicationWatch | None = None,
+        devices: DevicePorts | None = None,
     ) -> None:
         from cfepy.extra.c.api import declare
         from cfepy.extra.c.api.streams import Streams
@@ -99,12 +103,13 @@ class CRuntime:
         self.console = console
         self.omit_deprecated = omit_deprecated
         self.publication_watch = publication_watch
+        self.devices = DevicePorts({}, Network(), lambda: 0) if devices is None else devices
         self._limit_s = stall_s
         self.arena = Arena()
         self.memory = CMemory()
         self.constants = Constants(self.arena)
         self.at_app_end: list[Callable[[], object]] = []
-        self.at_close: list[Callable[[], object]] = []
+        self.at_close: list[Callable[[], object]] = [self.devices.close]
         self._unwinder = Unwinder(self.image_at, self.memory)
         self._on_stack = on_stack
         self._stacks = Stacks(self.arena, POISON if guard else b"")
@@ -310,7 +315,7 @@ class CRuntime:
             ElfError: a library of the host does not exist.
         """
         libraries = {name for image in self.shared() for name in (*image.thread_locals, *image.symbols)}
-        refused = refused_names(source)
+        refused = refused_names(source) - (set(DEVICE_FUNCTIONS) if self.devices else set())
         return [
             name
             for name in wanted_names(source)

@@ -13,11 +13,13 @@ from cfepy.extra.c.api import (
     cds,
     config,
     cpp,
+    device_files,
     error_texts,
     es,
     evs,
     fs,
     gcov,
+    hwlib,
     memory_pools,
     osal_disks,
     osal_files,
@@ -54,7 +56,7 @@ _OSAL = (
     *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
 )
 _PSP = (psp, psp_memory, psp_iodriver)
-_TOOLS = (streams, error_texts, sorting, cpp, pthread, gcov, unsent)
+_TOOLS = (streams, error_texts, sorting, cpp, pthread, gcov, unsent, device_files, hwlib)
 _CORE = (text, es, memory_pools, cds, evs, sb, tbl, time, fs, config, resource_ids)
 _MODULES = (*_CORE, *_TOOLS, *_OSAL, *_PSP)
 

@@ -1,0 +1,163 @@
+"""Devices at serial ports and buses of compiled applications: objects in Python, and UDP ports of the mission.
+
+A mission file connects them (`devices:`). C reaches them as device files (`api/device_files`) and by the calls of
+NOS3's hwlib (`api/hwlib`). All of them exchange bytes in virtual time.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from importlib.util import module_from_spec, spec_from_file_location
+
+from cfepy.mission import DeviceConfig
+from cfepy.osal import Datagram, Mailbox, Network, Place
+from cfepy.status import UsageError
+from cfepy.units import NS_PER_S
+
+I2C = "/dev/i2c-"
+"""The beginning of the names of I2C buses; the name of a device there ends with ":" and its address."""
+DEVICE_FUNCTIONS = (
+    *("open", "close", "read", "write", "ioctl", "fcntl", "tcgetattr", "tcsetattr", "tcflush", "tcdrain"),
+    *("cfsetispeed", "cfsetospeed", "cfsetspeed", "cfgetispeed", "cfgetospeed", "cfmakeraw"),
+)
+"""The functions of POSIX for device files, which a mission with devices has."""
+_HERE = "127.0.0.1"
+
+
+class Device:
+    """A device at a port or bus. Subclasses in a mission's Python files define its answers.
+
+    A serial port calls `write` with the bytes that the application sends, and `read` for bytes to receive. An I2C
+    device gets the same calls; it reads exactly the length of the transaction. SPI calls `transfer`. A pin calls
+    `write` and `read` with one byte, 0 or 1. A CAN bus exchanges frames of 16 bytes, as Linux's SocketCAN has them.
+
+    Attributes:
+        clock: returns the virtual time in s.
+    """
+
+    clock: Callable[[], float] = staticmethod(lambda: 0.0)
+
+    def write(self, data: bytes) -> None:
+        """Take bytes from the application."""
+
+    def read(self, count: int) -> bytes:
+        """Return up to `count` bytes for the application; fewer, or none, if the device has no more."""
+        return b""
+
+    def waiting(self) -> int:
+        """Return the number of bytes that `read` could return now."""
+        return 0
+
+    def transfer(self, data: bytes) -> bytes:
+        """Exchange bytes on SPI. Returns as many bytes as it gets."""
+        self.write(data)
+        return self.read(len(data)).ljust(len(data), b"\0")
+
+
+class UdpDevice(Device):
+    """A device that is a program at the other end of UDP: each write is a datagram, and datagrams are bytes to read.
+
+    Args:
+        network: the mission's network.
+        port: the device's port.
+        target: gets the bytes that the application writes.
+    """
+
+    def __init__(self, network: Network, port: int, target: Place) -> None:
+        self._network = network
+        self._place = Place(_HERE, port)
+        self._target = target
+        self._mailbox = Mailbox()
+        self._bytes: deque[int] = deque()
+        network.datagrams.bind(self._mailbox, self._place)
+
+    def write(self, data: bytes) -> None:
+        self._network.send(Datagram(self._place, self._target, data))
+
+    def read(self, count: int) -> bytes:
+        self._receive()
+        return bytes(self._bytes.popleft() for _ in range(min(count, len(self._bytes))))
+
+    def waiting(self) -> int:
+        self._receive()
+        return len(self._bytes)
+
+    def close(self) -> None:
+        """Release the port."""
+        self._network.datagrams.release(self._mailbox)
+
+    def _receive(self) -> None:
+        while not self._mailbox.is_empty:
+            self._bytes.extend(self._mailbox.take().data)
+
+
+class DevicePorts:
+    """The devices of a mission. An object is made when the processor starts.
+
+    Args:
+        configs: the devices, by name.
+        network: the mission's network.
+        now: returns the virtual time in ns.
+
+    Raises:
+        UsageError: a file cannot be executed, or has no such class.
+    """
+
+    def __init__(self, configs: Mapping[str, DeviceConfig], network: Network, now: Callable[[], int]) -> None:
+        self._devices: dict[str, Device] = {}
+        self._udp: list[UdpDevice] = []
+        for each in configs.values():
+            if each.file is None:
+                udp = UdpDevice(network, each.port, Place(*each.target))
+                self._udp.append(udp)
+                self._devices[each.name] = udp
+            else:
+                self._devices[each.name] = _made(each, lambda: now() / NS_PER_S)
+
+    def __bool__(self) -> bool:
+        return bool(self._devices)
+
+    def find(self, name: str) -> Device | None:
+        """Return a device."""
+        return self._devices.get(name)
+
+    def i2c(self, bus: int, address: int) -> Device | None:
+        """Return the device at an address of an I2C bus, whose name has the address as 0x1e or 30."""
+        for text in (f"0x{address:02x}", f"0x{address:02X}", str(address)):
+            found = self._devices.get(f"{I2C}{bus}:{text}")
+            if found is not None:
+                return found
+        return None
+
+    def has_bus(self, bus: int) -> bool:
+        """Return True if an I2C bus has devices."""
+        return any(each.startswith(f"{I2C}{bus}:") for each in self._devices)
+
+    def close(self) -> None:
+        """Release the UDP ports."""
+        for each in self._udp:
+            each.close()
+
+
+def _made(config: DeviceConfig, clock: Callable[[], float]) -> Device:
+    """Execute the file of a device and make its object."""
+    where = f"devices.{config.name}"
+    spec = spec_from_file_location(f"cfepy_device_{config.class_name}", str(config.file))
+    assert spec is not None
+    assert spec.loader is not None
+    module = module_from_spec(spec)
+    try:
+        spec.loader.exec_module(module)
+        kind = getattr(module, config.class_name, None)
+        if not isinstance(kind, type) or not issubclass(kind, Device):
+            text = f"has no class {config.class_name} that is a cfepy.extra.c.Device"
+            raise UsageError(text, file=str(config.file), field=where)
+        made = kind()
+    except UsageError:
+        raise
+    except Exception as error:
+        text = f"{config.class_name} cannot be made: {type(error).__name__}: {error}"
+        raise UsageError(text, file=str(config.file), field=where) from error
+    made.clock = clock
+    return made

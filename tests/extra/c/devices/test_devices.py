@@ -1,0 +1,173 @@
+"""Devices at ports and buses of compiled applications: Python objects and UDP ports, by hwlib and by device files."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cfepy.extra.c.toolchain import build
+from cfepy.mission import Mission
+from cfepy.osal import Datagram, Mailbox, Place
+from cfepy.pilot.mission_check import check_mission
+from cfepy.status import UsageError
+from cfepy.writing.console import Console
+from tests.extra.c.building import needs_compiler
+
+pytestmark = needs_compiler
+
+HERE = Path(__file__).parent
+DEVICES = """
+devices:
+  /dev/ttyS1: {python: hardware.py:Receiver}
+  /dev/i2c-1:0x1e: {python: hardware.py:Magnetometer}
+  /dev/spidev0.0: {python: hardware.py:Inverter}
+  gpio24: {python: hardware.py:Echo}
+  can0: {python: hardware.py:Echo}
+"""
+SCRIPT = "CFE_APP, {0}, {0}_Main, {0}, 50, 16384, 0x0, 0;\n!\n"
+
+
+@pytest.fixture(scope="module")
+def objects(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Compile the applications once."""
+    folder = tmp_path_factory.mktemp("objects")
+    for name in ("sensor", "files"):
+        source = folder / name / "fsw/src"
+        source.mkdir(parents=True)
+        shutil.copy(HERE / f"{name}.c", source)
+        assert build(folder / name, folder / f"{name.upper()}.so").warnings == []
+    return folder
+
+
+def mission_of(folder: Path, objects: Path, app: str, devices: str = DEVICES) -> str:
+    shutil.copy(objects / f"{app}.so", folder)
+    shutil.copy(HERE / "hardware.py", folder)
+    (folder / "startup.scr").write_text(SCRIPT.format(app))
+    (folder / "mission.yaml").write_text(devices)
+    return str(folder)
+
+
+def events(mission: Mission, app: str) -> list[str]:
+    return [line.partition(f"/{app} 1: ")[2].rstrip() for line in mission.console.lines if f"/{app} 1: " in line]
+
+
+def fly(folder: str, app: str, seconds: float = 3) -> list[str]:
+    with Mission(folder, console=Console(quiet=True)) as mission:
+        mission.run_for(seconds)
+        return events(mission, app)
+
+
+def test_hwlib_reaches_a_device_of_each_kind(tmp_path: Path, objects: Path) -> None:
+    found = fly(mission_of(tmp_path, objects, "SENSOR"), "SENSOR")
+    time = "302e36"  # "0.6", when the application starts
+    assert found == [
+        "uart init 0 01",
+        "uart write 4",
+        "uart waiting 7",
+        f"uart read 7 50494e47{time}",
+        "uart nothing 0",
+        "uart close 0 00",
+        "uart init -27 00",
+        "uart write -1",
+        "uart waiting 0",
+        "uart read -1",
+        "uart nothing -1",
+        "uart close -27 00",
+        "i2c init 0",
+        "i2c read 0 0f1011",
+        "i2c absent -1",
+        "spi init 0",
+        "spi 0 f0efeefb",
+        "gpio init 0",
+        "gpio write 0",
+        "gpio read 0 01",
+        "can init 0",
+        "can write 0",
+        "can read 0 01ef",
+        "can id 291",
+        "can late -11",
+    ]
+
+
+def test_device_files_reach_the_same_devices(tmp_path: Path, objects: Path) -> None:
+    found = fly(mission_of(tmp_path, objects, "FILES"), "FILES")
+    assert found == [
+        *("open 1", "get 0", "VMIN 1", "speed 1", "set 0", "write 4", "ioctl 0", "waiting 7", "read 7", "first 80"),
+        *("timeout 0", "nonblocking -1", "EAGAIN 1", "close 0", "absent -1", "ENOENT 1"),
+        *("no address -1", "slave 0", "i2c write 1", "i2c read 3", f"i2c data {0x0F1011}", "both 2", "none -1"),
+        *("EREMOTEIO 1", "mode 0", "got 3", "spi 3", f"spi data {0xF0EFEE}", "ENOTTY -1"),
+    ]
+
+
+def test_read_of_a_serial_port_waits_in_virtual_time(tmp_path: Path, objects: Path) -> None:
+    with Mission(mission_of(tmp_path, objects, "FILES"), console=Console(quiet=True)) as mission:
+        mission.run_for(3)
+        lines = [each for each in mission.console.lines if "/FILES 1: first" in each or "/FILES 1: timeout" in each]
+    first, late = (float(each.split()[2].rpartition(":")[2]) for each in lines)
+    assert late - first == pytest.approx(0.2, abs=0.001)
+
+
+def test_udp_port_is_a_device(tmp_path: Path, objects: Path) -> None:
+    devices = "devices:\n  /dev/ttyS1: {udp: 5010, to: 5011}\n  /dev/i2c-1:0x1e: {python: hardware.py:Magnetometer}\n"
+    devices += "  /dev/spidev0.0: {python: hardware.py:Inverter}\n"
+    with Mission(mission_of(tmp_path, objects, "FILES", devices), console=Console(quiet=True)) as mission:
+        peer = Mailbox()
+        mission.network.datagrams.bind(peer, Place("127.0.0.1", 5011))
+        mission.run_for(0.5)
+        mission.network.send(Datagram(Place("127.0.0.1", 5011), Place("127.0.0.1", 5010), b"hello"))
+        mission.run_for(2)
+        assert peer.take().data == b"ping"
+        assert "read 5" in events(mission, "FILES")
+
+
+def test_check_reports_device_files_without_devices(tmp_path: Path, objects: Path) -> None:
+    folder = mission_of(tmp_path, objects, "FILES", "safe: true\n")
+    (warning,) = [each.text for each in check_mission(folder)]
+    assert warning.startswith("FILES needs cfgetispeed, cfmakeraw, cfsetispeed, close, fcntl, ioctl, open, read, ")
+    assert "or connect a device (`devices:` in the mission file); calling it is a fault" in warning
+    (tmp_path / "mission.yaml").write_text(DEVICES)
+    assert check_mission(folder) == []
+
+
+def test_device_files_without_devices_stay_faults(tmp_path: Path, objects: Path) -> None:
+    folder = mission_of(tmp_path, objects, "FILES", "safe: true\n")
+    with Mission(folder, console=Console(quiet=True)) as mission:
+        mission.run_for(1)
+    assert any("open() of /dev/ttyS1 is not available" in each for each in mission.console.lines)
+
+
+@pytest.mark.parametrize(
+    ("devices", "text"),
+    [
+        ("{python: hardware.py}", "'hardware.py' is not a class; expected FILE.py:CLASS"),
+        ("{python: none.py:Thing}", "none.py not found"),
+        ("{udp: 5010}", "requires `to: HOST:PORT`"),
+        ("{udp: 70000, to: 1}", "70000"),
+        ("{udp: 1, to: x:y}", "'x:y' is not an address; expected PORT or HOST:PORT"),
+        ("{python: hardware.py:Echo, to: 5}", "is only valid with `udp`"),
+        ("{}", "requires one of `python: FILE.py:CLASS` and `udp: PORT`"),
+        ("{pyton: hardware.py:Echo}", "did you mean python"),
+    ],
+)
+def test_wrong_device_is_reported_with_its_line(devices: str, text: str, tmp_path: Path, objects: Path) -> None:
+    folder = mission_of(tmp_path, objects, "FILES", f"devices:\n  /dev/ttyS1: {devices}\n")
+    found = [str(each) for each in check_mission(folder) if not each.is_warning]
+    assert len(found) == 1
+    assert "mission.yaml:2: devices./dev/ttyS1" in found[0]
+    assert text in found[0]
+
+
+@pytest.mark.parametrize(
+    ("source", "text"),
+    [
+        ("class Thing:\n    pass\n", "has no class Thing that is a cfepy.extra.c.Device"),
+        ("from cfepy.extra.c import Device\nclass Thing(Device):\n    x = 1 / 0\n", "ZeroDivisionError"),
+    ],
+)
+def test_class_that_is_not_a_device_is_an_error_at_start(source: str, text: str, tmp_path: Path, objects: Path) -> None:
+    folder = mission_of(tmp_path, objects, "FILES", "devices:\n  /dev/ttyS1: {python: thing.py:Thing}\n")
+    (tmp_path / "thing.py").write_text(source)
+    with pytest.raises(UsageError, match=text), Mission(folder, console=Console(quiet=True)) as mission:
+        mission.run_for(1)
