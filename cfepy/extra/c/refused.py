@@ -23,9 +23,8 @@ BY_REASON: dict[str, tuple[str, ...]] = {
         *("cfgetispeed", "cfgetospeed", "cfmakeraw", "cfsetispeed", "cfsetospeed", "cfsetspeed", "close", "fcntl"),
         *("ioctl", "open", "read", "tcdrain", "tcflush", "tcgetattr", "tcsetattr", "write"),
     ),
-    "clocks of the host differ in each run; use CFE_TIME_GetTime, OS_GetLocalTime or OS_TaskDelay": (
-        *("clock", "clock_getres", "clock_gettime", "clock_nanosleep", "clock_settime", "gettimeofday", "nanosleep"),
-        *("settimeofday", "sleep", "time", "times", "timespec_get", "timespec_getres", "usleep"),
+    "CPU time and the clock of the host are not available; use clock_gettime or OS_SetLocalTime": (
+        *("clock", "clock_settime", "settimeofday", "times", "timespec_getres"),
     ),
     "a flight computer has no shell; see OS_ShellOutputToFile": ("popen", "pclose", "system"),
     "a flight computer has no processes; a task is made by OS_TaskCreate": (

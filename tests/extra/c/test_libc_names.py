@@ -85,9 +85,7 @@ def test_check_and_load_name_all_refused_functions_with_their_reasons(tmp_path: 
 
 
 def test_a_call_of_a_refused_function_gives_the_reason(tmp_path: Path) -> None:
-    compile_c(tmp_path, "TEST", "long time(long *); void TEST_Main(void) { time(NULL); }")
+    compile_c(tmp_path, "TEST", "long clock(void); void TEST_Main(void) { clock(); }")
     mission = fly(write_mission(tmp_path, "TEST"), 1)
     error = mission.cfe.es.history["TEST"].last_error
-    assert "time() was called, but cfepy and the libraries of the mission do not define it; clocks of the host" in str(
-        error
-    )
+    assert "clock() was called, but cfepy and the libraries of the mission do not define it; CPU time and" in str(error)
