@@ -28,6 +28,8 @@ SPI_MAGIC, SPI_MESSAGE, SPI_SIZE = 0x6B, 0, 32
 I2C_READ = 1
 I2C_MESSAGE, I2C_DATA = Struct("<HHH2xQ"), Struct("<QI")
 SPI_TRANSFER = Struct("<QQI12x")
+STANDARD = 3
+"""The number of standard streams."""
 TERMIOS = 60
 VTIME, VMIN = 17 + 5, 17 + 6
 """Offsets of c_cc[VTIME] and c_cc[VMIN] in struct termios."""
@@ -163,12 +165,15 @@ class DeviceFiles:
 
     def close(self, descriptor: int) -> int:
         if descriptor not in self._open:
-            return self._other("close", descriptor)
+            is_other = 0 <= descriptor < FIRST
+            return self._other("close", descriptor) if is_other else self._fail(errno.EBADF)
         del self._open[descriptor]
         return 0
 
     def read(self, descriptor: int, buffer: int, count: int) -> int:
         file = self._file("read", descriptor)
+        if file is None:
+            return FAILED
         if file.device is None:
             return self._fail(errno.EREMOTEIO)
         data = self._received(file, file.device, count)
@@ -179,6 +184,8 @@ class DeviceFiles:
 
     def write(self, descriptor: int, buffer: int, count: int) -> int:
         file = self._file("write", descriptor)
+        if file is None:
+            return FAILED
         if file.device is None:
             return self._fail(errno.EREMOTEIO)
         file.device.write(bytes(self._c.memory.peek(buffer, count)))
@@ -195,6 +202,8 @@ class DeviceFiles:
 
     def control(self, descriptor: int, request: int, argument: int) -> int:
         file, request = self._file("ioctl", descriptor), request & 0xFFFFFFFF
+        if file is None:
+            return FAILED
         if file.bus != FAILED and request in (I2C_SLAVE, I2C_SLAVE_FORCE):
             file.device = self._ports.i2c(file.bus, argument)
             return 0
@@ -228,7 +237,8 @@ class DeviceFiles:
     def flags(self, descriptor: int, command: int, argument: int) -> int:
         file = self._open.get(descriptor)
         if file is None:
-            return self._other("fcntl", descriptor, command, argument)
+            is_other = 0 <= descriptor < FIRST
+            return self._other("fcntl", descriptor, command, argument) if is_other else self._fail(errno.EBADF)
         if command == F_SETFL:
             file.flags = argument & 0xFFFFFFFF
         elif command != F_GETFL:
@@ -236,28 +246,39 @@ class DeviceFiles:
         return file.flags if command == F_GETFL else 0
 
     def get_options(self, descriptor: int, at: int) -> int:
-        self._c.memory.poke(at, bytes(self._file("tcgetattr", descriptor).options))
+        file = self._file("tcgetattr", descriptor)
+        if file is None:
+            return FAILED
+        self._c.memory.poke(at, bytes(file.options))
         return 0
 
     def set_options(self, descriptor: int, when: int, at: int) -> int:
-        self._file("tcsetattr", descriptor).options[:] = self._c.memory.peek(at, TERMIOS)
+        file = self._file("tcsetattr", descriptor)
+        if file is None:
+            return FAILED
+        file.options[:] = self._c.memory.peek(at, TERMIOS)
         return 0
 
     def flush(self, descriptor: int, queue: int) -> int:
         """Discard received bytes."""
-        device = self._file("tcflush", descriptor).device
+        file = self._file("tcflush", descriptor)
+        if file is None:
+            return FAILED
+        device = file.device
         while device is not None and queue != 1 and device.waiting():
             device.read(device.waiting())
         return 0
 
     def drain(self, descriptor: int) -> int:
-        self._file("tcdrain", descriptor)
-        return 0
+        return FAILED if self._file("tcdrain", descriptor) is None else 0
 
-    def _file(self, function: str, descriptor: int) -> OpenDevice:
+    def _file(self, function: str, descriptor: int) -> OpenDevice | None:
+        """Return an open device, or set errno to EBADF as Linux does."""
         file = self._open.get(descriptor)
+        if file is None and 0 <= descriptor < STANDARD:
+            raise CFault(f"{function}() of {descriptor} is not available; use printf, or OSAL")
         if file is None:
-            raise CFault(f"{function}() of {descriptor}, which is not an open device of the mission")
+            self._fail(errno.EBADF)
         return file
 
     def _other(self, function: str, *arguments: object) -> int:

@@ -42,6 +42,9 @@ static void Serial(void)
     Say("close", close(Fd));
     Say("absent", open("/dev/ttyS9", O_RDWR));
     Say("ENOENT", errno == ENOENT);
+    Say("bad", write(-1, "x", 1));
+    Say("EBADF", errno == EBADF);
+    Say("bad close", close(-1));
 }
 
 static void Buses(void)

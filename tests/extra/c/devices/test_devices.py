@@ -95,7 +95,17 @@ def test_device_files_reach_the_same_devices(tmp_path: Path, objects: Path) -> N
     found = fly(mission_of(tmp_path, objects, "FILES"), "FILES")
     assert found == [
         *("open 1", "get 0", "VMIN 1", "speed 1", "set 0", "write 4", "ioctl 0", "waiting 7", "read 7", "first 80"),
-        *("timeout 0", "nonblocking -1", "EAGAIN 1", "close 0", "absent -1", "ENOENT 1"),
+        *(
+            "timeout 0",
+            "nonblocking -1",
+            "EAGAIN 1",
+            "close 0",
+            "absent -1",
+            "ENOENT 1",
+            "bad -1",
+            "EBADF 1",
+            "bad close -1",
+        ),
         *("no address -1", "slave 0", "i2c write 1", "i2c read 3", f"i2c data {0x0F1011}", "both 2", "none -1"),
         *("EREMOTEIO 1", "mode 0", "got 3", "spi 3", f"spi data {0xF0EFEE}", "ENOTTY -1"),
     ]
