@@ -200,7 +200,9 @@ class CommandParser(argparse.ArgumentParser):
         known = self._option_string_actions
         names = [word.partition("=")[0] for word in words if word.startswith("-")]
         hints = [did_you_mean(name, known, before="; ", likeness=_SIMILAR) for name in names]
-        hint = "".join(dict.fromkeys(hints)) or self.get_default("hint") or ""
+        own = self.get_default("option_hints") or {}  # of options that other commands have
+        hint = "".join(own.get(name, "") for name in names)
+        hint = hint or "".join(dict.fromkeys(hints)) or self.get_default("hint") or ""
         self.error(f"unrecognized arguments: {' '.join(words)}{hint}")
 
     def error(self, message: str) -> NoReturn:

@@ -104,7 +104,7 @@ def _add_new(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> N
         epilog="exit status: 0 written, and with --from flown; with --from, cfepy run's status if the flight had a "
         "problem, and 1 if nothing could be built; 2 bad usage",
     )
-    mission.set_defaults(c=False, hint="; only applications can be in C: cfepy new app NAME --c")
+    mission.set_defaults(c=False, option_hints={"--c": "; only applications can be in C: cfepy new app NAME --c"})
     text = "a cFS mission tree, or the folder of an application in C; NAME may be left out"
     mission.add_argument("--from", dest="source", metavar="TREE|FOLDER", help=text)
     add_cfe(mission)

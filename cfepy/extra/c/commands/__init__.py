@@ -74,6 +74,6 @@ def _add_tree(options: argparse._ArgumentGroup) -> None:
     options.add_argument(
         "--cmake",
         action="store_true",
-        help="ask CMake for the sources; it executes the tree's files",
+        help="ask CMake for the sources; it executes files",
     )
     options.add_argument("--json", metavar="FILE|-", help="write the report as JSON; - writes to standard output")
