@@ -184,15 +184,17 @@ class Dictionary:
         """
         msg_id, header = msg.get_msg_id(packet), msg.get_header_size(packet)
         decoded = Decoded(f"0x{msg_id:04X}", msg_id, msg.get_sequence_count(packet), None, {})
+        known = self._by_id.get(msg_id)
+        if isinstance(known, Telemetry) and header == TLM_HEADER_SIZE:
+            header = known.header_size
         if len(packet) < header:
             return decoded._replace(problem=f"{len(packet)} bytes are too few for a header of {header}")
         version = msg.get_header_version(packet)
         if version != 0:
             return decoded._replace(problem=f"its header has the version {version}, not 0")
-        if header == TLM_HEADER_SIZE:
+        if msg.get_header_size(packet) == TLM_HEADER_SIZE:
             seconds, subseconds = msg.get_msg_time(packet)
-            found = self._by_id.get(msg_id)
-            found = found.variant_of(packet) if isinstance(found, Telemetry) else found
+            found = known.variant_of(packet) if isinstance(known, Telemetry) else known
             return _read(found, packet, decoded._replace(time_s=seconds + subseconds / 2**32))
         code = msg.get_fcn_code(packet) if header == CMD_HEADER_SIZE else 0
         return _read(self._by_code.get((msg_id, code)), packet, decoded._replace(name=f"{decoded.name}/{code}"))

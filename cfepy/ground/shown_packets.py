@@ -128,12 +128,13 @@ class PacketSerializer:
     Args:
         layout: layout of the payload.
         zero_s: Unix time when spacecraft time is 0, in s.
+        header_size: bytes before the payload.
     """
 
-    def __init__(self, layout: Layout, zero_s: int = UNIX_AT_CFE_EPOCH) -> None:
+    def __init__(self, layout: Layout, zero_s: int = UNIX_AT_CFE_EPOCH, header_size: int = TLM_HEADER_SIZE) -> None:
         self._zero_s = zero_s
-        self._size = TLM_HEADER_SIZE + layout.size
-        self._pieces = list(_pieces(list(layout.cells())))
+        self._size = header_size + layout.size
+        self._pieces = list(_pieces(list(layout.cells()), header_size))
 
     def message(self, packet: bytes) -> bytes | None:
         """Return the serialised message; None for a packet that is too short."""
@@ -151,13 +152,13 @@ class PacketSerializer:
         return b"".join(parts)
 
 
-def _pieces(cells: list[Cell]) -> list[tuple[int, int, bool]]:
+def _pieces(cells: list[Cell], header_size: int) -> list[tuple[int, int, bool]]:
     """Start, end and whether it is a text, of a contiguous part of a packet."""
     found: list[tuple[int, int, bool]] = []
     for cell in cells:
         start, end, is_text = (
-            TLM_HEADER_SIZE + cell.offset,
-            TLM_HEADER_SIZE + cell.offset + cell.size,
+            header_size + cell.offset,
+            header_size + cell.offset + cell.size,
             "char" in cell.type,
         )
         if found and not is_text and not found[-1][2] and found[-1][1] == start:
@@ -215,7 +216,7 @@ class ShownPackets:
         packets = each_of(partial(_declared, dictionary, spec, topic) for topic in bridge.publish)
         for (topic, (_, is_raw)), found in zip(bridge.publish.items(), packets, strict=True):
             if isinstance(found, Telemetry) and found.payload.size and not is_raw:
-                serialize = PacketSerializer(found.payload, zero_s).message
+                serialize = PacketSerializer(found.payload, zero_s, found.header_size).message
                 self.packets[topic] = ShownPacket(found.msg_id, type_of(found.name, found.payload), serialize)
             else:
                 self.packets[topic] = ShownPacket(found.msg_id, _plain_type(RAW), _whole)

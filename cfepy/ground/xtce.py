@@ -344,7 +344,8 @@ class _Telemetry:
         """Add a container for each packet with a telemetry header, without which packets cannot be distinguished."""
         taken: set[int] = set()
         for packet in sorted(packets, key=lambda each: (each.msg_id, isinstance(each, Topic))):
-            known = isinstance(packet, Telemetry) or packet.type or packet.raw
+            is_usual = isinstance(packet, Telemetry) and packet.header_size == TLM_HEADER_SIZE
+            known = is_usual or (isinstance(packet, Topic) and (packet.type or packet.raw))
             if known and packet.msg_id not in taken and _has_time(packet.msg_id):
                 taken.add(packet.msg_id)
                 if isinstance(packet, Telemetry) and packet.variants:

@@ -76,10 +76,11 @@ class Telemetry:
     Args:
         name: its name in ground tools, NASA's name without the suffix: "CFE_ES_HK_TLM".
         msg_id: its MsgId.
-        payload: layout of the payload after the 16-byte header.
+        payload: layout of the payload after the header.
         text: description for tools.
         first: value of the first payload byte, which distinguishes packets that share their MsgId.
         variants: the other packets that have this MsgId.
+        header_size: bytes of the header: 16, or 12 for an application that was built for cFE 6.
     """
 
     name: str
@@ -88,11 +89,12 @@ class Telemetry:
     text: str = ""
     first: int | None = None
     variants: tuple[Telemetry, ...] = ()
+    header_size: int = TLM_HEADER_SIZE
 
     @property
     def length(self) -> int:
         """The bytes of the whole packet."""
-        return TLM_HEADER_SIZE + self.payload.size
+        return self.header_size + self.payload.size
 
     def packet(self, values: Mapping[str, Any] | None = None, /, **more: Any) -> bytes:
         """Return the packet as bytes; its time is 0 until it is sent, and missing fields are zero.
@@ -100,7 +102,7 @@ class Telemetry:
         Raises:
             UsageError: for an unknown field or a value that does not fit.
         """
-        return bytes(telemetry(self.msg_id, self.payload.pack(values, **more)))
+        return bytes(telemetry(self.msg_id, self.payload.pack(values, **more), self.header_size))
 
     def read(self, packet: bytes | bytearray | memoryview) -> dict[str, Any]:
         """Return the payload's fields.
@@ -108,9 +110,9 @@ class Telemetry:
         Raises:
             CfeError: CFE_STATUS_WRONG_MSG_LENGTH if the packet is too short.
         """
-        return self.payload.unpack(packet, TLM_HEADER_SIZE)
+        return self.payload.unpack(packet, self.header_size)
 
     def variant_of(self, packet: bytes | bytearray | memoryview) -> Telemetry:
         """Return which of the telemetry packets with this MsgId a packet is, or this one if none matches."""
-        first = packet[TLM_HEADER_SIZE] if len(packet) > TLM_HEADER_SIZE else None
+        first = packet[self.header_size] if len(packet) > self.header_size else None
         return next((each for each in self.variants if each.first == first), self)

@@ -190,8 +190,8 @@ def command(msg_id: int, fcn_code: int, payload: bytes = b"") -> bytearray:
     return packet
 
 
-def telemetry(msg_id: int, payload: bytes = b"") -> bytearray:
-    """Return a whole telemetry packet, its time still 0."""
-    packet = init(msg_id, TLM_HEADER_SIZE + len(payload))
-    packet[TLM_HEADER_SIZE:] = payload
+def telemetry(msg_id: int, payload: bytes = b"", header_size: int = TLM_HEADER_SIZE) -> bytearray:
+    """Return a whole telemetry packet, its time still 0; cFE 6 has headers of another size."""
+    packet = init(msg_id, header_size + len(payload))
+    packet[header_size:] = payload
     return packet

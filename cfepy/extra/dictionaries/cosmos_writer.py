@@ -14,7 +14,7 @@ from cfepy.extra.dictionaries.cosmos_reader import PADDING
 from cfepy.extra.dictionaries.nasa_names import snake
 from cfepy.ground import Dictionary, xtce_name
 from cfepy.mission import MissionSpec
-from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Cell, Command, Layout, Measurement, Telemetry
+from cfepy.msg import CMD_HEADER_SIZE, Cell, Command, Layout, Measurement, Telemetry
 
 BIG, LITTLE = "BIG_ENDIAN", "LITTLE_ENDIAN"
 _ITEM = re.compile(r"(.*)\[(\d+)\]")
@@ -59,8 +59,8 @@ def _telemetry(target: str, packet: Telemetry) -> Iterator[str]:
     yield f'  ITEM CCSDS_LENGTH 32 16 UINT "Length of the packet less {_LENGTH_LESS}" {BIG}'
     yield f'  ITEM CCSDS_SECONDS 48 32 UINT "Time, in s" {BIG}'
     yield f'  ITEM CCSDS_SUBSECONDS 80 16 UINT "Time, in 1/65536 s" {BIG}'
-    yield from _items(packet.payload.cells(), "ITEM", 8 * TLM_HEADER_SIZE)
-    yield from _end(packet.payload, "ITEM", 8 * TLM_HEADER_SIZE)
+    yield from _items(packet.payload.cells(), "ITEM", 8 * packet.header_size)
+    yield from _end(packet.payload, "ITEM", 8 * packet.header_size)
 
 
 def _items(cells: Iterable[Cell], word: str, header: int) -> Iterator[str]:

@@ -21,7 +21,7 @@ from cfepy.reading.input_files import read_limited
 from cfepy.status import UsageError
 
 FOLDER = "packets"
-_FORM = 2
+_FORM = 3
 _MOST_BYTES = 8 << 20
 
 
@@ -80,6 +80,7 @@ def _values(packet: DeclaredPacket) -> dict[str, Any]:
         "line": packet.line,
         "code": packet.code,
         "structs": packet.structs,
+        "header_size": packet.header_size,
     }
 
 
@@ -96,6 +97,7 @@ def _packet(values: Mapping[str, Any]) -> DeclaredPacket:
         int(values["line"]),
         None if values["code"] is None else int(values["code"]),
         structs=tuple(map(str, values["structs"])),
+        header_size=int(values["header_size"]),
     )
 
 

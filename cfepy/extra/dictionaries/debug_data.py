@@ -16,7 +16,7 @@ from cfepy.extra.c import CStruct, FieldType, Macros, StructField, Structs, macr
 from cfepy.extra.dictionaries.debug_cache import cached_content
 from cfepy.extra.dictionaries.nasa_names import snake
 from cfepy.extra.dictionaries.packets import DeclaredPacket, SourceContent
-from cfepy.msg import NO_PAYLOAD, Layout, ValueNames, is_valid_msg_id
+from cfepy.msg import CMD_HEADER_SIZE, NO_PAYLOAD, TLM_HEADER_SIZE, Layout, ValueNames, is_valid_msg_id
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import OBJECT_BYTES
 from cfepy.status import UsageError
@@ -27,6 +27,10 @@ GAP = "spare_"
 """The beginning of the names of padding; the rest is its offset."""
 _MID, _CODE = "_MID", "_CC"
 _COMMAND_BIT = 0x1000
+_CFE_6 = "CFEPY_CFE_6"
+"""The macro of sources that were built for cFE 6."""
+_OLD_HEADERS = ("CFE_SB_CmdHdr", "CFE_SB_TlmHdr", "CCSDS_CmdPkt", "CCSDS_TlmPkt", "CCSDS_Command", "CCSDS_Telemetry")
+_OLD_TELEMETRY = 12
 _FIRST = ("CFE_", "OS_", "CCSDS_")
 """Macros of cFE itself, which are in every application."""
 _ENDS = re.compile(r"(CMD|COMMAND|TLM|PKT|PACKET|MSG|TELEMETRY|T)$")
@@ -88,6 +92,7 @@ class _Application:
         self._constants = structs.enumerators()
         self._names = structs.struct_names()
         self._functions = structs.function_names()
+        self._is_cfe_6 = macros.value(_CFE_6, self._constants) is not None
 
     def read(self) -> None:
         """Add its packets to the content."""
@@ -132,6 +137,11 @@ class _Application:
             return CStruct("", 0, (_NO_FIELD,), (COMMAND_HEADER,))
         return struct
 
+    def _header_of(self, struct: CStruct) -> str | None:
+        """Return the header with which a struct begins; for cFE 6 that may be an array of bytes."""
+        found = header_of(struct)
+        return old_header_of(struct) if found is None and self._is_cfe_6 else found
+
     def _struct(self, owner: str, name: str, header: str) -> CStruct | None:
         """Return the struct of a packet.
 
@@ -143,7 +153,7 @@ class _Application:
             for each in names:
                 if each.startswith(f"{owner}_") and _key(snake(each.removeprefix(f"{owner}_"))) == wanted:
                     struct = find(each)
-                    if struct is not None and header_of(struct) == header:
+                    if struct is not None and self._header_of(struct) == header:
                         return struct
         words = _words_of(name.removeprefix(f"{owner}_"))
         alike: dict[int, list[CStruct]] = {}
@@ -152,7 +162,7 @@ class _Application:
             if more is None or not words <= _words_of(snake(each.removeprefix(f"{owner}_"))):
                 continue
             struct = self._structs.argument_of(each)
-            if struct is not None and header_of(struct) == header:
+            if struct is not None and self._header_of(struct) == header:
                 alike.setdefault(len(more), []).append(struct)
         best = alike[min(alike)] if alike else []
         return best[0] if len(best) == 1 else None
@@ -167,8 +177,11 @@ class _Application:
         file, line = (self._library, 0) if place is None else (Path(place.file), place.line)
         structs = tuple(each for each in (struct.name, inner) if each)
         is_command = bool(msg_id & _COMMAND_BIT)
+        header_size = struct.fields[0].type.size if struct.fields and not is_command else TLM_HEADER_SIZE
         self._content.packets.append(
-            DeclaredPacket(name, msg_id, payload, is_command, file, line, code, "", None, {}, structs)
+            DeclaredPacket(
+                name, msg_id, payload, is_command, file, line, code, structs=structs, header_size=header_size
+            )
         )
 
 
@@ -194,6 +207,19 @@ def header_of(struct: CStruct) -> str | None:
     base = struct.fields[0].type.base
     names = (struct.typedefs[0], "" if isinstance(base, str) else base.name)
     return next((name.removesuffix("_t") for name in names if name.removesuffix("_t") in _HEADERS), None)
+
+
+def old_header_of(struct: CStruct) -> str | None:
+    """Return the header with which a struct of cFE 6 begins, such as `uint8 TlmHeader[CFE_SB_TLM_HDR_SIZE]`."""
+    if not struct.fields:
+        return None
+    first = struct.fields[0]
+    base = first.type.base
+    is_header = first.type.counts and base == "u8" and "H" in first.name
+    typedef = struct.typedefs[0] if isinstance(base, str) else struct.typedefs[0] or base.name
+    if is_header or typedef.startswith(_OLD_HEADERS):
+        return {CMD_HEADER_SIZE: COMMAND_HEADER, _OLD_TELEMETRY: TELEMETRY_HEADER}.get(first.type.size)
+    return None
 
 
 def payload_of(struct: CStruct) -> tuple[Layout | None, str]:

@@ -116,7 +116,7 @@ def _debug_data(files: tuple[tuple[Path, int, int], ...]) -> tuple[SourceContent
 def _as_packet(packet: DeclaredPacket) -> Command | Telemetry:
     if packet.is_command:
         return Command(packet.name, packet.msg_id, packet.code, packet.payload, packet.text)
-    return Telemetry(packet.name, packet.msg_id, packet.payload, packet.text)
+    return Telemetry(packet.name, packet.msg_id, packet.payload, packet.text, header_size=packet.header_size)
 
 
 def _as_table(table: DeclaredTable) -> TableType:

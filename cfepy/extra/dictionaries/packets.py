@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cfepy.msg import Layout
+from cfepy.msg import TLM_HEADER_SIZE, Layout
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ class DeclaredPacket:
         lines: the lines of fields, by path without indices.
         structs: names that its struct may have in C.
         library: the shared object, for debug data.
+        header_size: bytes of the header of telemetry.
     """
 
     name: str
@@ -45,6 +46,7 @@ class DeclaredPacket:
     lines: Mapping[str, int] = field(default_factory=dict)
     structs: tuple[str, ...] = ()
     library: Path | None = None
+    header_size: int = TLM_HEADER_SIZE
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 
 from cfepy.ground import Dictionary
 from cfepy.mission import MissionSpec
-from cfepy.msg import BitLayout, Command, FieldPlace, Layout, Measurement, Telemetry, ValueNames
+from cfepy.msg import TLM_HEADER_SIZE, BitLayout, Command, FieldPlace, Layout, Measurement, Telemetry, ValueNames
 
 _HEAD = '''"""Packets of the mission {name}, written by `cfepy export python`."""
 
@@ -53,6 +53,8 @@ class _Writer:
             words.append(f"payload={self._layout(packet.payload)}")
         if packet.text:
             words.append(f"text={packet.text!r}")
+        if isinstance(packet, Telemetry) and packet.header_size != TLM_HEADER_SIZE:
+            words.append(f"header_size={packet.header_size}")
         return f"{kind}({', '.join(words)})"
 
     def _layout(self, layout: Layout) -> str:

@@ -14,7 +14,9 @@ from cfepy.extra.c.engine import compiler
 from cfepy.extra.c.toolchain import CompilerError, Options, build
 from cfepy.extra.c.toolchain.cfe6 import cfe6_flags
 from cfepy.extra.c.toolchain.headers import NAMES_6, headers_folder, names
-from cfepy.mission import Mission
+from cfepy.extra.dictionaries.cosmos_writer import cosmos_text
+from cfepy.ground import dictionary_of
+from cfepy.mission import Mission, read_mission
 from cfepy.status import UsageError
 from cfepy.writing.console import Console
 from tests.extra.c.building import CPP, needs_compiler
@@ -121,6 +123,20 @@ def test_fault_names_the_line_of_the_application(tmp_path: Path) -> None:
     with Mission(str(folder), console=Console(quiet=True)) as mission:
         mission.run_for(1)
     assert any("SIGSEGV" in each and f"veteran.c:{line})" in each for each in mission.console.lines)
+
+
+def test_ground_names_come_from_headers_of_12_bytes(built: dict[str, Path]) -> None:
+    for folder in built.values():
+        dictionary = dictionary_of(read_mission(str(folder)))
+        _, packets = fly(folder, SEND_HK)
+        decoded = dictionary.decode(packets[0])
+        assert (decoded.name, decoded.values) == (
+            "VETERAN_HK_TLM",
+            {"CmdCounter": 0, "ErrCounter": 0, "Limit": 8, "Copied": 2},
+        )
+        assert dictionary.command("VETERAN_FILES").packet(Value=7)[8:] == b"\x07\0"
+        assert dictionary.telemetry["VETERAN_HK_TLM"].length == 12 + 8
+        assert "  ITEM LIMIT 112 16 UINT " in cosmos_text(read_mission(str(folder)), dictionary)
 
 
 # -- errors ------------------------------------------------------------------------------------------------------------
