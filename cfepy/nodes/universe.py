@@ -222,6 +222,11 @@ class Universe:
         return self.main_task.ident if self.main_task is not None else 0
 
     @property
+    def is_ending(self) -> bool:
+        """Whether the program has ended, or ends now."""
+        return self._ending
+
+    @property
     def tasks(self) -> tuple[Task, ...]:
         """The node's living tasks, oldest first."""
         return tuple(task for task in self._tasks if not task.done)

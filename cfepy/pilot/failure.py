@@ -81,7 +81,7 @@ class Failure:
         It is the text without numbers and quoted texts, which differ from schedule to schedule. Numbers of source lines
         stay (`checks.py:12`), because they distinguish causes.
         """
-        cause = self.cause or _PLACE_OR_VALUE.sub(lambda found: found["kept"] or "#", self.text)
+        cause = self.cause or without_values(self.text)
         return f"{self.kind}|{self.who}|{cause}"
 
     @property
@@ -93,6 +93,11 @@ class Failure:
     def title(self) -> str:
         """Kind, subject and text, in one line for display."""
         return f"{self.kind}: {self.who}: {self.text}" if self.who else f"{self.kind}: {self.text}"
+
+
+def without_values(text: str) -> str:
+    """Return a text with # for numbers and quoted texts; numbers of source lines stay."""
+    return _PLACE_OR_VALUE.sub(lambda found: found["kept"] or "#", text)
 
 
 def name_of_group(group: str) -> str:

@@ -14,7 +14,7 @@ from cfepy.es import APP_ERROR, CFE_APP, CFE_LIB, BadLine, StartupEntry, parse
 from cfepy.evs import CRITICAL
 from cfepy.mission import CORE_APPS, EndlessWait, EndlessWaits, FailedCode, Mission, RaisedError
 from cfepy.monitors import DeadlineRecord, InvariantRecords
-from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind
+from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind, without_values
 from cfepy.rtos import InjectedCrash
 from cfepy.units import NS_PER_S, instant_text
 from cfepy.writing.escapes import visible_line
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 LONG_WAIT_NS = 2 * NS_PER_S
 """A table's load that waits for a held address is a problem from here on; applications use tables for shorter times."""
 _COLOURS = re.compile(r"\x1b\[[\d;]*m")
+_COLLECTION = re.compile(r"\[.*\]|\{.*\}|\((?!node ).*\)")  # of values, whose number may differ
 _LONGEST_WORDS = 200  # characters of a program's last words
 BESIDE = "beside"
 """The table of the record with a row for each mission that flew together with it."""
@@ -184,7 +185,8 @@ def _bad_ends(mission: Mission) -> Iterator[RunProblem]:
         end = None if mission.ros is None else mission.ros.ended.get(name)
         text = end_of(mission, name)
         is_told = name in dead or (end is not None and end.name in dead)
-        failures = () if is_told else (Failure(FailureKind.ENDED, name, text),)
+        cause = without_values(_COLLECTION.sub("#", text))
+        failures = () if is_told else (Failure(FailureKind.ENDED, name, text, cause=cause),)
         history = mission.record.history.get(name)
         yield RunProblem(f"{name} ended with {text}", None if history is None else history.failed_ns, failures)
 

@@ -36,7 +36,15 @@ def fix_asyncio(universe: Universe, module: ModuleType) -> None:
     """Fix `asyncio` after loading: its default event loop must not use the host's processes or signals."""
 
     class KernelEventLoop(module.selector_events.BaseSelectorEventLoop):  # type: ignore[misc, name-defined]
-        """The loop of the node's own copy of asyncio."""
+        """The loop of the node's own copy of asyncio.
+
+        A loop in a daemon thread ends with its process, without a word. Here the garbage collector meets it later, when
+        its sockets are closed.
+        """
+
+        def __del__(self, *options: Any) -> None:
+            if not universe.is_ending:
+                super().__del__(*options)
 
     class KernelEventLoopPolicy(module.events.BaseDefaultEventLoopPolicy):  # type: ignore[misc, name-defined]
         _loop_factory = KernelEventLoop

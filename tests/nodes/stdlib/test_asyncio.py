@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gc
+import sys
+
 
 def test_sleep_gather_queue_and_timeout(run):
     program = run(
@@ -43,3 +46,18 @@ def test_threads_and_executors_wake_the_loop(run):
         asyncio.run(main())
     """)
     assert program.lines == ["slept 1.0", "3.0"]
+
+
+def test_loop_of_a_daemon_thread_ends_without_a_word(run, monkeypatch):
+    said = []
+    monkeypatch.setattr(sys, "unraisablehook", lambda found: said.append(found.exc_value))
+    program = run("""
+        import asyncio, threading, time
+        loop = asyncio.new_event_loop()
+        threading.Thread(target=loop.run_forever, daemon=True).start()
+        time.sleep(1)
+    """)
+    assert program.text == ""
+    del program
+    gc.collect()
+    assert said == []
