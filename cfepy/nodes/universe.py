@@ -153,7 +153,7 @@ class Universe:
         self._thread_ends: dict[int, list[Callable[[], None]]] = {}
         kept = {key: os.environ[key] for key in _KEPT_ENVIRONMENT if key in os.environ}
         self.file_points = file_points(kernel)
-        self.environ = os_module.Environ(kept if env is None else env, self.file_points)
+        self.environ = os_module.Environ(kept if env is None else env)
         self.stdout = ConsoleStream("<stdout>", 1, self._write_line)
         self.last_words = ""  # the last line of its standard error
         self.stderr = ConsoleStream("<stderr>", 2, self._write_error_line)

@@ -27,6 +27,10 @@ from cfepy.units import time_text
 _PLACE = re.compile(r"\(([\w.-]+:\d+)\)$")  # of an exception, at the end of its text
 NOTHING: Counter[str] = Counter()
 NOBODY = "0"  # number of tasks that were woken
+_MISSING = re.compile(
+    r"(?:AttributeError: '(?P<owner>\w+)' object has no attribute '(?P<attribute>\w+)'"
+    r"|NameError: name '(?P<name>\w+)' is not defined).*\((?P<place>[\w.-]+:\d+)\)$"
+)
 _HELD = re.compile(r"(?P<task>\S+) waits for (?P<what>[^;]+), held by (?P<holder>[^;,]+)")
 
 
@@ -65,10 +69,19 @@ class Evidence:
         self.usually_ran = usually_ran
         self._keys = list(keys_of(self.deeds))
         self._usual_at = {key: at for at, key in enumerate(keys_of(self.usual))}
+        self._usual_lines: dict[tuple[str, str, str], int] = {}  # the first deed of each task in each line
+        for at, deed in enumerate(self.usual):
+            self._usual_lines.setdefault((plain_name(deed.task), deed.verb, deed.place), at)
 
     def is_flipped(self, first: int, second: int) -> bool:
         """Return True if two deeds of the failing run came in the other order under fifo."""
         one, other = (self._usual_at.get(self._keys[at]) for at in (first, second))
+        return one is not None and other is not None and other < one
+
+    def are_lines_flipped(self, first: int, second: int) -> bool:
+        """Return True if two tasks came to the lines of two deeds of the failing run in the other order under fifo."""
+        deeds = (self.deeds[at] for at in (first, second))
+        one, other = (self._usual_lines.get((plain_name(deed.task), deed.verb, deed.place)) for deed in deeds)
         return one is not None and other is not None and other < one
 
 
@@ -98,9 +111,12 @@ def cause_of(evidence: Evidence) -> Cause:
         _late_subscription,
         _deleted,
         _message_order,
+        _given_twice,
+        _read_too_early,
         _torn,
         _raised,
         _order,
+        _write_order,
         _one_switch,
     )
     return next((cause for cause in (sentence(evidence) for sentence in sentences) if cause.text), NO_CAUSE)
@@ -294,9 +310,42 @@ def _raised(evidence: Evidence) -> Cause:
     return NO_CAUSE
 
 
+def _read_too_early(evidence: Evidence) -> Cause:
+    """Return a cause if a line read an attribute or a variable that a task writes later, and earlier under fifo."""
+    found = _MISSING.match(evidence.failure.text)
+    if evidence.failure.kind not in (RAISED, DIED) or found is None:
+        return NO_CAUSE
+    thing = found["name"] or f"{found['owner']}.{found['attribute']}"
+    written = [deed for _, deed in _of(evidence.usual, do.WRITES) if deed.thing.rpartition(" ")[2] == thing]
+    if not written:
+        return NO_CAUSE
+    first = written[0]
+    task = evidence.failure.task
+    writes = f"it was written at {first.place}" if first.task == task else f"{first.task} wrote it at {first.place}"
+    text = f"{task} read {thing} at {found['place']} before {writes}; under fifo it is written first"
+    return Cause(text, tuple(deed for deed in evidence.deeds if deed.place == first.place and deed.thing == thing))
+
+
+def _write_order(evidence: Evidence) -> Cause:
+    """Return a cause if two writes have another order than under fifo, for one variable only.
+
+    The first write to a new item of a dictionary is a change of all of it, so lines are compared, not objects.
+    """
+    found = list(_flipped_accesses(evidence, _are_writes, evidence.are_lines_flipped))
+    if not found or len({(later.ident, later.key) for _, later in found}) != 1:
+        return NO_CAUSE
+    earlier, later = found[0]
+    thing = earlier.thing if later.key == do.ALL else later.thing
+    text = (
+        f"{later.task} wrote {thing} at {later.place} after {earlier.task} wrote it at {earlier.place}; under fifo the "
+        "order is reversed"
+    )
+    return Cause(text, (earlier, later))
+
+
 def _order(evidence: Evidence) -> Cause:
     """Return a cause if a read and a write have another order than under fifo, for one variable only."""
-    found = list(_flipped_accesses(evidence))
+    found = list(_flipped_accesses(evidence, _is_order_seen, evidence.is_flipped))
     if len({later.thing for _, later in found}) != 1:
         return NO_CAUSE
     earlier, later = found[0]
@@ -307,7 +356,9 @@ def _order(evidence: Evidence) -> Cause:
     return Cause(text, (earlier, later))
 
 
-def _flipped_accesses(evidence: Evidence) -> Iterator[tuple[Deed, Deed]]:
+def _flipped_accesses(
+    evidence: Evidence, is_meant: Callable[[Deed, Deed], bool], is_flipped: Callable[[int, int], bool]
+) -> Iterator[tuple[Deed, Deed]]:
     """Yield accesses of two tasks in another order than under fifo, if a switch delayed the second task."""
     gave_way: dict[str, int] = {}
     seen: dict[int, list[int]] = {}
@@ -318,7 +369,7 @@ def _flipped_accesses(evidence: Evidence) -> Iterator[tuple[Deed, Deed]]:
             for earlier_at in seen.setdefault(deed.ident, []):
                 earlier = evidence.deeds[earlier_at]
                 is_kept_back = earlier_at > gave_way.get(deed.task, at) and earlier.task != deed.task
-                if is_kept_back and _is_order_seen(earlier, deed) and evidence.is_flipped(earlier_at, at):
+                if is_kept_back and is_meant(earlier, deed) and is_flipped(earlier_at, at):
                     yield earlier, deed
             seen[deed.ident].append(at)
 
@@ -328,6 +379,10 @@ def _is_order_seen(one: Deed, other: Deed) -> bool:
     both = (one, other)
     reads = any(each.verb == do.READS or each.key == do.ALL for each in both)
     return one.is_of_same(other) and reads and any(each.verb == do.WRITES for each in both)
+
+
+def _are_writes(one: Deed, other: Deed) -> bool:
+    return one.is_of_same(other) and (one.verb, other.verb) == (do.WRITES, do.WRITES)
 
 
 def _did(deed: Deed) -> str:
@@ -374,6 +429,42 @@ def _set_and_cleared(evidence: Evidence, at: int) -> Cause:
         f"{wait.task} waits for it at {wait.place} in vain"
     )
     return Cause(text, (was_set, cleared, wait))
+
+
+def _given_twice(evidence: Evidence) -> Cause:
+    """Return a cause if a binary semaphore was given while it was given already, which does not happen under fifo."""
+    end_ns = evidence.deeds[-1].at_ns if evidence.deeds else 0
+    as_far = [deed for deed in evidence.usual if deed.at_ns <= end_ns]
+    usual = {(plain_name(second.task), second.thing) for _, second in _second_gives(as_far)}
+    for first, second in _second_gives(evidence.deeds):
+        if (plain_name(second.task), second.thing) not in usual:
+            giver = "its own give" if first.task == second.task else f"{first.task}'s give"
+            text = (
+                f"{second.task} gave {second.thing} at {second.place} while it was given already, by {giver} at "
+                f"{first.place}, so one give is lost; under fifo a task takes it in between"
+            )
+            return Cause(text, (first, second))
+    return NO_CAUSE
+
+
+def _second_gives(deeds: Sequence[Deed]) -> Iterator[tuple[Deed, Deed]]:
+    """Yield a give of a binary semaphore, and the next one while no task had taken the first."""
+    given: dict[str, Deed] = {}
+    waiting: dict[str, list[str]] = {}
+    for deed in deeds:
+        if deed.note != do.BINARY:
+            continue
+        waiters = waiting.setdefault(deed.thing, [])
+        if deed.verb == do.WANTS and given.pop(deed.thing, None) is None:
+            waiters.append(deed.task)
+        elif deed.verb == do.GIVES and waiters:
+            waiters.pop(0)
+        elif deed.verb == do.GIVES:
+            if deed.thing in given:
+                yield given[deed.thing], deed
+            given[deed.thing] = deed
+        elif deed.verb == do.GIVES_UP and deed.task in waiters:
+            waiters.remove(deed.task)
 
 
 def _vain_waits(deeds: Sequence[Deed]) -> list[int]:

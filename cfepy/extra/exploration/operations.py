@@ -27,6 +27,7 @@ DELETES, RECEIVES = "deletes", "receives from"
 READS, WRITES = "reads", "writes"
 GIVES_WAY = "gives way to"
 ALL = "*"
+BINARY = "binary"  # the note of deeds with a semaphore that remembers one give
 
 
 class Deed(NamedTuple):

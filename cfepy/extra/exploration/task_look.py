@@ -39,8 +39,10 @@ _OF_OSAL = {
     "mut_sem_take": (do.HAS, "mutex"),
     "mut_sem_give": (do.RELEASES, "mutex"),
     "bin_sem_take": (do.TAKES, "semaphore"),
+    "bin_sem_timed_wait": (do.TAKES, "semaphore"),
     "bin_sem_give": (do.GIVES, "semaphore"),
     "count_sem_take": (do.TAKES, "semaphore"),
+    "count_sem_timed_wait": (do.TAKES, "semaphore"),
     "count_sem_give": (do.GIVES, "semaphore"),
 }
 EVENT = "CFE_EVS_LONG_EVENT_MSG"
@@ -232,7 +234,7 @@ class TaskLook(Attachment):
         if task is None or not self._goes_on() or _is_nested(subject, sys._getframe(2)):
             return
         if call in _OF_OSAL or call in _OF_COUNTERS:
-            self._call_of_app(task, subject, call, args, frame, ended=False)
+            self._call_of_app(task, subject, call, args, frame)
         elif call == "__init__":
             self._things.made(subject, frame)
         elif isinstance(subject, FilePoints):
@@ -246,7 +248,7 @@ class TaskLook(Attachment):
         if task is None or not self._goes_on() or _is_nested(subject, sys._getframe(2)):
             return
         if call in _OF_OSAL or call in _OF_COUNTERS:
-            self._call_of_app(task, subject, call, args, frame, ended=True)
+            self._call_of_app(task, subject, call, args, frame, ended=True, is_done=result is not False)
         elif call in _TAKING and hasattr(subject, "_at_fork_reinit"):
             self._lock_taken(task, use_of(subject, call, frame), result)
 
@@ -254,7 +256,14 @@ class TaskLook(Attachment):
         """Do nothing: a failed call has no effect."""
 
     def _call_of_app(
-        self, task: Task, service: Any, call: str, args: tuple[Any, ...], frame: FrameType | None, ended: bool
+        self,
+        task: Task,
+        service: Any,
+        call: str,
+        args: tuple[Any, ...],
+        frame: FrameType | None,
+        ended: bool = False,
+        is_done: bool = True,
     ) -> None:
         if call in _OF_COUNTERS:
             counter = service.counters.find(args[0]) if args else None
@@ -267,14 +276,15 @@ class TaskLook(Attachment):
         except (CfeError, IndexError):  # an invalid id: the call has failed, or is about to
             return
         takes = verb in (do.HAS, do.TAKES)
+        note = do.BINARY if call.startswith("bin_") else ""
         if takes and not ended:
-            self._wants(task, thing, frame)
+            self._wants(task, thing, frame, note)
         elif takes == ended:
             self.wanting.pop(task.name, None)
-            self._shown(task, self._done(task, verb, thing, frame), frame)
+            self._shown(task, self._done(task, verb if is_done else do.GIVES_UP, thing, frame, note), frame)
 
-    def _wants(self, task: Task, thing: str, frame: FrameType | None) -> None:
-        self.wanting[task.name] = self._done(task, do.WANTS, thing, frame)
+    def _wants(self, task: Task, thing: str, frame: FrameType | None, note: str = "") -> None:
+        self.wanting[task.name] = self._done(task, do.WANTS, thing, frame, note)
 
     def _call_of_node(self, task: Task, lock: Any, call: str, frame: FrameType | None) -> None:
         use = use_of(lock, call, frame)

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes.files import LISTED, Entries, FileCalls, FilePoints
+from cfepy.nodes.files import LISTED, Entries, FileCalls
 from cfepy.nodes.files.stamps import UMASK
 from cfepy.nodes.made_modules import rebind
 from cfepy.nodes.refused_modules import PROCESS, RefusedError, refusal
@@ -42,27 +42,9 @@ _NO_EFFECT = (
 
 
 class Environ(dict[str, str]):
-    """`os.environ`: changes stay in the node.
-
-    Args:
-        values: the variables.
-        points: where other tasks may run; None for nowhere.
-    """
-
-    def __init__(self, values: Mapping[str, str], points: FilePoints | None = None) -> None:
-        super().__init__(values)
-        self._pause = bool if points is None else points.pause
-
-    def __getitem__(self, name: str) -> str:
-        self._pause()
-        return super().__getitem__(name)
-
-    def get(self, name: str, default: Any = None) -> Any:
-        self._pause()
-        return super().get(name, default)
+    """`os.environ`: changes stay in the node."""
 
     def __setitem__(self, name: str, value: str) -> None:
-        self._pause()
         if not isinstance(name, str) or not isinstance(value, str):
             raise TypeError(f"str expected, not {type(value if isinstance(name, str) else name).__name__}")
         super().__setitem__(name, value)

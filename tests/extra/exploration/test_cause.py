@@ -11,6 +11,7 @@ from cfepy.extra.exploration.cause import Evidence, cause_of
 from cfepy.extra.exploration.made_moves import MadeMove
 from cfepy.extra.exploration.operations import (
     AWAITS,
+    BINARY,
     GETS,
     GIVES_UP,
     GIVES_WAY,
@@ -138,6 +139,46 @@ def test_cause_of_an_exception_names_the_write_after_its_read() -> None:
     assert told(failing, failure=raised) == cause
     assert told(failing, failure=Failure(RAISED, "a", "RuntimeError: changed (a.py:8)", task="A")) == ""
     assert told(failing, failure=Failure(RAISED, "b", "RuntimeError: changed (a.py:7)", task="B")) == ""
+
+
+@pytest.mark.parametrize(
+    ("error", "thing"),
+    [
+        ("AttributeError: 'Tracker' object has no attribute 'out' (a.py:7)", "Tracker.out"),
+        ("NameError: name 'out' is not defined (a.py:7)", "out"),
+    ],
+)
+def test_cause_of_a_missing_value_names_the_line_that_writes_it_later(error: str, thing: str) -> None:
+    usual = [f"B|{WRITES}|{thing}|2"]
+    raised = Failure(RAISED, "a", error, task="A")
+    cause = f"A read {thing} at a.py:7 before B wrote it at a.py:2; under fifo it is written first"
+    assert told([], usual, raised) == cause
+    assert told([], [f"A|{WRITES}|{thing}|2"], raised) == cause.replace("B wrote it", "it was written")
+    assert told([], [f"B|{WRITES}|other|2"], raised) == ""
+
+
+def test_cause_names_the_order_of_two_writes_when_one_variable_explains_it() -> None:
+    failing = [f"A|{GIVES_WAY}|B|0", f"B|{WRITES}|o.x|2", f"A|{WRITES}|o.x|1"]
+    usual = [failing[2], failing[1]]
+    assert told(failing, usual) == "A wrote o.x at a.py:1 after B wrote it at a.py:2; under fifo the order is reversed"
+    assert told(failing, failing) == ""
+
+
+def test_cause_names_a_give_that_is_lost() -> None:
+    def take(task: str) -> list[str]:
+        return [f"{task}|wants|semaphore S|1|{BINARY}", f"{task}|takes|semaphore S|1|{BINARY}"]
+
+    give = f"B|gives|semaphore S|2|{BINARY}"
+    usual = [give, *take("A"), give, *take("A")]
+    assert told([give, give, *take("A")], usual) == (
+        "B gave semaphore S at a.py:2 while it was given already, by its own give at a.py:2, so one give is lost; "
+        "under fifo a task takes it in between"
+    )
+    assert told([give, give], [give, give]) == ""  # it is lost under fifo as well
+    wait, woken = take("A")
+    assert told([wait, give, give, woken], usual) == ""  # the first give woke A
+    given_up = [wait, f"A|{GIVES_UP}|semaphore S|1|{BINARY}"]
+    assert "while it was given already" in told([*given_up, give, give], usual)
 
 
 def test_cause_names_a_notify_before_its_wait() -> None:
