@@ -116,11 +116,13 @@ class Accesses:
     Attributes:
         observers: receive each access; set before the mission boots.
         files: source files whose code has hooks.
+        seen: all source files of the mission that were loaded while hooks were wanted.
     """
 
     def __init__(self, kernel: Kernel) -> None:
         self.observers: list[Observer] = []
         self.files: set[str] = set()
+        self.seen: set[str] = set()
         self._kernel = kernel
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
         self._point = None if kernel.policy is None else _point_of(kernel)
@@ -144,6 +146,7 @@ class Accesses:
             file: the source file.
             is_main: whether it is a node's script.
         """
+        self.seen.add(file)
         kind = self._points.kind if self._points.cover(file) else ""
         if not (self.observers or kind):
             return None

@@ -3,14 +3,15 @@
 lines                before each statement of a function
 attributes           before each access to data that several tasks may share
 calls                after each call that returns from code outside the mission too
-attributes,arm,util  the same, only in the modules arm and util
+attributes,arm,util  the same, only in the modules arm and util; a package stands for its modules
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from dataclasses import dataclass
-from pathlib import PurePath
+from pathlib import Path
 
 from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
@@ -25,7 +26,7 @@ class Points:
 
     Args:
         kind: LINES, ATTRIBUTES or CALLS; empty for calls into cfepy only.
-        modules: names of the files concerned, without their suffix; empty for all.
+        modules: names of the files concerned, without their suffix, and of packages; empty for all.
     """
 
     kind: str = ""
@@ -61,5 +62,20 @@ class Points:
         """Return whether a source file has points."""
         if not self.kind or not self.modules:
             return bool(self.kind)
-        path = PurePath(file)
-        return path.stem in self.modules or (path.stem == "__init__" and path.parent.name in self.modules)
+        return not source_names(file).isdisjoint(self.modules)
+
+    def unmatched(self, files: Iterable[str]) -> list[str]:
+        """Return the modules that are in none of some source files."""
+        known = {name for file in files for name in source_names(file)}
+        return [name for name in self.modules if name not in known]
+
+
+def source_names(file: str) -> frozenset[str]:
+    """Return the names that stand for a source file: its module, and the packages that it is in."""
+    path = Path(file)
+    names = set() if path.stem == "__init__" else {path.stem}
+    for folder in path.parents:
+        if not (folder / "__init__.py").is_file():
+            break
+        names.add(folder.name)
+    return frozenset(names)

@@ -21,7 +21,7 @@ from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.extent import Breadth, PointCounter
 from cfepy.extra.exploration.fork_server import ForkingNotes
 from cfepy.extra.exploration.longest import Distribution, MeasuredTrial, Worst, WorstSearch, worst_of
-from cfepy.extra.exploration.missing_points import unseen_by
+from cfepy.extra.exploration.missing_points import SourceWatch, unseen_by
 from cfepy.extra.exploration.mission_transfer import files_read, identity_of, ship
 from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.progress import make_progress
@@ -235,7 +235,9 @@ class Expedition:
             bare = MeasuredTrial(self.plan, self.events, keep_widths=True, measure=measure)
         bare = replace(bare, liveness=self._liveness)
         counter = PointCounter(options.policy() or Policy())
-        first = bare.fly(options, policy=counter)
+        sources = SourceWatch()
+        first = bare.fly(options, [sources], policy=counter)
+        sources.check(self.points)
         breadth = Breadth(dict(counter.kinds), first.tasks)
         reference, notes = first.verdict, first.notes
         tell(notes)

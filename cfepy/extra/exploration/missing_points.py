@@ -12,11 +12,15 @@ from pathlib import PurePath
 from types import CodeType
 from typing import Any, NamedTuple
 
+from cfepy.attachment import Attachment
 from cfepy.extra.exploration.trial import Trial
+from cfepy.mission import Mission
 from cfepy.monitors import RaceWatch
-from cfepy.nodes import WRITES_FILE, FilePoints, Touch
+from cfepy.nodes import WRITES_FILE, Accesses, FilePoints, Touch
+from cfepy.reading.suggestions import did_you_mean, listed
 from cfepy.rtos import Task
-from cfepy.schedules import CALLS, CallPointKernel, Schedule
+from cfepy.schedules import CALLS, CallPointKernel, Points, Schedule, source_names
+from cfepy.status import UsageError
 
 MOST_TOLD = 5
 
@@ -44,6 +48,29 @@ def unseen_by(trial: Trial, options: Schedule) -> Unseen:
     plain = replace(trial, plan=replace(trial.plan, races=False), waits=None, reference=None)
     plain.fly(options.at({}).with_points(CALLS), [watch])
     return Unseen(watch.lines(), watch.files.lines())
+
+
+class SourceWatch(Attachment):
+    """Knows the source files that a run has loaded, of which the points may name some."""
+
+    def __init__(self) -> None:
+        self._accesses: Accesses | None = None
+
+    def begin(self, mission: Mission) -> None:
+        self._accesses = mission.accesses
+
+    def check(self, text: str) -> None:
+        """Check the text of the option `--points`.
+
+        Raises:
+            UsageError: the mission has not loaded a module that the text names.
+        """
+        files = set() if self._accesses is None else self._accesses.seen
+        unmatched = Points.parse(text).unmatched(files)
+        if files and unmatched:
+            known = sorted({name for file in files for name in source_names(file)})
+            hint = did_you_mean(unmatched[0], known, f"it has {listed(known)}", before="; ")
+            raise UsageError(f"the mission loads no module {unmatched[0]!r}{hint}", field="--points")
 
 
 class GapWatch(RaceWatch):

@@ -132,15 +132,47 @@ def test_clock_value_is_outdated_when_a_task_gets_in_before_its_use(plan_of: Pla
     plan = plan_of("clock", CLOCK)
     assert explored(plan, "").findings == []
     assert [told.finding.failure.title for told in explored(plan, "calls").findings] == [
-        "ended with an error: CLOCK: exit status 1 (node /CLOCK)"
+        "ended with an error: CLOCK: exit status 1 (node /CLOCK): time went back"
     ]
 
 
 @pytest.mark.slow
 def test_points_are_limited_to_named_modules(plan_of: Plans) -> None:
     plan = plan_of("counter", COUNTER)
+    package = Path(plan.words[0]) / "other"
+    package.mkdir()
+    (package / "__init__.py").write_text("", encoding="utf-8")
+    (package / "part.py").write_text("", encoding="utf-8")
+    node = Path(plan.words[0]) / "counter.py"
+    node.write_text(f"import other.part\n{node.read_text(encoding='utf-8')}", encoding="utf-8")
     assert explored(plan, "attributes:other").findings == []
-    assert explored(plan, "attributes:other,counter").findings != []
+    assert explored(plan, "attributes:part,counter").findings != []
+
+
+@pytest.mark.parametrize(
+    ("points", "said"),
+    [
+        ("attributes:countr", "--points: the mission loads no module 'countr'; did you mean counter?"),
+        ("lines:counter,arm", "--points: the mission loads no module 'arm'; it has counter"),
+    ],
+)
+def test_module_that_the_mission_does_not_load_is_an_error(
+    plan_of: Plans, points: str, said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = plan_of("counter", COUNTER).words
+    assert main(["explore", *words, "--for", "1", "--seeds", "2", "--points", points, "--quiet"]) == 2
+    assert said in capsys.readouterr().err
+
+
+@pytest.mark.slow
+def test_package_stands_for_its_modules(plan_of: Plans) -> None:
+    plan = plan_of("starter", "import parts.counter\n")
+    package = Path(plan.words[0]) / "parts"
+    package.mkdir()
+    (package / "__init__.py").write_text("", encoding="utf-8")
+    (package / "counter.py").write_text(dedent(COUNTER), encoding="utf-8")
+    assert explored(plan, "attributes:starter").findings == []
+    assert explored(plan, "attributes:parts").findings != []
 
 
 @pytest.mark.parametrize("kind", ["lines", "attributes", "calls"])
