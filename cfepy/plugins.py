@@ -143,6 +143,7 @@ OWN = (
         },
         needs=("c",),
     ),
+    _own("procedures", commands=("procedures",), title="Test procedures"),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
     _own("attach", hooks={"realtime_flights": ".attach_door:AttachDoor"}),
     _own("viewers", hooks={"flight_options": ".viewer_options:Viewers"}),

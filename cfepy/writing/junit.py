@@ -29,13 +29,14 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One test; `seconds` is virtual time."""
+    """One test; `seconds` is virtual time, `properties` are further facts by name."""
 
     suite: str
     name: str
     seconds: float = 0.0
     problems: tuple[Problem, ...] = ()
     place: FindingPlace | None = None
+    properties: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(slots=True)
@@ -79,6 +80,10 @@ def _add(suite: ElementTree.Element, case: Case, base: Path) -> None:
         about["file"] = relative(case.place.file, base).as_posix()
         about |= {"line": str(case.place.line)} if case.place.line else {}
     tag = ElementTree.SubElement(suite, "testcase", {name: printable(value) for name, value in about.items()})
+    if case.properties:
+        properties = ElementTree.SubElement(tag, "properties")
+        for name, value in case.properties.items():
+            ElementTree.SubElement(properties, "property", name=name, value=printable(value))
     for problem in case.problems:
         why = {"message": problem.text} | ({"type": problem.type} if problem.type else {})
         inside = ElementTree.SubElement(tag, problem.kind, {name: printable(text) for name, text in why.items()})

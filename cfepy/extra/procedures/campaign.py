@@ -1,0 +1,427 @@
+"""Flies procedures: a mission for each suite, its tests in order, with verdict, times, output and events of each."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+from cfepy.extra.procedures.answers import Answers
+from cfepy.extra.procedures.connection import CfepyConnection, methods_of, test_classes
+from cfepy.extra.procedures.loading import Procedures, group_output
+from cfepy.extra.procedures.procedure_errors import RefusedError, SkipScript, StopScript
+from cfepy.extra.procedures.requirements import Requirements, marked
+from cfepy.extra.procedures.script_api import ScriptApi
+from cfepy.extra.procedures.station import FlightStation, Station, Telemetry, UdpStation
+from cfepy.extra.procedures.suites import Step, Suite, is_suite, steps_of
+from cfepy.extra.procedures.targets import Targets, ruby_variables
+from cfepy.flight import Flight
+from cfepy.ground import dictionary_of, topics_of
+from cfepy.interpreter.host_system import command_line
+from cfepy.pilot import RunPlan
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES
+from cfepy.rtos import Stopwatch
+from cfepy.schedules import Schedule
+from cfepy.status import CfeError, UsageError
+from cfepy.units import NS_PER_S
+
+PASS, FAIL, SKIP = "PASS", "FAIL", "SKIP"
+_SUITE = re.compile(r"^\s*class\s+\w+\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", re.M)
+_SECOND_DOOR = re.compile(r"^\s*DEFAULT_APP_NAME\s*=", re.M)
+PROCEDURES, TARGETS = "procedures", "targets"
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """How procedures fly.
+
+    Attributes:
+        plan: the mission and how it flies.
+        target: name of the target; empty for the folder's or the mission's name.
+        variables: variables of ERB.
+        answers: file with answers to questions.
+        requirements: file with texts of requirements.
+        definitions: folders with `cmd_tlm` of targets, besides the one that the procedures are in.
+        tests: only tests whose names contain one of these texts; all if it is empty.
+        through_lab: whether commands and telemetry go through CI_LAB and TO_LAB; None if the mission has both.
+        udp: address of a flight computer instead of a mission: host, command port, telemetry port.
+        journals: folder for journals of suites with a failed test.
+    """
+
+    plan: RunPlan
+    target: str = ""
+    variables: tuple[tuple[str, Any], ...] = ()
+    answers: Path | None = None
+    requirements: Path | None = None
+    definitions: tuple[Path, ...] = ()
+    tests: tuple[str, ...] = ()
+    through_lab: bool | None = None
+    udp: tuple[str, int, int] | None = None
+    journals: Path | None = None
+
+
+@dataclass(slots=True)
+class TestResult:
+    """The end of a test.
+
+    Attributes:
+        suite: name of the suite, or of the script's file.
+        name: group and method.
+        verdict: PASS, FAIL or SKIP.
+        message: why it did not pass.
+        place: "FILE:LINE" of the procedure.
+        seconds: virtual time in s.
+        wall: wall time in s.
+        output: lines that it printed.
+        events: events of the flight computer meanwhile.
+        requirements: ids that it shows.
+        is_test: False for a setup or teardown.
+        line: line of the place, 0 if unknown.
+    """
+
+    suite: str
+    name: str
+    verdict: str = PASS
+    message: str = ""
+    place: str = ""
+    seconds: float = 0.0
+    wall: float = 0.0
+    output: list[str] = field(default_factory=list)
+    events: list[str] = field(default_factory=list)
+    requirements: tuple[str, ...] = ()
+    is_test: bool = True
+
+    @property
+    def full_name(self) -> str:
+        """Suite, group and method."""
+        return f"{self.suite}::{self.name}"
+
+
+TestResult.__test__ = False  # type: ignore[attr-defined]  # pytest collects classes whose names begin with Test
+
+
+@dataclass(slots=True)
+class CampaignResult:
+    """The results of all suites, the requirements, and remarks."""
+
+    tests: list[TestResult] = field(default_factory=list)
+    requirements: Requirements = field(default_factory=Requirements)
+    notes: list[str] = field(default_factory=list)
+
+    @property
+    def failed(self) -> list[TestResult]:
+        """The tests, setups and teardowns that failed."""
+        return [each for each in self.tests if each.verdict == FAIL]
+
+
+def find_procedures(path: Path) -> list[Path]:
+    """Return the files to fly: the file itself, or those in a folder that declare a suite or use the second door.
+
+    Raises:
+        UsageError: if there is none.
+    """
+    if path.is_file():
+        return [path.resolve()]
+    if not path.is_dir():
+        raise UsageError("does not exist; name a file or a folder of procedures", file=path)
+    found = [each.resolve() for each in sorted(path.rglob("*.py")) if _is_procedure(each)]
+    if not found:
+        raise UsageError("has no suite; a suite is a class derived from Suite", file=path)
+    return found
+
+
+def _is_procedure(file: Path) -> bool:
+    text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
+    if "openc3" not in text and "DEFAULT_APP_NAME" not in text:
+        return False
+    return _SUITE.search(text) is not None or _SECOND_DOOR.search(text) is not None
+
+
+def fly_procedures(
+    files: Sequence[Path], settings: Settings, note: Callable[[TestResult], object] = lambda result: None
+) -> CampaignResult:
+    """Fly files of procedures, each suite in a mission of its own.
+
+    Args:
+        files: the files.
+        settings: how they fly.
+        note: called with each result at once.
+
+    Raises:
+        UsageError: if a file, a definition or the mission has a mistake.
+    """
+    result = CampaignResult(requirements=Requirements(settings.requirements))
+    for file in files:
+        for suite in suites_in(file, settings):
+            with FlyingSuite(file, suite, settings, result.requirements) as flying:
+                for step in flying.steps:
+                    done = flying.run(step)
+                    if done is not None:
+                        result.tests.append(done)
+                        note(done)
+                result.notes += [each for each in flying.notes if each not in result.notes]
+    return result
+
+
+def suites_in(file: Path, settings: Settings) -> list[str]:
+    """Return the names of the suites of a file, found without a flight; [""] for a script without a suite.
+
+    Raises:
+        UsageError: if the file has a mistake.
+    """
+    text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
+    if file.suffix == ".rb":
+        raise UsageError("is Ruby; only Python procedures run", file=file)
+    names = re.findall(r"^\s*class\s+(\w+)\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", text, re.M)
+    return names or [""]
+
+
+class OfflineStation(Station):
+    """A station without a flight, to find the tests of files."""
+
+    @property
+    def now(self) -> float:
+        return 0.0
+
+    def wait(self, seconds: float) -> None:
+        raise RefusedError("a procedure with a suite must not wait outside of its methods")
+
+    def _put(self, packet: bytes) -> None:
+        raise RefusedError("a procedure with a suite must not send commands outside of its methods")
+
+
+class FlyingSuite:
+    """A suite in its mission; a context manager.
+
+    Args:
+        file: its file.
+        suite: its name; empty for a script without one.
+        settings: how it flies.
+        requirements: where its tests write the states of requirements.
+        offline: whether there is no mission, to find the tests only.
+
+    Attributes:
+        steps: its methods, in order.
+        notes: remarks.
+    """
+
+    def __init__(
+        self, file: Path, suite: str, settings: Settings, requirements: Requirements, offline: bool = False
+    ) -> None:
+        self.steps: list[Step] = []
+        self.notes: list[str] = []
+        self.flight: Flight | None = None
+        self._file, self._suite, self._settings = file, suite, settings
+        self._requirements = requirements
+        self._offline = offline
+        self._lines: list[str] = []
+        self._failed = False
+        self._journal: Any = None
+        self._stack = ExitStack()
+
+    def __enter__(self) -> FlyingSuite:
+        try:
+            self._enter()
+        except BaseException:
+            self._stack.close()
+            raise
+        return self
+
+    def _enter(self) -> None:
+        spec = self._settings.plan.spec()
+        target, folder = target_of(self._file, self._settings, spec.name)
+        self._station = self._connected()
+        dictionary = dictionary_of(spec) if self.flight is None else self.flight.dictionary
+        self._targets = Targets(dictionary, target)
+        plugin = [] if folder is None else [folder, *list(folder.parents)[:2]]
+        variables = {
+            **ruby_variables(plugin),
+            "target_name": target,
+            "global_tlm_output_ip": "127.0.0.1",
+            **dict(self._settings.variables),
+        }
+        for each in [*([] if folder is None else [folder]), *self._settings.definitions]:
+            self._targets.read_folder(each, variables)
+        self.notes += self._targets.notes
+        self.api = ScriptApi(self._station, self._targets, Answers(self._settings.answers), self._lines.append)
+        folders = [self._file.parent, *plugin, *(each / "lib" for each in plugin)]
+        loader = Procedures(self.api, folders, variables, self._requirements)
+        self._procedures = self._stack.enter_context(loader)
+        self._stack.enter_context(group_output(self._lines.append))
+        self._stack.callback(self._end_journal)
+        self._load(target)
+
+    def _connected(self) -> Station:
+        if self._offline:
+            return OfflineStation()
+        if self._settings.udp is not None:
+            station = UdpStation(*self._settings.udp)
+            self._stack.callback(station.close)
+            return station
+        telemetry = Telemetry()
+        plan = self._settings.plan
+        attachments: list[Any] = [telemetry.watch]
+        policy = plan.schedule.policy()
+        if self._settings.journals is not None:
+            from cfepy.testing.journals import FlightJournal
+
+            self._settings.journals.mkdir(parents=True, exist_ok=True)
+            name = f"{self._file.stem}{'-' if self._suite else ''}{self._suite}"
+            self._journal = FlightJournal(self._settings.journals / f"{name}.cfepy", plan, policy)
+            attachments.append(self._journal.recorder)
+            policy = self._journal.recorder.policy
+        self.flight = Flight(plan, policy=policy, attachments=attachments, again=self.command)
+        if self._journal is not None:
+            self._journal.flight = self.flight
+        self._stack.callback(self.flight.close)
+        self.flight.run_until_operational()
+        return FlightStation(self.flight, telemetry, self._settings.through_lab)
+
+    def _end_journal(self) -> None:
+        if self._journal is None:
+            return
+        if self._failed:
+            self._journal.end()
+        else:
+            self._journal.drop()
+
+    def _load(self, target: str) -> None:
+        if not self._suite and not self._has_second_door():
+            self.steps = [Step(self._file.stem, "", self._file.stem, lambda: self._procedures.run(self._file))]
+            return
+        try:
+            with self._captured():
+                names = self._procedures.run(self._file)
+        except (UsageError, RefusedError):
+            raise
+        except Exception as error:
+            place = self._procedures.place(error)
+            raise UsageError(
+                f"{type(error).__name__}: {error}{f' at {place}' if place else ''}", file=self._file
+            ) from error
+        if self._suite:
+            kind = names[self._suite]
+            assert is_suite(kind, Suite)
+            self.steps = [each for each in steps_of(kind) if self._is_wanted(each)]
+            return
+        for kind in test_classes(names):
+            connection = CfepyConnection(self.api, target, kind)
+            for name in methods_of(kind):
+                call = getattr(connection.method_obj, name)
+                step = Step(self._file.stem, kind.__name__, name, call, (call.__doc__ or "").strip())
+                if self._is_wanted(step):
+                    self.steps.append(step)
+
+    def _has_second_door(self) -> bool:
+        return _SECOND_DOOR.search(read_limited(self._file, LINE_FILE_BYTES).decode("utf-8", "replace")) is not None
+
+    def _is_wanted(self, step: Step) -> bool:
+        wanted = self._settings.tests
+        return not step.is_test or not wanted or any(each in f"{step.suite}::{step.name}" for each in wanted)
+
+    def __exit__(self, *given: Any) -> None:
+        self._stack.close()
+
+    @contextmanager
+    def _captured(self) -> Iterator[None]:
+        """Keep what procedures print."""
+        printed = _Lines(self._lines.append)
+        with contextlib.redirect_stdout(printed):
+            yield
+        printed.end()
+
+    def run(self, step: Step) -> TestResult | None:
+        """Run a method; returns None for a setup or teardown that passed.
+
+        Args:
+            step: one of `steps`.
+
+        Raises:
+            KeyboardInterrupt: as given by the user.
+        """
+        owner = getattr(step.call, "__self__", None)
+        ids = marked(getattr(step.call, "__func__", step.call), type(owner)) if owner is not None else ()
+        result = TestResult(step.suite, step.name, requirements=ids, is_test=step.is_test)
+        self._requirements.current = result.full_name
+        self._lines.clear()
+        first = 0 if self.flight is None else len(self.flight.events)
+        if self.flight is not None:
+            self.flight.dictionary.learn(topics_of(self.flight.mission))
+            self._targets.learn()
+        start, watch = self._station.now, Stopwatch()
+        try:
+            with self._captured():
+                step.call()
+        except (SkipScript, StopScript) as error:
+            result.verdict, result.message = (SKIP if isinstance(error, SkipScript) else PASS), str(error)
+            result.place = self._procedures.place(error)
+        except RefusedError as error:
+            result.verdict, result.message = FAIL, f"refused: {error}"
+            result.place = self._procedures.place(error)
+        except (Exception, SystemExit) as error:
+            named = isinstance(error, UsageError | CfeError | AssertionError | RuntimeError)
+            result.verdict = FAIL
+            result.message = str(error) if named and str(error) else f"{type(error).__name__}: {error}"
+            result.place = self._procedures.place(error)
+        result.seconds, result.wall = self._station.now - start, watch.elapsed_ns() / NS_PER_S
+        result.output = list(self._lines)
+        if self.flight is not None:
+            result.events = [_event_line(each) for each in self.flight.events[first:]]
+        self._failed = self._failed or result.verdict == FAIL
+        self._requirements.note_test(result.full_name, ids, result.verdict, result.message)
+        return result if step.is_test or result.verdict != PASS else None
+
+    def command(self) -> str:
+        """Return the command that repeats the flight."""
+        plan = self._settings.plan
+        words = ["cfepy", "procedures", str(self._file), *plan.words, "--seed", str(plan.seed)]
+        words += ["--schedule", plan.schedule.text()] if plan.schedule != Schedule() else []
+        words += ["--faults", plan.faults] if plan.faults else []
+        return command_line(words)
+
+
+class _Lines(io.TextIOBase):
+    """A text file that passes on whole lines."""
+
+    def __init__(self, write: Callable[[str], object]) -> None:
+        self._write, self._rest = write, ""
+
+    def write(self, text: str) -> int:
+        *lines, self._rest = (self._rest + text).split("\n")
+        for each in lines:
+            self._write(each)
+        return len(text)
+
+    def end(self) -> None:
+        """Pass on the last line, which has no line end."""
+        if self._rest:
+            self._write(self._rest)
+
+
+def _event_line(event: Any) -> str:
+    return f"{event.at_ns / NS_PER_S:.6f} {event.app} {event.event_id} {event.type_name}: {event.text}"
+
+
+def target_of(file: Path, settings: Settings, mission: str) -> tuple[str, Path | None]:
+    """Return the name of the target, and its folder, the one with `procedures` or `cmd_tlm`.
+
+    Args:
+        file: file of the procedures.
+        settings: may name the target.
+        mission: name of the mission, for a file outside of a target's folder.
+    """
+    folder = next((each for each in file.parents if each.parent.name == TARGETS or (each / "cmd_tlm").is_dir()), None)
+    if folder is None:
+        return settings.target.upper() or mission.upper(), None
+    return settings.target.upper() or folder.name.upper(), folder
+
+
+def with_schedule(settings: Settings, schedule: Schedule) -> Settings:
+    """Return settings with another schedule."""
+    return replace(settings, plan=replace(settings.plan, schedule=schedule))

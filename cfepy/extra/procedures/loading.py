@@ -1,0 +1,178 @@
+"""Runs the files of procedures: ERB, modules `openc3`, `load_utility`, and the lines of errors."""
+
+from __future__ import annotations
+
+import builtins
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType, TracebackType
+from typing import Any
+
+from cfepy.extra.procedures.connection import CfepyConnection, CfsTest_Connection
+from cfepy.extra.procedures.erb import Template
+from cfepy.extra.procedures.procedure_errors import CheckError, RefusedError, SkipScript, StopScript, place_in
+from cfepy.extra.procedures.refused import REFUSED, refusing
+from cfepy.extra.procedures.requirements import Requirements, requirement
+from cfepy.extra.procedures.script_api import ScriptApi
+from cfepy.extra.procedures.suites import Group, Suite
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES
+from cfepy.reading.suggestions import did_you_mean
+from cfepy.status import UsageError
+
+_MODULES = ("openc3", "openc3.script", "openc3.script.suite", "openc3.script.exceptions", "cfepy_procedures")
+_CONNECTION = "cfs_test_connection"
+
+
+class Procedures:
+    """The files of procedures in one flight.
+
+    Args:
+        api: the functions of procedures.
+        folders: folders in which `load_utility` looks for files, and Python for modules.
+        variables: variables of ERB.
+        requirements: where `@requirement` and the tracker write.
+
+    Attributes:
+        files: paths of the files that were run.
+    """
+
+    def __init__(
+        self, api: ScriptApi, folders: list[Path], variables: Mapping[str, Any], requirements: Requirements
+    ) -> None:
+        self.files: set[str] = set()
+        self._template = Template(variables)
+        self._folders = folders
+        self._names: dict[str, Any] = {
+            **{name: refusing(name) for name in REFUSED},
+            **api._functions(),
+            "load_utility": self.load,
+            "require_utility": self.require,
+            "start": self.load,
+            "Group": Group,
+            "TestGroup": Group,
+            "Suite": Suite,
+            "TestSuite": Suite,
+            "SkipScript": SkipScript,
+            "SkipTestCase": SkipScript,
+            "StopScript": StopScript,
+            "CheckError": CheckError,
+            "requirement": requirement,
+        }
+        self._names["set_requirement_status"] = requirements.set_status
+        self._globals: dict[str, Any] = {"__name__": "procedure", "__builtins__": builtins, **self._names}
+        self._before: dict[str, ModuleType] = {}
+        self._path: list[str] = []
+
+    def __enter__(self) -> Procedures:
+        self._before = dict(sys.modules)
+        self._path = list(sys.path)
+        for name in _MODULES:
+            sys.modules[name] = self._module(name)
+        sys.modules[_CONNECTION] = _connections()
+        sys.path[:0] = [str(each) for each in self._folders]
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        sys.path[:] = self._path
+        roots = tuple(f"{each}/" for each in self._folders)
+        for name, module in list(sys.modules.items()):
+            file = getattr(module, "__file__", None) or ""
+            if name in (*_MODULES, _CONNECTION) or (name not in self._before and file.startswith(roots)):
+                sys.modules.pop(name, None)
+        for name in (*_MODULES, _CONNECTION):
+            if name in self._before:
+                sys.modules[name] = self._before[name]
+
+    def _module(self, name: str) -> ModuleType:
+        module = ModuleType(name)
+        if name in ("openc3", "openc3.script"):
+            module.__path__ = []  # a package, whose modules are in sys.modules already
+        names = {"openc3": {}}.get(name, self._names)
+        module.__dict__.update(names)
+        if name == "openc3.script":
+            module.__dict__["suite"] = sys.modules.get("openc3.script.suite") or ModuleType("openc3.script.suite")
+        return module
+
+    def run(self, file: Path) -> dict[str, Any]:
+        """Run a file, and return the names that it has defined.
+
+        Raises:
+            UsageError: if it cannot be read, is Ruby, or has a syntax error.
+        """
+        before = dict(self._globals)
+        self._execute(file)
+        return {name: value for name, value in self._globals.items() if before.get(name) is not value}
+
+    def load(self, name: str, *given: Any) -> bool:
+        """Run a file as `load_utility` does, in the same names.
+
+        Args:
+            name: its path below one of the folders, such as "CFS/procedures/utility.py".
+        """
+        self._execute(self._found(name))
+        return True
+
+    def require(self, name: str) -> bool:
+        """Run a file once."""
+        file = self._found(name)
+        if str(file) in self.files:
+            return False
+        self._execute(file)
+        return True
+
+    def _execute(self, file: Path) -> None:
+        if file.suffix == ".rb":
+            raise UsageError("is Ruby; only Python procedures run", file=file)
+        text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
+        rendered = self._template.render(text, file)
+        try:
+            code = compile(rendered, str(file), "exec")
+        except SyntaxError as error:
+            remedy = "; it looks like Ruby" if _is_ruby(rendered) else ""
+            raise UsageError(f"{error.msg}{remedy}", file=file, line=error.lineno) from None
+        self.files.add(str(file))
+        exec(code, self._globals)
+
+    def _found(self, name: str) -> Path:
+        if name.endswith(".rb"):
+            raise RefusedError(f"{name} is Ruby; only Python procedures run")
+        parts = Path(name).parts
+        for folder in self._folders:
+            for tail in (parts, parts[1:]):  # the first part is the name of the target
+                candidate = folder.joinpath(*tail)
+                if tail and candidate.is_file():
+                    return candidate.resolve()
+        known = [each.name for folder in self._folders for each in folder.glob("**/*.py")]
+        raise UsageError(f"{name} does not exist; {did_you_mean(Path(name).name, known, 'give its folder')}")
+
+    def place(self, error: BaseException) -> str:
+        """Return the line of a procedure that raised an exception."""
+        return place_in(error.__traceback__, self.files)
+
+
+def _connections() -> ModuleType:
+    module = ModuleType(_CONNECTION)
+    module.__dict__["CfsTest_Connection"] = CfsTest_Connection
+    module.__dict__["CfepyConnection"] = CfepyConnection
+    return module
+
+
+def _is_ruby(text: str) -> bool:
+    lines = [line.strip() for line in text.splitlines()]
+    return "end" in lines or any(line.startswith(("require '", "puts ", "load_utility '")) for line in lines)
+
+
+@contextmanager
+def group_output(write: Any) -> Iterator[None]:
+    """Let `Group.print` write to the output of the flight; a context manager."""
+    before = Group._write
+    Group._write = staticmethod(write)
+    try:
+        yield
+    finally:
+        Group._write = staticmethod(before)

@@ -1,0 +1,100 @@
+"""Flies suites under many schedules and finds the tests whose verdict depends on the schedule."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from cfepy.extra.procedures.campaign import FAIL, PASS, Settings, TestResult, fly_procedures, with_schedule
+from cfepy.schedules import Schedule
+
+_BETWEEN_LOOKS = "between two looks"
+
+
+@dataclass(slots=True)
+class Verdicts:
+    """The verdicts of one test under all schedules.
+
+    Attributes:
+        name: its full name.
+        passed, failed: number of schedules.
+        first: the first failure, and its schedule.
+        differs: the first event of the failing flight that the passing one under fifo does not have at its place.
+    """
+
+    name: str
+    passed: int = 0
+    failed: int = 0
+    first: TestResult | None = None
+    schedule: str = ""
+    differs: str = ""
+    events: list[str] = field(default_factory=list)
+
+    @property
+    def is_racy(self) -> bool:
+        """Whether the verdict depends on the schedule."""
+        return self.passed > 0 and self.failed > 0
+
+    @property
+    def cause(self) -> str:
+        """Why a racy test fails under some schedules."""
+        if self.first is None:
+            return ""
+        _, between, text = self.first.message.partition("; it was true at ")
+        if between:
+            return f"the procedure looks too rarely: its condition was true at {text}"
+        if self.differs:
+            return f"another order of events; the first that differs: {self.differs}"
+        return "other values of telemetry with the same events"
+
+
+def schedules_of(count: int) -> list[Schedule]:
+    """Return fifo and random schedules.
+
+    Args:
+        count: number of schedules.
+    """
+    return [Schedule(), *(Schedule.parse(f"random:{seed}") for seed in range(1, count))]
+
+
+def explore_procedures(
+    files: Sequence[Path], settings: Settings, count: int, note: Callable[[str], object] = lambda text: None
+) -> list[Verdicts]:
+    """Fly procedures under many schedules.
+
+    Args:
+        files: files of procedures.
+        settings: how they fly.
+        count: number of schedules.
+        note: called with a line about each schedule.
+
+    Returns:
+        The verdicts of each test, in order.
+    """
+    found: dict[str, Verdicts] = {}
+    for schedule in schedules_of(count):
+        result = fly_procedures(files, with_schedule(settings, schedule))
+        for each in result.tests:
+            if not each.is_test:
+                continue
+            verdicts = found.setdefault(each.full_name, Verdicts(each.full_name))
+            texts = [line.partition(" ")[2] for line in each.events]
+            if each.verdict == PASS:
+                verdicts.passed += 1
+                verdicts.events = verdicts.events or texts
+            elif each.verdict == FAIL:
+                verdicts.failed += 1
+                if verdicts.first is None:
+                    verdicts.first, verdicts.schedule = each, schedule.text()
+                    verdicts.differs = _first_difference(texts, verdicts.events)
+        failed = sum(each.verdict == FAIL for each in result.tests)
+        note(f"{schedule.text()}: {len(result.tests) - failed} passed, {failed} failed")
+    return list(found.values())
+
+
+def _first_difference(events: list[str], usual: list[str]) -> str:
+    for own, other in zip(events, usual, strict=False):
+        if own != other:
+            return f"{own}, where it is {other} under fifo"
+    return ""
