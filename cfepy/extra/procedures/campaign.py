@@ -31,6 +31,8 @@ from cfepy.schedules import Schedule
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
 
+LINE_DELAY_S = 0.1
+"""The pause before each line in COSMOS, if neither the user nor the procedure sets another one."""
 PASS, FAIL, SKIP = "PASS", "FAIL", "SKIP"
 _SUITE = re.compile(r"^\s*class\s+\w+\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", re.M)
 _SECOND_DOOR = re.compile(r"^\s*DEFAULT_APP_NAME\s*=", re.M)
@@ -52,6 +54,7 @@ class Settings:
         through_lab: whether commands and telemetry go through CI_LAB and TO_LAB; None if the mission has both.
         udp: address of a flight computer instead of a mission: host, command port, telemetry port.
         journals: folder for journals of suites with a failed test.
+        line_delay: pause before each line of a procedure in s.
     """
 
     plan: RunPlan
@@ -64,6 +67,7 @@ class Settings:
     through_lab: bool | None = None
     udp: tuple[str, int, int] | None = None
     journals: Path | None = None
+    line_delay: float = LINE_DELAY_S
 
 
 @dataclass(slots=True)
@@ -249,7 +253,9 @@ class FlyingSuite:
         for each in [*([] if folder is None else [folder]), *self._settings.definitions]:
             self._targets.read_folder(each, variables)
         self.notes += self._targets.notes
-        self.api = ScriptApi(self._station, self._targets, Answers(self._settings.answers), self._lines.append)
+        line_delay = 0.0 if self._offline else self._settings.line_delay
+        answers = Answers(self._settings.answers)
+        self.api = ScriptApi(self._station, self._targets, answers, self._lines.append, line_delay)
         folders = [self._file.parent, *plugin, *(each / "lib" for each in plugin)]
         loader = Procedures(self.api, folders, variables, self._requirements)
         self._procedures = self._stack.enter_context(loader)
@@ -354,6 +360,7 @@ class FlyingSuite:
         if self.flight is not None:
             self.flight.dictionary.learn(topics_of(self.flight.mission))
             self._targets.learn()
+        self._station.begin_test()
         start, watch = self._station.now, Stopwatch()
         try:
             with self._captured():

@@ -70,6 +70,7 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
         tests=tuple(arguments.tests),
         through_lab=False if arguments.bus else None,
         udp=None if arguments.udp is None else place_of(arguments.udp),
+        line_delay=arguments.line_delay,
         journals=None if arguments.journals is None else Path(arguments.journals),
     )
 

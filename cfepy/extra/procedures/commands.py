@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from cfepy.cli.options import add_ci_outputs, add_json, add_mission, add_run_options
+from cfepy.cli.options import add_ci_outputs, add_json, add_mission, add_run_options, seconds_of
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -52,6 +52,13 @@ def _add_inputs(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--answers", metavar="FILE", help="answers to ask() and prompt(), in YAML")
     group.add_argument("--requirements", metavar="FILE", help="ids and texts of requirements, in YAML")
     group.add_argument("--test", dest="tests", metavar="TEXT", action="append", default=[], help="only these tests")
+    group.add_argument(
+        "--line-delay",
+        type=seconds_of,
+        default=0.1,
+        metavar="SECONDS",
+        help="pause before each line of a procedure (default: 0.1, as in COSMOS)",
+    )
     group.add_argument("--explore", type=int, metavar="N", help="fly under N schedules, and report racy tests")
     group.add_argument(
         "--bus", action="store_true", help="put commands on the bus and hear all telemetry, without CI_LAB and TO_LAB"

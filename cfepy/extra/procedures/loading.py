@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import ast
 import builtins
 import sys
+import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -12,6 +14,7 @@ from typing import Any
 
 from cfepy.extra.procedures.connection import CfepyConnection, CfsTest_Connection
 from cfepy.extra.procedures.erb import Template
+from cfepy.extra.procedures.pauses import LINE, procedure_clock, with_pauses
 from cfepy.extra.procedures.procedure_errors import CheckError, RefusedError, SkipScript, StopScript, place_in
 from cfepy.extra.procedures.refused import REFUSED, refusing
 from cfepy.extra.procedures.requirements import Requirements, requirement
@@ -62,7 +65,9 @@ class Procedures:
             "requirement": requirement,
         }
         self._names["set_requirement_status"] = requirements.set_status
-        self._globals: dict[str, Any] = {"__name__": "procedure", "__builtins__": builtins, **self._names}
+        self._clock = procedure_clock(api)
+        own = {**vars(builtins), "__import__": self._import, LINE: api._before_line}
+        self._globals: dict[str, Any] = {"__name__": "procedure", "__builtins__": own, **self._names}
         self._before: dict[str, ModuleType] = {}
         self._path: list[str] = []
 
@@ -87,6 +92,24 @@ class Procedures:
         for name in (*_MODULES, _CONNECTION):
             if name in self._before:
                 sys.modules[name] = self._before[name]
+
+    def _import(self, name: str, *given: Any, **options: Any) -> Any:
+        """Import a module for a procedure, whose module `time` is that of the mission."""
+        known = set(sys.modules)
+        found = builtins.__import__(name, *given, **options)
+        roots = tuple(f"{each}/" for each in self._folders)
+        for new in set(sys.modules) - known:
+            module = sys.modules[new]
+            if (getattr(module, "__file__", None) or "").startswith(roots):
+                self._set_clock(module)
+        return self._clock if found is time else found
+
+    def _set_clock(self, module: ModuleType) -> None:
+        for name, value in list(vars(module).items()):
+            if value is time:
+                setattr(module, name, self._clock)
+            elif value is time.sleep:
+                setattr(module, name, self._clock.sleep)
 
     def _module(self, name: str) -> ModuleType:
         module = ModuleType(name)
@@ -131,7 +154,7 @@ class Procedures:
         text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
         rendered = self._template.render(text, file)
         try:
-            code = compile(rendered, str(file), "exec")
+            code = compile(with_pauses(ast.parse(rendered, str(file))), str(file), "exec")
         except SyntaxError as error:
             remedy = "; it looks like Ruby" if _is_ruby(rendered) else ""
             raise UsageError(f"{error.msg}{remedy}", file=file, line=error.lineno) from None

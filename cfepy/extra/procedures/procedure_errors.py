@@ -1,4 +1,4 @@
-"""The exceptions of procedures: a failed check, a skipped script, a stopped script, and a request beyond this add-on."""
+"""The exceptions of procedures: a failed check, a skipped or stopped script, and a function beyond this add-on."""
 
 from __future__ import annotations
 

@@ -7,7 +7,8 @@ lists them; `refused.py` has the names of functions beyond them.
 from __future__ import annotations
 
 import datetime
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 from cfepy.extra.procedures.answers import Answers
@@ -48,15 +49,24 @@ class ScriptApi:
         targets: packets by name.
         answers: answers to questions.
         write: prints a line of the procedure's output.
+        line_delay: pause before each line in s.
     """
 
-    def __init__(self, station: Station, targets: Targets, answers: Answers, write: Callable[[str], object]) -> None:
+    def __init__(
+        self,
+        station: Station,
+        targets: Targets,
+        answers: Answers,
+        write: Callable[[str], object],
+        line_delay: float = 0.0,
+    ) -> None:
         self._station = station
         self._targets = targets
         self._answers = answers
         self._write = write
         self._stash: dict[str, Any] = {}
-        self._line_delay = 0.0
+        self._line_delay = line_delay
+        self._is_instrumented = True
         self._limits_set = "DEFAULT"
         self._disabled_limits: set[tuple[str, str, str]] = set()
         self._set_limits: dict[tuple[str, str, str], tuple[float, ...]] = {}
@@ -549,7 +559,7 @@ class ScriptApi:
     # -- the runner ----------------------------------------------------------------------------------------------------
 
     def set_line_delay(self, seconds: float) -> None:
-        """Set the pause after each line, which takes no virtual time here."""
+        """Set the pause before each line of a procedure, in virtual seconds."""
         self._line_delay = float(seconds)
 
     def get_line_delay(self) -> float:
@@ -571,10 +581,27 @@ class ScriptApi:
         """Accept a limit of the output, which has none here."""
 
     def disable_instrumentation(self) -> Any:
-        """Return a context manager that does nothing, because lines are not instrumented here."""
-        from contextlib import nullcontext
+        """Return a context manager without pauses between lines."""
+        return self._without_pauses()
 
-        return nullcontext()
+    @contextmanager
+    def _without_pauses(self) -> Iterator[None]:
+        before, self._is_instrumented = self._is_instrumented, False
+        try:
+            yield
+        finally:
+            self._is_instrumented = before
+
+    def _before_line(self) -> None:
+        """Pause, as COSMOS does before each line that it runs."""
+        if self._is_instrumented and self._line_delay > 0:
+            self._station.wait(self._line_delay)
+
+    def _sleep(self, seconds: float) -> None:
+        self._station.wait(max(float(seconds), 0.0))
+
+    def _time(self) -> float:
+        return EPOCH + self._station.now
 
     def stash_set(self, key: str, value: Any, **options: Any) -> None:
         """Keep a value for the rest of the flight."""
@@ -612,7 +639,8 @@ def _after(waited: Waited, poll: float) -> str:
     if waited.missed is None:
         return text
     at, lasted = waited.missed
-    return f"{text}; it was true at {at:.3f} s for {lasted:.6f} s, between two looks that are {poll:g} s apart"
+    when = "before this wait began" if at < waited.start else f"between two looks that are {poll:g} s apart"
+    return f"{text}; it was true at {at:.3f} s for {lasted:.6f} s, {when}"
 
 
 def _split_item(given: tuple[Any, ...]) -> tuple[tuple[str, str, str], tuple[Any, ...]]:

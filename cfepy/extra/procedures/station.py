@@ -37,11 +37,13 @@ class Waited(NamedTuple):
 
     Attributes:
         passed: whether the condition was true at a look.
+        start: when the wait began, in s.
         taken: the time that passed in s.
-        missed: if it was not, when it was true between two looks, in s, and for how long; None if it never was.
+        missed: if it was not, when it was true since the test began, in s, and for how long; None if it never was.
     """
 
     passed: bool
+    start: float
     taken: float
     missed: tuple[float, float] | None = None
 
@@ -58,7 +60,8 @@ class Station(ABC):
         self.sent: dict[tuple[int, int], int] = {}
         self.listeners: list[Callable[[bytes], object]] = []
         self._newest: dict[int, Received] = {}
-        self._arrivals: list[tuple[int, Received]] | None = None
+        self._arrivals: list[tuple[int, Received]] = []
+        self._at_start: dict[int, Received] = {}
 
     @property
     @abstractmethod
@@ -101,8 +104,7 @@ class Station(ABC):
         msg_id = data[0] << 8 | data[1]
         before = self._newest.get(msg_id)
         received = self._newest[msg_id] = Received(data, 1 if before is None else before.number + 1, self.now)
-        if self._arrivals is not None:
-            self._arrivals.append((msg_id, received))
+        self._arrivals.append((msg_id, received))
         for each in self.listeners:
             each(data)
 
@@ -119,25 +121,25 @@ class Station(ABC):
             timeout: time limit in s.
             poll: the interval in s.
         """
-        start, before = self.now, dict(self._newest)
+        start = self.now
         end = start + timeout
-        outer, self._arrivals = self._arrivals, []
-        try:
-            while not condition():
-                left = end - self.now
-                if left <= _EPSILON_S:
-                    return Waited(False, self.now - start, self._missed(condition, before))
-                self.wait(min(poll, left))
-            return Waited(True, self.now - start)
-        finally:
-            self._arrivals = outer
+        while not condition():
+            left = end - self.now
+            if left <= _EPSILON_S:
+                return Waited(False, start, self.now - start, self._missed(condition))
+            self.wait(min(poll, left))
+        return Waited(True, start, self.now - start)
 
-    def _missed(self, condition: Callable[[], bool], before: dict[int, Received]) -> tuple[float, float] | None:
+    def begin_test(self) -> None:
+        """Begin a test; a failed wait tells whether its condition was true at any time since."""
+        self._arrivals, self._at_start = [], dict(self._newest)
+
+    def _missed(self, condition: Callable[[], bool]) -> tuple[float, float] | None:
         """Return when a condition was true that no look saw, and for how long."""
-        arrivals, newest = self._arrivals or [], self._newest
-        self._newest, since = before, None
+        newest, self._newest = self._newest, dict(self._at_start)
+        since = None
         try:
-            for msg_id, received in arrivals:
+            for msg_id, received in self._arrivals:
                 self._newest[msg_id] = received
                 is_true = condition()
                 if is_true and since is None:
