@@ -143,7 +143,12 @@ OWN = (
         },
         needs=("c",),
     ),
-    _own("procedures", commands=("procedures",), title="Test procedures"),
+    _own(
+        "procedures",
+        commands=("procedures",),
+        title="Test procedures",
+        hooks={"procedure_tests": ".in_tests:ProcedureTests"},
+    ),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
     _own("attach", hooks={"realtime_flights": ".attach_door:AttachDoor"}),
     _own("viewers", hooks={"flight_options": ".viewer_options:Viewers"}),

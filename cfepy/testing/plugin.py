@@ -42,12 +42,42 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addini("cfepy_stall", f"as --cfepy-stall: {stall}", default="10")
     group.addoption("--cfepy-schedules", type=int, metavar="N", help="number of schedules of each @explore")
     group.addoption("--cfepy-record", metavar="DIR", help="folder for the journals of missions of failed tests")
+    _add_procedures(parser.getgroup("cfepy procedures", "cfepy: test procedures of COSMOS"))
     group.addoption("--cfepy-example", metavar="CODE", help="the Hypothesis example to run, as printed with a failure")
 
 
+def _add_procedures(group: pytest.OptionGroup) -> None:
+    """Add the options for procedures."""
+    group.addoption(
+        "--procedures",
+        metavar="PATH",
+        action="append",
+        default=[],
+        help="run the test procedures of this file or folder; again for more",
+    )
+    group.addoption("--mission", metavar="NAME", default="lab", help="mission of procedures (default: lab)")
+    group.addoption("--explore", metavar="N", type=int, help="fly each suite of procedures under N schedules")
+    group.addoption("--faults", metavar="FILE|seed:N", help="faults in the missions of procedures")
+    group.addoption("--answers", metavar="FILE", help="answers to questions of procedures, in YAML")
+    group.addoption("--requirements", metavar="FILE", help="ids and texts of requirements, in YAML")
+    group.addoption("--matrix-html", metavar="FILE", help="write the requirement matrix of procedures as a page")
+    group.addoption("--matrix-csv", metavar="FILE", help="write the requirement matrix of procedures as CSV")
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    """Register the mark that `cfepy.testing.explore` makes."""
+    """Register the mark that `cfepy.testing.explore` makes, and load the module for procedures if they are asked for.
+
+    Without other paths, pytest then collects the procedures only.
+    """
     config.addinivalue_line("markers", f"{EXPLORE_MARK}(exploration): made by @cfepy.testing.explore(...)")
+    paths = config.getoption("--procedures")
+    if paths:
+        from cfepy.plugins import Hook
+
+        tests: Hook[type] = Hook("procedure_tests")
+        _add_configured(config, "cfepy-procedures", tests.need("--procedures"))
+        if config.args_source is not pytest.Config.ArgsSource.ARGS:
+            config.args = list(paths)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -63,6 +93,11 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Note the running test."""
     item.config.stash[CURRENT] = item
+
+
+def _add_configured(config: pytest.Config, name: str, plugin: type) -> None:
+    if not config.pluginmanager.has_plugin(name):
+        config.pluginmanager.register(plugin(config), name)
 
 
 def _add(config: pytest.Config, name: str, plugin: type) -> None:

@@ -86,7 +86,7 @@ class TestResult:
         events: events of the flight computer meanwhile.
         requirements: ids that it shows.
         is_test: False for a setup or teardown.
-        line: line of the place, 0 if unknown.
+        states: ids, states and messages of the requirements that it has set or shows.
     """
 
     suite: str
@@ -100,6 +100,7 @@ class TestResult:
     events: list[str] = field(default_factory=list)
     requirements: tuple[str, ...] = ()
     is_test: bool = True
+    states: list[tuple[str, str, str]] = field(default_factory=list)
 
     @property
     def full_name(self) -> str:
@@ -213,6 +214,8 @@ class FlyingSuite:
     Attributes:
         steps: its methods, in order.
         notes: remarks.
+        flight: the mission; None on the network or without a flight.
+        journal: the file of its journal, which is kept if a test fails; None without one.
     """
 
     def __init__(
@@ -221,6 +224,7 @@ class FlyingSuite:
         self.steps: list[Step] = []
         self.notes: list[str] = []
         self.flight: Flight | None = None
+        self.journal: Path | None = None
         self._file, self._suite, self._settings = file, suite, settings
         self._requirements = requirements
         self._offline = offline
@@ -279,7 +283,8 @@ class FlyingSuite:
 
             self._settings.journals.mkdir(parents=True, exist_ok=True)
             name = f"{self._file.stem}{'-' if self._suite else ''}{self._suite}"
-            self._journal = FlightJournal(self._settings.journals / f"{name}.cfepy", plan, policy)
+            self.journal = self._settings.journals / f"{name}.cfepy"
+            self._journal = FlightJournal(self.journal, plan, policy)
             attachments.append(self._journal.recorder)
             policy = self._journal.recorder.policy
         self.flight = Flight(plan, policy=policy, attachments=attachments, again=self.command)
@@ -382,6 +387,10 @@ class FlyingSuite:
             result.events = [_event_line(each) for each in self.flight.events[first:]]
         self._failed = self._failed or result.verdict == FAIL
         self._requirements.note_test(result.full_name, ids, result.verdict, result.message)
+        for each in self._requirements.rows():
+            state, message = each.tests.get(result.full_name, ("U", ""))
+            if state != "U":
+                result.states.append((each.name, state, message))
         return result if step.is_test or result.verdict != PASS else None
 
     def command(self) -> str:
