@@ -12,7 +12,7 @@ from pathlib import Path, PurePosixPath
 ROOT = Path(__file__).parents[1]
 SHELF = "ros_libraries"
 
-EVERY = "attach c convert debugger exploration profiler reports ros_host viewers ros_libraries"
+EVERY = "attach c convert debugger exploration procedures profiler reports ros_host viewers ros_libraries"
 NEEDS = {
     "cli/test_board.py::test_a_report": "reports",
     "cli/test_build.py": "c",

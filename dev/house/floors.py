@@ -46,6 +46,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
         "profiler",
         "attach",
         "dictionaries",
+        "procedures",
     ),
     ("__init__",),  # the public API of the library
 )

@@ -2,7 +2,7 @@
 
 Code that gives procedures the functions of `openc3.script` belongs here: names from definitions, commands, telemetry,
 waits, checks, suites, and the requirement matrix. It is written by COSMOS's documentation and depends on none of its
-packages. The central files are `campaign.py`, which flies suites, and `script_api.py`, the functions.
+packages. The central files are `flying_suites.py`, which flies suites, and `script_api.py`, the functions.
 """
 
 from __future__ import annotations
@@ -12,15 +12,14 @@ from typing import TYPE_CHECKING
 from cfepy.interpreter.faces import face
 
 if TYPE_CHECKING:
-    from cfepy.extra.procedures.campaign import (
+    from cfepy.extra.procedures.flying_suites import (
         CampaignResult,
         FlyingSuite,
         Settings,
         TestResult,
-        find_procedures,
         fly_procedures,
-        suites_in,
     )
+    from cfepy.extra.procedures.procedure_loader import find_procedures, suites_in
     from cfepy.extra.procedures.racy_tests import Verdicts, explore_procedures
     from cfepy.extra.procedures.requirements import Requirements, requirement
 
@@ -42,15 +41,14 @@ if not TYPE_CHECKING:  # type checkers see only the names above
     __getattr__, __dir__ = face(
         __name__,
         {
-            ".campaign": (
+            ".flying_suites": (
                 "CampaignResult",
                 "FlyingSuite",
                 "Settings",
                 "TestResult",
-                "find_procedures",
                 "fly_procedures",
-                "suites_in",
             ),
+            ".procedure_loader": ("find_procedures", "suites_in"),
             ".racy_tests": ("Verdicts", "explore_procedures"),
             ".requirements": ("Requirements", "requirement"),
         },

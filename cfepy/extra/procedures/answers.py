@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from cfepy.extra.procedures.procedure_errors import RefusedError
+from cfepy.extra.procedures.procedure_errors import UnsupportedError
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.reading.plain_yaml import plain_yaml
@@ -34,11 +34,11 @@ class Answers:
         """Return the answer to a question.
 
         Raises:
-            RefusedError: if there is none.
+            UnsupportedError: if there is none.
         """
         for part, value in self._by_question.items():
             if str(part).lower() in question.lower():
                 return value
         if self._in_order:
             return self._in_order.pop(0)
-        raise RefusedError(f"no answer to the question {question!r}; give a file with --answers")
+        raise UnsupportedError(f"no answer to the question {question!r}; give a file with --answers")

@@ -6,18 +6,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
 from cfepy.extra.procedures.packet_items import Item, PacketDefinition
+from cfepy.reading.input_files import read_limited
+from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.status import UsageError
 
 _WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|\'((?:[^\'\\]|\\.)*)\'|(#.*)|(\S+)')
 _KINDS = {"UINT": "u", "INT": "i", "FLOAT": "f", "STRING": "char", "BLOCK": "block", "BOOL": "bool"}
 _LIMIT = re.compile(r"(MIN|MAX)(?:_(U?INT|FLOAT)(\d+))?")
 _MID, _CODE = 0, 48
-_HAS_CODE = 0x1000
+_ASSIGNED = re.compile(r"^\s*(\$\w+)\s*=\s*(true|false|-?\d+|0x[0-9A-Fa-f]+|\"[^\"\n]*\"|'[^'\n]*')\s*(?:#.*)?$", re.M)
+_VARIABLE = re.compile(r"^\s*VARIABLE\s+(\w+)\s+(\S+)", re.M)
+_STREAM = re.compile(r"base_stream_id:\s*(0x[0-9A-Fa-f]+)\s*,\s*packet_names:\s*\[([^\]]*)\]")
 _IGNORED_BLOCKS = ("GENERIC_READ_CONVERSION", "GENERIC_WRITE_CONVERSION")
 _CODE_KEYWORDS = ("READ_CONVERSION", "WRITE_CONVERSION", "PROCESSOR", "LIMITS_RESPONSE", "VALIDATOR")
 
@@ -216,3 +220,49 @@ def _integer(word: str) -> int:
         return int(word, 0)
     except ValueError:
         raise UsageError(f"must be a whole number, not {word!r}") from None
+
+
+def ruby_variables(folders: Iterable[Path]) -> dict[str, Any]:
+    """Return the constants that Ruby files assign to global variables, and the variables of a plugin.txt.
+
+    Only lines such as `$size = 64` and `VARIABLE name value` count; nothing is executed.
+
+    Args:
+        folders: folders with `lib/*.rb` and `plugin.txt`.
+    """
+    found: dict[str, Any] = {}
+    for folder in folders:
+        for file in sorted((folder / "lib").glob("*.rb")):
+            text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
+            found.update({name: _constant(value) for name, value in _ASSIGNED.findall(text)})
+        plugin = folder / "plugin.txt"
+        if plugin.is_file():
+            text = read_limited(plugin, LINE_FILE_BYTES).decode("utf-8", "replace")
+            found.update({name: _constant(value) for name, value in _VARIABLE.findall(text)})
+    return found
+
+
+def msg_ids_in(folders: Iterable[Path]) -> dict[str, int]:
+    """Return MsgIds by packet name from tables in Ruby files: `base_stream_id: 0x1806, packet_names: ["A", ...]`.
+
+    Args:
+        folders: folders with Ruby files; missing ones count as empty.
+    """
+    found: dict[str, int] = {}
+    for folder in folders:
+        for file in sorted(folder.glob("*.rb")):
+            text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
+            for stream, names in _STREAM.findall(text):
+                found.update({name: int(stream, 16) for name in re.findall(r'"(\w+)"', names)})
+    return found
+
+
+def _constant(text: str) -> Any:
+    if text in ("true", "false"):
+        return text == "true"
+    if text[:1] in "\"'":
+        return text[1:-1]
+    try:
+        return int(text, 0)
+    except ValueError:
+        return text

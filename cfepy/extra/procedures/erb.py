@@ -219,7 +219,7 @@ def _whole(value: Any, file: Path, line: int) -> int:
 
 
 def _tags(text: str) -> list[_Tag]:
-    """Return the parts of a template; a statement that fills its line takes the line's end with it."""
+    """Return the parts of a template; ends of lines stay, so errors have the lines of the file."""
     parts, at, line = [], 0, 1
     for match in _TAG.finditer(text):
         before = text[at : match.start()]

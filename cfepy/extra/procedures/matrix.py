@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from cfepy.extra.procedures.campaign import CampaignResult
+from cfepy.extra.procedures.flying_suites import CampaignResult
 from cfepy.extra.procedures.requirements import STATES, Requirement, Requirements
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.extra.procedures.campaign import FAIL, PASS, Settings, TestResult, fly_procedures, with_schedule
+from cfepy.extra.procedures.flying_suites import FAIL, PASS, Settings, TestResult, fly_procedures, with_schedule
 from cfepy.schedules import Schedule
 
 _BETWEEN_LOOKS = "between two looks"

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from cfepy.extra.procedures.answers import Answers
+from cfepy.extra.procedures.limit_functions import LimitFunctions, functions_of
 from cfepy.extra.procedures.packet_items import (
     CONVERTED,
     FORMATTED,
@@ -21,7 +22,7 @@ from cfepy.extra.procedures.packet_items import (
     PacketDefinition,
     squeezed,
 )
-from cfepy.extra.procedures.procedure_errors import CheckError, RefusedError
+from cfepy.extra.procedures.procedure_errors import CheckError, UnsupportedError
 from cfepy.extra.procedures.script_words import (
     command_words,
     comparison_words,
@@ -31,7 +32,7 @@ from cfepy.extra.procedures.script_words import (
     value_of,
 )
 from cfepy.extra.procedures.station import Station, Waited
-from cfepy.extra.procedures.targets import Targets
+from cfepy.extra.procedures.target_packets import TargetPackets
 from cfepy.status import UsageError
 
 POLL_S = 0.25
@@ -55,7 +56,7 @@ class ScriptApi:
     def __init__(
         self,
         station: Station,
-        targets: Targets,
+        targets: TargetPackets,
         answers: Answers,
         write: Callable[[str], object],
         line_delay: float = 0.0,
@@ -67,9 +68,8 @@ class ScriptApi:
         self._stash: dict[str, Any] = {}
         self._line_delay = line_delay
         self._is_instrumented = True
-        self._limits_set = "DEFAULT"
-        self._disabled_limits: set[tuple[str, str, str]] = set()
-        self._set_limits: dict[tuple[str, str, str], tuple[float, ...]] = {}
+        self._limits = LimitFunctions(station, targets)
+        self._state_of = self._limits._limits_state
         self._overrides: dict[tuple[str, str, str], Any] = {}
         self._subscriptions: list[tuple[dict[int, PacketDefinition], list[dict[str, Any]]]] = []
 
@@ -107,7 +107,7 @@ class ScriptApi:
         packet = self._targets.command(target, name)
         hazard = packet.hazard(values) if check_hazard else None
         if hazard is not None and str(self._answers.answer(f"{packet.full_name} is hazardous: {hazard}")) != "Yes":
-            raise RefusedError(f"{packet.full_name} is hazardous, and its answer is not Yes")
+            raise UnsupportedError(f"{packet.full_name} is hazardous, and its answer is not Yes")
         self._station.send(packet.built(values, check_range))
         shown = ", ".join(f"{key} {value!r}" for key, value in values.items())
         self._write(f'cmd("{packet.full_name}{" with " if shown else ""}{shown}")')
@@ -150,7 +150,7 @@ class ScriptApi:
             raise UsageError(f"unknown type of value {value_type}; expected {', '.join(VALUE_TYPES)}")
         packet = self._targets.telemetry(words[0], words[1])
         name = words[2].upper()
-        key = packet.target, packet.name, name
+        key = packet.target, packet.name, squeezed(name)
         if key in self._overrides:
             return self._overrides[key]
         newest = self._station.newest(packet.msg_id)
@@ -184,7 +184,7 @@ class ScriptApi:
         found = []
         for name in packet.items:
             value = self._value((packet.target, packet.name, name), type.upper())
-            found.append([name, value, self._limits_state(packet, name)])
+            found.append([name, value, self._state_of(packet, name)])
         return found
 
     def get_packet(self, *given: Any) -> dict[str, Any]:
@@ -208,7 +208,7 @@ class ScriptApi:
         for each in items:
             target, name, item, *kind = each.split("__")
             value = self._value((target, name, item), kind[0].upper() if kind else CONVERTED)
-            found.append([value, self._limits_state(self._targets.telemetry(target, name), item)])
+            found.append([value, self._state_of(self._targets.telemetry(target, name), item)])
         return found
 
     def get_tlm_cnt(self, *given: Any) -> int:
@@ -249,12 +249,16 @@ class ScriptApi:
     def override_tlm(self, *given: Any, **options: Any) -> None:
         """Let an item have a value, until `normalize_tlm`."""
         target, name, item, value = self._assigned(given)
-        self._overrides[target.upper(), name.upper(), item.upper()] = value
+        self._overrides[self._override_key(target, name, item)] = value
 
     def normalize_tlm(self, *given: Any, **options: Any) -> None:
         """End `override_tlm` of an item."""
         target, name, item = item_words(given)
-        self._overrides.pop((target.upper(), name.upper(), item.upper()), None)
+        self._overrides.pop(self._override_key(target, name, item), None)
+
+    def _override_key(self, target: str, name: str, item: str) -> tuple[str, str, str]:
+        packet = self._targets.telemetry(target, name)
+        return packet.target, packet.name, squeezed(item)
 
     def _assigned(self, given: tuple[Any, ...]) -> tuple[str, str, str, Any]:
         if len(given) == 4:
@@ -479,83 +483,6 @@ class ScriptApi:
 
     prompt = message_box = vertical_message_box = combo_box = ask
 
-    # -- limits --------------------------------------------------------------------------------------------------------
-
-    def limits_enabled(self, *given: Any) -> bool:
-        """Return whether the limits of an item are checked."""
-        return self._limits_key(given) not in self._disabled_limits
-
-    def enable_limits(self, *given: Any) -> None:
-        """Check the limits of an item."""
-        self._disabled_limits.discard(self._limits_key(given))
-
-    def disable_limits(self, *given: Any) -> None:
-        """Do not check the limits of an item."""
-        self._disabled_limits.add(self._limits_key(given))
-
-    def get_limits(self, *given: Any) -> dict[str, list[float]]:
-        """Return red low, yellow low, yellow high and red high of an item, by limits set."""
-        target, name, item_name = item_words(given)
-        packet = self._targets.telemetry(target, name)
-        found = {} if packet.read_all is not None else dict(packet.item(item_name).limits)
-        key = self._limits_key(given)
-        if key in self._set_limits:
-            found["CUSTOM"] = self._set_limits[key]
-        return {each: list(values) for each, values in found.items()}
-
-    def set_limits(self, target: str, name: str, item: str, *limits: float, **options: Any) -> None:
-        """Set red low, yellow low, yellow high and red high of an item in the limits set CUSTOM."""
-        if len(limits) < 4:
-            raise UsageError("expected red low, yellow low, yellow high and red high")
-        self._set_limits[self._limits_key((target, name, item))] = tuple(float(each) for each in limits[:4])
-
-    def get_limits_set(self) -> str:
-        """Return the name of the limits set."""
-        return self._limits_set
-
-    def set_limits_set(self, name: str) -> None:
-        """Use another limits set."""
-        self._limits_set = name.upper()
-
-    def get_out_of_limits(self) -> list[list[str]]:
-        """Return the items that violate their limits, with the state, such as RED_LOW."""
-        found = []
-        for target in self._targets.names():
-            for packet in self._targets.packets(target, False):
-                for name, item in packet.items.items():
-                    has_limits = item.limits or (packet.target, packet.name, name) in self._set_limits
-                    state = self._limits_state(packet, name) if has_limits else None
-                    if state is not None and not state.startswith("GREEN"):
-                        found.append([packet.target, packet.name, name, state])
-        return found
-
-    def get_overall_limits_state(self, ignored: Any = None) -> str:
-        """Return GREEN, YELLOW or RED, the worst state of all items."""
-        states = [each[3].split("_")[0] for each in self.get_out_of_limits()]
-        return "RED" if "RED" in states else "YELLOW" if "YELLOW" in states else "GREEN"
-
-    def _limits_key(self, given: tuple[Any, ...]) -> tuple[str, str, str]:
-        target, name, item = item_words(given)
-        packet = self._targets.telemetry(target, name)
-        return packet.target, packet.name, item.upper() if packet.read_all is not None else packet.item(item).name
-
-    def _limits_state(self, packet: PacketDefinition, name: str) -> str | None:
-        key = packet.target, packet.name, name.upper()
-        newest = self._station.newest(packet.msg_id)
-        if packet.read_all is not None or newest is None or key in self._disabled_limits:
-            return None
-        item = packet.item(name)
-        limits = self._set_limits.get(key) or item.limits.get(self._limits_set) or item.limits.get("DEFAULT")
-        value = item.read(newest.data) if limits else None
-        if not limits or not isinstance(value, int | float):
-            return None
-        red_low, yellow_low, yellow_high, red_high = limits
-        if value <= red_low:
-            return "RED_LOW"
-        if value >= red_high:
-            return "RED_HIGH"
-        return "YELLOW_LOW" if value <= yellow_low else "YELLOW_HIGH" if value >= yellow_high else "GREEN"
-
     # -- the runner ----------------------------------------------------------------------------------------------------
 
     def set_line_delay(self, seconds: float) -> None:
@@ -570,9 +497,9 @@ class ScriptApi:
         """Refuse to stop at each line, because there is no user.
 
         Raises:
-            RefusedError: always.
+            UnsupportedError: always.
         """
-        raise RefusedError("step_mode requires a user; use run_mode")
+        raise UnsupportedError("step_mode requires a user; use run_mode")
 
     def run_mode(self) -> None:
         """Run without a stop at each line, as always here."""
@@ -629,8 +556,7 @@ class ScriptApi:
 
     def _functions(self) -> dict[str, Any]:
         """Return all functions by name."""
-        names = [each for each in dir(self) if not each.startswith("_")]
-        return {each: getattr(self, each) for each in names}
+        return functions_of(self, self._limits)
 
 
 def _after(waited: Waited, poll: float) -> str:

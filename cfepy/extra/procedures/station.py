@@ -15,11 +15,12 @@ from typing import NamedTuple
 from cfepy import msg
 from cfepy.flight import Flight
 from cfepy.ground import GroundLink
-from cfepy.ground.link import CI_PORT, TO_PORT
 from cfepy.mission import PACKET, PacketWatch, Seen
 from cfepy.osal import Datagram
 from cfepy.units import NS_PER_S
 
+CI_PORT, TO_PORT = 1234, 1235
+"""The UDP ports of CI_LAB and TO_LAB on processor 1."""
 _FIRST_HEADER = 6
 _EPSILON_S = 1e-9
 
@@ -151,7 +152,7 @@ class Station(ABC):
         return None
 
 
-class Telemetry:
+class BusTelemetry:
     """The observer of a mission's bus for a station that is not connected through TO_LAB."""
 
     def __init__(self) -> None:
@@ -175,7 +176,7 @@ class FlightStation(Station):
         through_lab: whether to use CI_LAB and TO_LAB; None if both are in the startup script.
     """
 
-    def __init__(self, flight: Flight, telemetry: Telemetry, through_lab: bool | None = None) -> None:
+    def __init__(self, flight: Flight, telemetry: BusTelemetry, through_lab: bool | None = None) -> None:
         super().__init__()
         self.flight = flight
         names = {app.name for app in flight.mission.cfe.es.apps}

@@ -15,7 +15,7 @@ BEGINNINGS = ("test_", "script_", "op_")
 SETUP, TEARDOWN = "setup", "teardown"
 
 
-class Group:
+class ProcedureGroup:
     """Base class of the groups of procedures."""
 
     _write: Callable[[str], object] = staticmethod(print)
@@ -23,7 +23,7 @@ class Group:
     @classmethod
     def print(cls, *given: Any) -> None:
         """Print a line to the output of the test."""
-        Group._write(" ".join(map(str, given)))
+        ProcedureGroup._write(" ".join(map(str, given)))
 
     puts = print
 
@@ -38,13 +38,10 @@ class Group:
         return []
 
 
-TestGroup = Test = Group
-
-
-class Suite:
+class ProcedureSuite:
     """Base class of suites. A derived class adds its groups in `__init__`."""
 
-    def __new__(cls, *given: Any, **options: Any) -> Suite:
+    def __new__(cls, *given: Any, **options: Any) -> ProcedureSuite:
         suite = super().__new__(cls)
         suite._plan = []
         return suite
@@ -80,11 +77,10 @@ class Suite:
         return found
 
 
-TestSuite = Suite
 _NAMES: dict[str, type] = {}
 
 
-class Step(NamedTuple):
+class ProcedureStep(NamedTuple):
     """A method that a suite runs.
 
     Attributes:
@@ -112,7 +108,7 @@ class Step(NamedTuple):
         return f"{self.group}::{self.script}" if self.group else f"{self.suite}::{self.script}"
 
 
-def steps_of(kind: type) -> Iterator[Step]:
+def steps_of(kind: type) -> Iterator[ProcedureStep]:
     """Yield the methods of a suite in the order of COSMOS; those that the classes do not have are left out.
 
     Args:
@@ -128,13 +124,13 @@ def steps_of(kind: type) -> Iterator[Step]:
     yield from _step(kind.__name__, "", suite, TEARDOWN)
 
 
-def _step(suite: str, group: str, owner: Any, script: str) -> Iterator[Step]:
+def _step(suite: str, group: str, owner: Any, script: str) -> Iterator[ProcedureStep]:
     call = getattr(owner, script, None)
     if call is None and script in (SETUP, TEARDOWN):
         return
     if not callable(call):
         raise UsageError(f"{group} has no script {script}")
-    yield Step(suite, group, script, call, (call.__doc__ or "").strip())
+    yield ProcedureStep(suite, group, script, call, (call.__doc__ or "").strip())
 
 
 def is_suite(value: Any, own: type) -> bool:

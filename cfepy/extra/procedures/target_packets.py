@@ -2,28 +2,28 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from cfepy.extra.procedures.definition_reader import read_definitions
+from cfepy.extra.procedures.definition_reader import msg_ids_in, read_definitions
 from cfepy.extra.procedures.erb import Helper, Template
-from cfepy.extra.procedures.mission_packets import msg_id_of, packets_of
-from cfepy.extra.procedures.packet_items import PacketDefinition, squeezed
-from cfepy.ground import Dictionary
+from cfepy.extra.procedures.packet_items import Item, PacketDefinition, squeezed
+from cfepy.ground import Dictionary, Topic, flat, xtce_name
+from cfepy.msg import CMD_HEADER_SIZE, TLM_HEADER_SIZE, Cell, Command, Layout, Telemetry
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
-_ASSIGNED = re.compile(r"^\s*(\$\w+)\s*=\s*(true|false|-?\d+|0x[0-9A-Fa-f]+|\"[^\"\n]*\"|'[^'\n]*')\s*(?:#.*)?$", re.M)
-_VARIABLE = re.compile(r"^\s*VARIABLE\s+(\w+)\s+(\S+)", re.M)
-_STREAM = re.compile(r"base_stream_id:\s*(0x[0-9A-Fa-f]+)\s*,\s*packet_names:\s*\[([^\]]*)\]")
 _FILLERS = ("CMD", "TLM")
+_WORDS_LEFT_OUT = frozenset({"CMD", "TLM", "PKT", "PACKET", "MSG"})
+_KINDS = {"u": "u", "i": "i", "f": "f", "b": "bool"}
+_SEQUENCE = 0xC000
 
 
-class Targets:
+class TargetPackets:
     """Packets by target and name.
 
     Args:
@@ -41,7 +41,7 @@ class Targets:
         self._learn_mission()
 
     def _learn_mission(self) -> None:
-        for packet in packets_of(self.name, self._dictionary):
+        for packet in _mission_packets(self.name, self._dictionary):
             known = self._commands if packet.is_command else self._telemetry
             known.setdefault((packet.target, packet.name), packet)
             self._squeezed.setdefault((packet.is_command, packet.target, _short(packet.name)), packet)
@@ -85,7 +85,7 @@ class Targets:
 
     def _command_header(self, ids: Mapping[str, int], target: str, name: str, *rest: Any) -> str:
         *_, code, text = rest
-        msg_id = ids.get(name, msg_id_of(name, int(code), self._dictionary)) or 0
+        msg_id = ids.get(name, _msg_id_of(name, int(code), self._dictionary)) or 0
         if not msg_id:
             self.notes.append(f"{target} {name}: the mission has no such command")
         return (
@@ -98,7 +98,7 @@ class Targets:
         )
 
     def _telemetry_header(self, ids: Mapping[str, int], target: str, name: str, *rest: Any) -> str:
-        msg_id = ids.get(name, msg_id_of(name, None, self._dictionary)) or 0
+        msg_id = ids.get(name, _msg_id_of(name, None, self._dictionary)) or 0
         if not msg_id:
             self.notes.append(f"{target} {name}: the mission has no such packet")
         return (
@@ -156,47 +156,138 @@ def _short(name: str) -> str:
     return squeezed("_".join(each for each in name.upper().split("_") if each not in _FILLERS))
 
 
-def ruby_variables(folders: Iterable[Path]) -> dict[str, Any]:
-    """Return the constants that Ruby files assign to global variables, and the variables of a plugin.txt.
-
-    Only lines such as `$size = 64` and `VARIABLE name value` count; nothing is executed.
+def _mission_packets(target: str, dictionary: Dictionary) -> list[PacketDefinition]:
+    """Return the packets of a mission's dictionary, and its ROS topics.
 
     Args:
-        folders: folders with `lib/*.rb` and `plugin.txt`.
+        target: the name of the target.
+        dictionary: the mission's packets.
     """
-    found: dict[str, Any] = {}
-    for folder in folders:
-        for file in sorted((folder / "lib").glob("*.rb")):
-            text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
-            found.update({name: _constant(value) for name, value in _ASSIGNED.findall(text)})
-        plugin = folder / "plugin.txt"
-        if plugin.is_file():
-            text = read_limited(plugin, LINE_FILE_BYTES).decode("utf-8", "replace")
-            found.update({name: _constant(value) for name, value in _VARIABLE.findall(text)})
+    commands = [_command(target, each) for each in dictionary.commands.values()]
+    telemetry = [
+        _topic(target, each, dictionary) if isinstance(each, Topic) else _telemetry(target, each)
+        for each in dictionary.telemetry.values()
+    ]
+    return [*commands, *telemetry]
+
+
+def _command_header_items(target: str, msg_id: int, code: int | None) -> list[Item]:
+    """Return the items of the header of a command.
+
+    Args:
+        target: the name of the target, for the description.
+        msg_id: its MsgId.
+        code: its function code; None for a command without one.
+    """
+    return [
+        Item("CCSDS_STREAMID", "u", 0, 16, True, default=msg_id, text=f"MsgId of {target}"),
+        Item("CCSDS_SEQUENCE", "u", 16, 16, True, default=_SEQUENCE),
+        Item("CCSDS_LENGTH", "u", 32, 16, True, default=1),
+        Item("CCSDS_FC", "u", 48, 8, True, default=code or 0),
+        Item("CCSDS_CHECKSUM", "u", 56, 8, True, default=0),
+    ]
+
+
+def _telemetry_header_items() -> list[Item]:
+    """Return the items of the header of a telemetry packet."""
+    return [
+        Item("CCSDS_STREAMID", "u", 0, 16, True),
+        Item("CCSDS_SEQUENCE", "u", 16, 16, True),
+        Item("CCSDS_LENGTH", "u", 32, 16, True),
+        Item("SECONDS", "u", 48, 32, True),
+        Item("SUBSECS", "u", 80, 16, True),
+    ]
+
+
+def _command(target: str, command: Command) -> PacketDefinition:
+    items = [
+        *_command_header_items(target, command.msg_id, command.code),
+        *_items(command.payload, 8 * CMD_HEADER_SIZE),
+    ]
+    named = {each.name: each for each in items}
+    return PacketDefinition(
+        target, command.name, True, command.msg_id, command.code, named, command.length, command.text
+    )
+
+
+def _telemetry(target: str, packet: Telemetry) -> PacketDefinition:
+    items = [*_telemetry_header_items(), *_items(packet.payload, 8 * TLM_HEADER_SIZE)]
+    named = {each.name: each for each in items}
+    return PacketDefinition(target, packet.name, False, packet.msg_id, None, named, packet.length, packet.text)
+
+
+def _topic(target: str, topic: Topic, dictionary: Dictionary) -> PacketDefinition:
+    name = topic.name.strip("/").replace("/", "_").upper()
+
+    def read_all(data: bytes) -> Mapping[str, Any]:
+        return {squeezed(path): value for path, value in flat(dictionary.decode(data).values).items()}
+
+    return PacketDefinition(target, name, False, topic.msg_id, text=topic.text, read_all=read_all)
+
+
+def _items(layout: Layout, header: int) -> list[Item]:
+    found = []
+    for name, group in groupby(layout.cells(), lambda cell: cell.path.split("[", 1)[0] if _is_element(cell) else ""):
+        cells = list(group)
+        if name:
+            first = _item(cells[0], name, header)
+            first.count, first.default = len(cells), []
+            found.append(first)
+        found += [_item(each, each.path, header) for each in cells]
     return found
 
 
-def msg_ids_in(folders: Iterable[Path]) -> dict[str, int]:
-    """Return MsgIds by packet name from tables in Ruby files: `base_stream_id: 0x1806, packet_names: ["A", ...]`.
+def _is_element(cell: Cell) -> bool:
+    return cell.path.endswith("]") and cell.path.count("[") == 1 and not cell.type.startswith("char")
+
+
+def _item(cell: Cell, path: str, header: int) -> Item:
+    is_text = cell.type.startswith("char")
+    item = Item(
+        xtce_name(path).upper(),
+        "char" if is_text else _KINDS[cell.type[0]],
+        header + cell.start,
+        cell.width,
+        cell.big_endian,
+        default="" if is_text else 0,
+    )
+    if cell.names is not None:
+        item.states = {each.upper(): value for each, value in cell.names.values.items()}
+    if cell.measurement is not None:
+        item.units, item.polynomial = cell.measurement.unit, tuple(cell.measurement.polynomial)
+    return item
+
+
+def _msg_id_of(name: str, code: int | None, dictionary: Dictionary) -> int | None:
+    """Return the MsgId of the mission's packet that a definition names, or None.
+
+    A command is the one with the same function code and the longest common beginning, for example
+    TO_LAB_CMD_ENABLE_OUTPUT with code 6 is the mission's TO_LAB_OUTPUT_ENABLE.
 
     Args:
-        folders: folders with Ruby files; missing ones count as empty.
+        name: name in the definitions.
+        code: function code; None for telemetry.
+        dictionary: the mission's packets.
     """
-    found: dict[str, int] = {}
-    for folder in folders:
-        for file in sorted(folder.glob("*.rb")):
-            text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
-            for stream, names in _STREAM.findall(text):
-                found.update({name: int(stream, 16) for name in re.findall(r'"(\w+)"', names)})
-    return found
+    words = [each for each in name.upper().split("_") if each not in _WORDS_LEFT_OUT]
+    if code is None:
+        return next((each.msg_id for each in dictionary.telemetry.values() if _plain(each.name) == words), None)
+    for command in dictionary.commands.values():
+        if _plain(command.name) == words:
+            return command.msg_id
+    best, most = None, 0
+    for command in dictionary.commands.values():
+        if command.code != code:
+            continue
+        own = _plain(command.name)
+        common = next(
+            (i for i, (a, b) in enumerate(zip(own, words, strict=False)) if a != b), min(len(own), len(words))
+        )
+        same_end = sum(1 for each in words[common:] if each in own[common:])
+        if common >= 1 and common + same_end > most:
+            best, most = command.msg_id, common + same_end
+    return best
 
 
-def _constant(text: str) -> Any:
-    if text in ("true", "false"):
-        return text == "true"
-    if text[:1] in "\"'":
-        return text[1:-1]
-    try:
-        return int(text, 0)
-    except ValueError:
-        return text
+def _plain(name: str) -> list[str]:
+    return [each for each in name.upper().split("_") if each not in _WORDS_LEFT_OUT]

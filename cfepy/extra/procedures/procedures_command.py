@@ -10,21 +10,21 @@ from typing import Any
 from cfepy.cli.ci_outputs import write_ci_outputs
 from cfepy.cli.json_output import json_text, write_text
 from cfepy.cli.options import plan_of
-from cfepy.extra.procedures.campaign import (
+from cfepy.extra.procedures.flying_suites import (
     FAIL,
     PASS,
     CampaignResult,
     Settings,
     TestResult,
-    find_procedures,
     fly_procedures,
 )
 from cfepy.extra.procedures.matrix import campaign_data, changes_since, matrix_csv, matrix_page, summary_line
-from cfepy.extra.procedures.procedure_errors import RefusedError
+from cfepy.extra.procedures.procedure_errors import UnsupportedError
+from cfepy.extra.procedures.procedure_loader import find_procedures
 from cfepy.extra.procedures.racy_tests import Verdicts, explore_procedures
 from cfepy.extra.procedures.requirements import STATES
 from cfepy.extra.procedures.script_words import value_of
-from cfepy.ground.link import CI_PORT, TO_PORT
+from cfepy.extra.procedures.station import CI_PORT, TO_PORT
 from cfepy.status import UsageError
 from cfepy.writing.ci_findings import CiFinding, FindingPlace
 from cfepy.writing.junit import FAILURE, SKIPPED, Case, Problem, Suite
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.explore is not None:
             return _explore(files, settings, arguments)
         result = fly_procedures(files, settings, lambda each: _print_result(each, arguments.verbose))
-    except RefusedError as error:
+    except UnsupportedError as error:
         raise UsageError(str(error), file=arguments.procedures) from None
     return _report(result, arguments)
 

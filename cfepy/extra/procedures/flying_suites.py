@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import re
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
@@ -13,19 +12,19 @@ from typing import Any
 
 from cfepy.extra.procedures.answers import Answers
 from cfepy.extra.procedures.connection import CfepyConnection, methods_of, test_classes
-from cfepy.extra.procedures.loading import Procedures, group_output
-from cfepy.extra.procedures.procedure_errors import RefusedError, SkipScript, StopScript
+from cfepy.extra.procedures.definition_reader import ruby_variables
+from cfepy.extra.procedures.procedure_errors import SkipScript, StopScript, UnsupportedError
+from cfepy.extra.procedures.procedure_loader import Procedures, group_output, has_second_door, suites_in
 from cfepy.extra.procedures.requirements import Requirements, marked
 from cfepy.extra.procedures.script_api import ScriptApi
-from cfepy.extra.procedures.station import FlightStation, Station, Telemetry, UdpStation
-from cfepy.extra.procedures.suites import Step, Suite, is_suite, steps_of
-from cfepy.extra.procedures.targets import Targets, ruby_variables
+from cfepy.extra.procedures.station import BusTelemetry, FlightStation, Station, UdpStation
+from cfepy.extra.procedures.suites import ProcedureStep, ProcedureSuite, is_suite, steps_of
+from cfepy.extra.procedures.target_packets import TargetPackets
 from cfepy.flight import Flight
 from cfepy.ground import dictionary_of, topics_of
 from cfepy.interpreter.host_system import command_line
+from cfepy.journal import JournalRecorder
 from cfepy.pilot import RunPlan
-from cfepy.reading.input_files import read_limited
-from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.rtos import Stopwatch
 from cfepy.schedules import Schedule
 from cfepy.status import CfeError, UsageError
@@ -34,8 +33,6 @@ from cfepy.units import NS_PER_S
 LINE_DELAY_S = 0.1
 """The pause before each line in COSMOS, if neither the user nor the procedure sets another one."""
 PASS, FAIL, SKIP = "PASS", "FAIL", "SKIP"
-_SUITE = re.compile(r"^\s*class\s+\w+\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", re.M)
-_SECOND_DOOR = re.compile(r"^\s*DEFAULT_APP_NAME\s*=", re.M)
 PROCEDURES, TARGETS = "procedures", "targets"
 
 
@@ -104,7 +101,7 @@ class TestResult:
 
     @property
     def full_name(self) -> str:
-        """Suite, group and method."""
+        """ProcedureSuite, group and method."""
         return f"{self.suite}::{self.name}"
 
 
@@ -125,29 +122,6 @@ class CampaignResult:
         return [each for each in self.tests if each.verdict == FAIL]
 
 
-def find_procedures(path: Path) -> list[Path]:
-    """Return the files to fly: the file itself, or those in a folder that declare a suite or use the second door.
-
-    Raises:
-        UsageError: if there is none.
-    """
-    if path.is_file():
-        return [path.resolve()]
-    if not path.is_dir():
-        raise UsageError("does not exist; name a file or a folder of procedures", file=path)
-    found = [each.resolve() for each in sorted(path.rglob("*.py")) if _is_procedure(each)]
-    if not found:
-        raise UsageError("has no suite; a suite is a class derived from Suite", file=path)
-    return found
-
-
-def _is_procedure(file: Path) -> bool:
-    text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
-    if "openc3" not in text and "DEFAULT_APP_NAME" not in text:
-        return False
-    return _SUITE.search(text) is not None or _SECOND_DOOR.search(text) is not None
-
-
 def fly_procedures(
     files: Sequence[Path], settings: Settings, note: Callable[[TestResult], object] = lambda result: None
 ) -> CampaignResult:
@@ -163,7 +137,7 @@ def fly_procedures(
     """
     result = CampaignResult(requirements=Requirements(settings.requirements))
     for file in files:
-        for suite in suites_in(file, settings):
+        for suite in suites_in(file):
             with FlyingSuite(file, suite, settings, result.requirements) as flying:
                 for step in flying.steps:
                     done = flying.run(step)
@@ -174,19 +148,6 @@ def fly_procedures(
     return result
 
 
-def suites_in(file: Path, settings: Settings) -> list[str]:
-    """Return the names of the suites of a file, found without a flight; [""] for a script without a suite.
-
-    Raises:
-        UsageError: if the file has a mistake.
-    """
-    text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
-    if file.suffix == ".rb":
-        raise UsageError("is Ruby; only Python procedures run", file=file)
-    names = re.findall(r"^\s*class\s+(\w+)\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", text, re.M)
-    return names or [""]
-
-
 class OfflineStation(Station):
     """A station without a flight, to find the tests of files."""
 
@@ -195,10 +156,10 @@ class OfflineStation(Station):
         return 0.0
 
     def wait(self, seconds: float) -> None:
-        raise RefusedError("a procedure with a suite must not wait outside of its methods")
+        raise UnsupportedError("a procedure with a suite must not wait outside of its methods")
 
     def _put(self, packet: bytes) -> None:
-        raise RefusedError("a procedure with a suite must not send commands outside of its methods")
+        raise UnsupportedError("a procedure with a suite must not send commands outside of its methods")
 
 
 class FlyingSuite:
@@ -221,7 +182,7 @@ class FlyingSuite:
     def __init__(
         self, file: Path, suite: str, settings: Settings, requirements: Requirements, offline: bool = False
     ) -> None:
-        self.steps: list[Step] = []
+        self.steps: list[ProcedureStep] = []
         self.notes: list[str] = []
         self.flight: Flight | None = None
         self.journal: Path | None = None
@@ -230,7 +191,7 @@ class FlyingSuite:
         self._offline = offline
         self._lines: list[str] = []
         self._failed = False
-        self._journal: Any = None
+        self._recorder: JournalRecorder | None = None
         self._stack = ExitStack()
 
     def __enter__(self) -> FlyingSuite:
@@ -246,7 +207,7 @@ class FlyingSuite:
         target, folder = target_of(self._file, self._settings, spec.name)
         self._station = self._connected()
         dictionary = dictionary_of(spec) if self.flight is None else self.flight.dictionary
-        self._targets = Targets(dictionary, target)
+        self._targets = TargetPackets(dictionary, target)
         plugin = [] if folder is None else [folder, *list(folder.parents)[:2]]
         variables = {
             **ruby_variables(plugin),
@@ -274,42 +235,38 @@ class FlyingSuite:
             station = UdpStation(*self._settings.udp)
             self._stack.callback(station.close)
             return station
-        telemetry = Telemetry()
+        telemetry = BusTelemetry()
         plan = self._settings.plan
         attachments: list[Any] = [telemetry.watch]
         policy = plan.schedule.policy()
         if self._settings.journals is not None:
-            from cfepy.testing.journals import FlightJournal
-
             self._settings.journals.mkdir(parents=True, exist_ok=True)
             name = f"{self._file.stem}{'-' if self._suite else ''}{self._suite}"
             self.journal = self._settings.journals / f"{name}.cfepy"
-            self._journal = FlightJournal(self.journal, plan, policy)
-            attachments.append(self._journal.recorder)
-            policy = self._journal.recorder.policy
+            self._recorder = self._stack.enter_context(JournalRecorder(self.journal, plan, policy=policy))
+            attachments.append(self._recorder)
+            policy = self._recorder.policy
         self.flight = Flight(plan, policy=policy, attachments=attachments, again=self.command)
-        if self._journal is not None:
-            self._journal.flight = self.flight
         self._stack.callback(self.flight.close)
         self.flight.run_until_operational()
         return FlightStation(self.flight, telemetry, self._settings.through_lab)
 
     def _end_journal(self) -> None:
-        if self._journal is None:
+        if self._recorder is None or self.flight is None or self.journal is None:
             return
         if self._failed:
-            self._journal.end()
+            self._recorder.end(self.flight.flown())
         else:
-            self._journal.drop()
+            self._stack.callback(self.journal.unlink, missing_ok=True)
 
     def _load(self, target: str) -> None:
-        if not self._suite and not self._has_second_door():
-            self.steps = [Step(self._file.stem, "", self._file.stem, lambda: self._procedures.run(self._file))]
+        if not self._suite and not has_second_door(self._file):
+            self.steps = [ProcedureStep(self._file.stem, "", self._file.stem, lambda: self._procedures.run(self._file))]
             return
         try:
             with self._captured():
                 names = self._procedures.run(self._file)
-        except (UsageError, RefusedError):
+        except (UsageError, UnsupportedError):
             raise
         except Exception as error:
             place = self._procedures.place(error)
@@ -318,21 +275,18 @@ class FlyingSuite:
             ) from error
         if self._suite:
             kind = names[self._suite]
-            assert is_suite(kind, Suite)
+            assert is_suite(kind, ProcedureSuite)
             self.steps = [each for each in steps_of(kind) if self._is_wanted(each)]
             return
         for kind in test_classes(names):
             connection = CfepyConnection(self.api, target, kind)
             for name in methods_of(kind):
                 call = getattr(connection.method_obj, name)
-                step = Step(self._file.stem, kind.__name__, name, call, (call.__doc__ or "").strip())
+                step = ProcedureStep(self._file.stem, kind.__name__, name, call, (call.__doc__ or "").strip())
                 if self._is_wanted(step):
                     self.steps.append(step)
 
-    def _has_second_door(self) -> bool:
-        return _SECOND_DOOR.search(read_limited(self._file, LINE_FILE_BYTES).decode("utf-8", "replace")) is not None
-
-    def _is_wanted(self, step: Step) -> bool:
+    def _is_wanted(self, step: ProcedureStep) -> bool:
         wanted = self._settings.tests
         return not step.is_test or not wanted or any(each in f"{step.suite}::{step.name}" for each in wanted)
 
@@ -347,7 +301,7 @@ class FlyingSuite:
             yield
         printed.end()
 
-    def run(self, step: Step) -> TestResult | None:
+    def run(self, step: ProcedureStep) -> TestResult | None:
         """Run a method; returns None for a setup or teardown that passed.
 
         Args:
@@ -373,7 +327,7 @@ class FlyingSuite:
         except (SkipScript, StopScript) as error:
             result.verdict, result.message = (SKIP if isinstance(error, SkipScript) else PASS), str(error)
             result.place = self._procedures.place(error)
-        except RefusedError as error:
+        except UnsupportedError as error:
             result.verdict, result.message = FAIL, f"refused: {error}"
             result.place = self._procedures.place(error)
         except (Exception, SystemExit) as error:

@@ -33,7 +33,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     outputs.add_argument("--journals", metavar="DIR", help="keep a journal of each suite with a failed test")
     outputs.add_argument("--verbose", action="store_true", help="print the output of passed tests, too")
     add_ci_outputs(parser)
-    parser.set_defaults(module="cfepy.extra.procedures.command")
+    parser.set_defaults(module="cfepy.extra.procedures.procedures_command")
 
 
 def _add_inputs(group: argparse._ArgumentGroup) -> None:

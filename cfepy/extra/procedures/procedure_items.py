@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from cfepy.extra.procedures.campaign import (
+from cfepy.extra.procedures.flying_suites import (
     FAIL,
     PASS,
     SKIP,
@@ -21,13 +21,12 @@ from cfepy.extra.procedures.campaign import (
     FlyingSuite,
     Settings,
     TestResult,
-    find_procedures,
-    suites_in,
 )
 from cfepy.extra.procedures.matrix import matrix_csv, matrix_page
+from cfepy.extra.procedures.procedure_loader import find_procedures, suites_in
 from cfepy.extra.procedures.racy_tests import Verdicts, explore_procedures
 from cfepy.extra.procedures.requirements import Requirements
-from cfepy.extra.procedures.suites import SETUP, TEARDOWN, Step
+from cfepy.extra.procedures.suites import SETUP, TEARDOWN, ProcedureStep
 from cfepy.flight import command_for
 from cfepy.pilot import RunPlan
 from cfepy.rtos import AUTO
@@ -134,7 +133,7 @@ class ProcedureFile(pytest.File):
         self.tests = tests
 
     def collect(self) -> Iterator[pytest.Collector]:
-        for suite in suites_in(self.path.resolve(), self.tests.settings):
+        for suite in suites_in(self.path.resolve()):
             yield SuiteNode.from_parent(self, name=suite or self.path.stem, suite=suite, tests=self.tests)
 
 
@@ -203,7 +202,7 @@ class SuiteNode(pytest.Collector):
         return self._run(flying, group, TEARDOWN) if group else None
 
     def _run(self, flying: FlyingSuite, group: str, script: str) -> TestResult | None:
-        found: list[Step] = [each for each in flying.steps if each.group == group and each.script == script]
+        found: list[ProcedureStep] = [each for each in flying.steps if each.group == group and each.script == script]
         return flying.run(found[0]) if found else None
 
     def verdicts(self, name: str) -> Verdicts:

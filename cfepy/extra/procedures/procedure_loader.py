@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import builtins
+import re
 import sys
 import time
 from collections.abc import Iterator, Mapping
@@ -14,19 +15,71 @@ from typing import Any
 
 from cfepy.extra.procedures.connection import CfepyConnection, CfsTest_Connection
 from cfepy.extra.procedures.erb import Template
-from cfepy.extra.procedures.pauses import LINE, procedure_clock, with_pauses
-from cfepy.extra.procedures.procedure_errors import CheckError, RefusedError, SkipScript, StopScript, place_in
-from cfepy.extra.procedures.refused import REFUSED, refusing
+from cfepy.extra.procedures.limit_functions import functions_of
+from cfepy.extra.procedures.procedure_errors import (
+    REFUSED,
+    CheckError,
+    SkipScript,
+    StopScript,
+    UnsupportedError,
+    place_in,
+    refusing,
+)
 from cfepy.extra.procedures.requirements import Requirements, requirement
 from cfepy.extra.procedures.script_api import ScriptApi
-from cfepy.extra.procedures.suites import Group, Suite
+from cfepy.extra.procedures.suites import ProcedureGroup, ProcedureSuite
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
+LINE = "__cfepy_line__"
+"""Name of the function that procedures call before each line."""
+_SUITE = re.compile(r"^\s*class\s+\w+\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", re.M)
+_SECOND_DOOR = re.compile(r"^\s*DEFAULT_APP_NAME\s*=", re.M)
 _MODULES = ("openc3", "openc3.script", "openc3.script.suite", "openc3.script.exceptions", "cfepy_procedures")
 _CONNECTION = "cfs_test_connection"
+
+
+def find_procedures(path: Path) -> list[Path]:
+    """Return the files to fly: the file itself, or those in a folder that declare a suite or use the second door.
+
+    Raises:
+        UsageError: if there is none.
+    """
+    if path.is_file():
+        return [path.resolve()]
+    if not path.is_dir():
+        raise UsageError("does not exist; name a file or a folder of procedures", file=path)
+    found = [each.resolve() for each in sorted(path.rglob("*.py")) if _is_procedure(each)]
+    if not found:
+        raise UsageError("has no suite; a suite is a class derived from ProcedureSuite", file=path)
+    return found
+
+
+def _is_procedure(file: Path) -> bool:
+    text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
+    if "openc3" not in text and "DEFAULT_APP_NAME" not in text:
+        return False
+    return _SUITE.search(text) is not None or _SECOND_DOOR.search(text) is not None
+
+
+def suites_in(file: Path) -> list[str]:
+    """Return the names of the suites of a file, found without a flight; [""] for a script without a suite.
+
+    Raises:
+        UsageError: if the file has a mistake.
+    """
+    text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
+    if file.suffix == ".rb":
+        raise UsageError("is Ruby; only Python procedures run", file=file)
+    names = re.findall(r"^\s*class\s+(\w+)\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", text, re.M)
+    return names or [""]
+
+
+def has_second_door(file: Path) -> bool:
+    """Return whether a file has tests for a connection, see `connection.py`."""
+    return _SECOND_DOOR.search(read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")) is not None
 
 
 class Procedures:
@@ -50,14 +103,14 @@ class Procedures:
         self._folders = folders
         self._names: dict[str, Any] = {
             **{name: refusing(name) for name in REFUSED},
-            **api._functions(),
+            **functions_of(api, api._limits),
             "load_utility": self.load,
             "require_utility": self.require,
             "start": self.load,
-            "Group": Group,
-            "TestGroup": Group,
-            "Suite": Suite,
-            "TestSuite": Suite,
+            "Group": ProcedureGroup,
+            "TestGroup": ProcedureGroup,
+            "Suite": ProcedureSuite,
+            "TestSuite": ProcedureSuite,
             "SkipScript": SkipScript,
             "SkipTestCase": SkipScript,
             "StopScript": StopScript,
@@ -163,7 +216,7 @@ class Procedures:
 
     def _found(self, name: str) -> Path:
         if name.endswith(".rb"):
-            raise RefusedError(f"{name} is Ruby; only Python procedures run")
+            raise UnsupportedError(f"{name} is Ruby; only Python procedures run")
         parts = Path(name).parts
         for folder in self._folders:
             for tail in (parts, parts[1:]):  # the first part is the name of the target
@@ -193,9 +246,43 @@ def _is_ruby(text: str) -> bool:
 @contextmanager
 def group_output(write: Any) -> Iterator[None]:
     """Let `Group.print` write to the output of the flight; a context manager."""
-    before = Group._write
-    Group._write = staticmethod(write)
+    before = ProcedureGroup._write
+    ProcedureGroup._write = staticmethod(write)
     try:
         yield
     finally:
-        Group._write = staticmethod(before)
+        ProcedureGroup._write = staticmethod(before)
+
+
+def with_pauses(tree: ast.Module) -> ast.Module:
+    """Return a module with a call of `LINE` before each statement except declarations and docstrings."""
+    for node in list(ast.walk(tree)):
+        for name in ("body", "orelse", "finalbody"):
+            statements = getattr(node, name, None)
+            if isinstance(statements, list):
+                setattr(node, name, [new for each in statements for new in _paused(each)])
+    return ast.fix_missing_locations(tree)
+
+
+def _paused(statement: ast.stmt) -> list[ast.stmt]:
+    is_text = isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+    declares = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Import, ast.ImportFrom, ast.Global)
+    if is_text or isinstance(statement, (*declares, ast.Nonlocal)):
+        return [statement]
+    call = ast.Expr(ast.Call(ast.Name(LINE, ast.Load()), [], []))
+    ast.copy_location(call, statement)
+    return [call, statement]
+
+
+def procedure_clock(api: ScriptApi) -> ModuleType:
+    """Return the module `time` of a procedure.
+
+    Args:
+        api: its functions.
+    """
+    module = ModuleType("time")
+    module.__dict__.update({name: value for name, value in vars(time).items() if not name.startswith("__")})
+    module.__dict__["sleep"] = api._sleep
+    for name in ("time", "monotonic", "perf_counter"):
+        module.__dict__[name] = api._time
+    return module

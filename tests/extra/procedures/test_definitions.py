@@ -1,0 +1,169 @@
+"""ERB, definitions and the words of procedures, without a flight."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from cfepy.extra.procedures.definition_reader import read_definitions
+from cfepy.extra.procedures.erb import Template
+from cfepy.extra.procedures.requirements import Requirements, next_state
+from cfepy.extra.procedures.script_words import command_words, holds
+from cfepy.status import UsageError
+
+FILE = Path("a.txt")
+TEMPLATE = """a
+<% if $size == 64 && name != 'x' %>
+big <%= name %>
+<% elsif $size > 16 %>
+middle
+<% else %>
+small
+<% end %>
+<% (1..2).each do |i| %>
+row <%= i * 2 %>
+<% end %>
+<%# nothing %>b
+"""
+
+
+@pytest.mark.parametrize(
+    ("size", "text"), [(64, "a\n\nbig n\n\n\nrow 2\n\nrow 4\n\nb\n"), (32, "a\n\nmiddle\n\n\nrow 2\n\nrow 4\n\nb\n")]
+)
+def test_template_has_conditions_and_loops(size: int, text: str) -> None:
+    assert Template({"$size": size, "name": "n"}).render(TEMPLATE, FILE) == text
+
+
+@pytest.mark.parametrize(
+    ("template", "text", "line"),
+    [
+        ("a\n<% File.read('x') %>", "Ruby is not executed", 2),
+        ("<%= unknown %>", "the variable unknown has no value", 1),
+        ("<% if 1 == 1 %>\na", "missing <% end %>", 1),
+        ("a\n<% end %>", "unexpected <% end %>", 2),
+        ("<%= 1 / 0 %>", "division", 1),
+        ("<% 200000.times do |i| %><% end %>", "at most 100,000 rounds", 1),
+    ],
+)
+def test_template_beyond_is_refused_with_its_line(template: str, text: str, line: int) -> None:
+    with pytest.raises(UsageError) as error:
+        Template({}).render(template, FILE)
+    assert text in error.value.text
+    assert (error.value.file, error.value.line) == (str(FILE), line)
+
+
+DEFINITIONS = """
+COMMAND T GO BIG_ENDIAN "Go"
+  APPEND_ID_PARAMETER ID 16 UINT MIN MAX 0x1890 "Id"
+  APPEND_PARAMETER SEQ 16 UINT MIN MAX 0xC000
+  APPEND_PARAMETER LEN 16 UINT MIN MAX 1
+  APPEND_ID_PARAMETER CODE 8 UINT MIN MAX 3
+  APPEND_PARAMETER SUM 8 UINT MIN MAX 0
+  APPEND_PARAMETER MODE 16 INT -2 2 -1 "Mode" LITTLE_ENDIAN
+    STATE OFF 0
+    STATE ON 1 HAZARDOUS "it moves"
+  APPEND_PARAMETER RATE 32 FLOAT MIN MAX 1.5
+    REQUIRED
+  APPEND_PARAMETER TEXT 32 STRING "ab"
+  APPEND_ARRAY_PARAMETER LIST 8 UINT 24 "List"
+"""
+
+
+def test_command_has_the_bytes_of_its_definition() -> None:
+    (packet,) = read_definitions(DEFINITIONS, FILE, list[str]().append)
+    data = packet.built({"RATE": 2.0, "MODE": "ON", "LIST": [1, 2]})
+    assert data.hex() == "1890c00000010300" + "0100" + "40000000" + "61620000" + "010200"
+    assert (packet.msg_id, packet.code, packet.hazard({"MODE": "ON"}), packet.hazard({})) == (
+        0x1890,
+        3,
+        "it moves",
+        None,
+    )
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        ({}, "requires the parameter RATE"),
+        ({"RATE": 1, "MODE": 3}, "not in the valid range of -2 to 2"),
+        ({"RATE": 1, "MODE": "OF"}, "did you mean OFF"),
+        ({"RATE": 1, "TEXT": "abcde"}, "has 4 bytes, and the value 5"),
+        ({"RATE": 1, "LIST": [1, 2, 3, 4]}, "has 3 elements, not 4"),
+        ({"RATE": 1, "NO": 1}, "has no item NO"),
+    ],
+)
+def test_command_refuses_wrong_values(values: dict[str, Any], text: str) -> None:
+    (packet,) = read_definitions(DEFINITIONS, FILE, list[str]().append)
+    with pytest.raises(UsageError, match=text):
+        packet.built(values)
+
+
+def test_item_converts_raw_values() -> None:
+    text = """
+TELEMETRY T HK LITTLE_ENDIAN "Hk"
+  APPEND_ID_ITEM ID 16 UINT 0x0890 "Id" BIG_ENDIAN
+  APPEND_ITEM TEMP 16 INT "Temperature"
+    POLY_READ_CONVERSION 10 0.5
+    FORMAT_STRING "%0.1f"
+    UNITS Celsius C
+  APPEND_ITEM STEP 8 UINT "Steps"
+    SEG_POLY_READ_CONVERSION 0 0 1
+    SEG_POLY_READ_CONVERSION 10 100 2
+  APPEND_ITEM BITS 4 UINT "Bits"
+  APPEND_ITEM MORE 4 UINT "Bits"
+    STATE LOW 1
+"""
+    (packet,) = read_definitions(text, FILE, list[str]().append)
+    data = bytes.fromhex("0890" + "fcff" + "0c" + "51")
+    read = {name: item.read(data) for name, item in packet.items.items()}
+    assert read == {"ID": 0x0890, "TEMP": 8.0, "STEP": 124.0, "BITS": 5, "MORE": "LOW"}
+    assert packet.item("TEMP").read(data, "WITH_UNITS") == "8.0 C"
+    assert packet.item("TEMP").read(data[:3]) is None
+
+
+def test_command_words_have_numbers_texts_and_lists() -> None:
+    text = "T GO with A 0x10, B 'a, b', C WORD, D [1, 2], E -1.5"
+    values = {"A": 16, "B": "a, b", "C": "WORD", "D": [1, 2], "E": -1.5}
+    assert command_words((text,)) == ("T", "GO", values)
+
+
+@pytest.mark.parametrize(
+    ("value", "comparison", "result"),
+    [
+        (5, "== 5", True),
+        (5, ">= 4 + 2", False),
+        ("A", "!= 'B'", True),
+        (None, "> 1", False),
+        (3, "in [1, 3]", True),
+        (3, "> 1 and < 3", False),
+    ],
+)
+def test_comparison_holds_for_a_value(value: Any, comparison: str, result: bool) -> None:
+    assert holds(value, comparison) is result
+
+
+@pytest.mark.parametrize(
+    ("before", "wanted", "after"),
+    [
+        ("U", "P", "P"),
+        ("F", "P", "F"),
+        ("P", "F", "F"),
+        ("I", "P", "I"),
+        ("I", "A", "IA"),
+        ("IA", "A", "IA"),
+        ("P", "U", "P"),
+        ("IA", "F", "F"),
+    ],
+)
+def test_requirement_changes_its_state_as_in_nasa_s_tracker(before: str, wanted: str, after: str) -> None:
+    assert next_state(before, wanted) == after
+
+
+def test_requirements_take_the_states_of_a_tracker() -> None:
+    tracker = SimpleNamespace(requirements={"R1": {"state": "P", "events": [{"message": "ok"}]}, "R2": {"state": "U"}})
+    found = Requirements()
+    found.read_tracker(tracker)
+    assert [(each.name, each.state) for each in found.rows()] == [("R1", "P")]

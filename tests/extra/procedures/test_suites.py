@@ -1,0 +1,87 @@
+"""Suites of procedures in flights: definitions with ERB, resets, verdicts and requirements."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.cli.main import main
+from cfepy.extra.procedures import CampaignResult, explore_procedures
+from tests.extra.procedures.demo import PLUGIN, SUITE, fly, settings, verdicts
+
+
+@pytest.fixture(scope="module")
+def flown() -> CampaignResult:
+    return fly(SUITE)
+
+
+def test_suite_has_a_verdict_for_each_test(flown: CampaignResult) -> None:
+    assert verdicts(flown) == [
+        ("es_group::test_noop", "PASS"),
+        ("es_group::test_processor_reset", "PASS"),
+        ("es_group::test_skipped", "SKIP"),
+        ("es_group::test_wrong", "FAIL"),
+    ]
+
+
+def test_failed_test_names_its_line_and_value(flown: CampaignResult) -> None:
+    failed = flown.tests[3]
+    assert failed.place.endswith("groups/es_group.py:28")
+    assert "COMMAND_ERROR_COUNTER == 9 failed with value == 0 after waiting 1.000 seconds" in failed.message
+
+
+def test_processor_reset_inside_a_procedure_leaves_the_station_connected(flown: CampaignResult) -> None:
+    assert any("CFE_EVS" in line for line in flown.tests[1].events)
+    assert flown.tests[1].seconds > 2.0
+
+
+def test_requirements_have_the_states_of_their_tests(flown: CampaignResult) -> None:
+    states = {each.name: each.state for each in flown.requirements.rows()}
+    assert states == {"cES1001": "P", "cES1002": "P", "cES1003": "F", "cES1009": "I"}
+
+
+def test_equal_flights_of_a_suite_have_equal_times(flown: CampaignResult) -> None:
+    again = fly(SUITE)
+    assert [each.seconds for each in again.tests] == [each.seconds for each in flown.tests]
+    assert [each.events for each in again.tests] == [each.events for each in flown.tests]
+
+
+def test_command_writes_matrix_json_and_junit(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    texts = tmp_path / "requirements.yaml"
+    texts.write_text("cES1001: accepts a no-op\ncES2000: never tested\n", encoding="utf-8")
+    names = {name: str(tmp_path / name) for name in ("a.json", "a.csv", "a.html", "a.xml")}
+    options = ["--json", names["a.json"], "--csv", names["a.csv"], "--html", names["a.html"], "--junit", names["a.xml"]]
+    assert main(["procedures", str(SUITE), "lab", "--requirements", str(texts), *options]) == 1
+    assert "tests: 2 passed, 1 failed, 1 skipped" in capsys.readouterr().out
+    table = (tmp_path / "a.csv").read_text(encoding="utf-8")
+    assert "cES1001,accepts a no-op,passed,demo_suite::es_group::test_noop,passed," in table
+    assert "cES2000,never tested,not run,," in table
+    assert 'name="requirement" value="cES1001"' in (tmp_path / "a.xml").read_text(encoding="utf-8")
+    assert "never tested" in (tmp_path / "a.html").read_text(encoding="utf-8")
+    again = ["--test", "test_noop", "--since", names["a.json"]]
+    assert main(["procedures", str(SUITE), "lab", *again]) == 0
+    assert "changed: requirement cES1003: failed before, gone now" in capsys.readouterr().out
+
+
+def test_test_is_racy_if_its_verdict_depends_on_the_schedule(tmp_path: Path) -> None:
+    file = tmp_path / "racy.py"
+    file.write_text(
+        "wait_check_packet('LAB', 'CFE_EVS_LONG_EVENT_MSG', 1, 10)\n"
+        "cmd('LAB SAMPLE_APP_NOOP')\ncmd('LAB CI_LAB_NOOP')\nwait(0.5)\n"
+        "check(\"LAB CFE_EVS_LONG_EVENT_MSG PACKET_ID_APP_NAME == 'CI_LAB'\")\n",
+        encoding="utf-8",
+    )
+    quick = settings(through_lab=False, line_delay=0.0)
+    (found,) = explore_procedures([file], quick, 8)
+    assert (found.passed + found.failed, found.is_racy) == (8, found.passed > 0 and found.failed > 0)
+
+
+def test_folder_without_a_suite_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "plain.py").write_text("x = 1\n", encoding="utf-8")
+    assert main(["procedures", str(tmp_path), "lab"]) == 2
+    assert "has no suite" in capsys.readouterr().err
+
+
+def test_folder_finds_its_suites() -> None:
+    assert verdicts(fly(PLUGIN, tests=("test_noop",))) == [("es_group::test_noop", "PASS")]
