@@ -7,7 +7,17 @@ from pathlib import Path
 
 import pytest
 
-from tests.extra.procedures.demo import PLUGIN
+from cfepy.extra.procedures import explore_procedures
+from tests.extra.procedures.demo import PLUGIN, SUITE, fly, settings
+
+
+@pytest.fixture(scope="module", autouse=True)
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Load every module that a flight needs, because pytester unloads those that a suite imports."""
+    import cfepy.extra.procedures.procedure_items  # noqa: F401
+
+    fly(PLUGIN, tests=("test_noop",), journals=tmp_path_factory.mktemp("journals"))
+    explore_procedures([SUITE], settings(tests=("test_noop",)), 2)
 
 
 def run(pytester: pytest.Pytester, *options: str) -> pytest.RunResult:
