@@ -191,7 +191,7 @@ def is_imported_late(path: Path) -> bool:
     tests."""
     return (
         (path.name in {"display.py", "screen.py", "tables.py"} and "cli" in path.parts)
-        or path.name == "in_tests.py"
+        or path.name in {"in_tests.py", "procedure_items.py"}
         or "testing" in path.parts
     )
 

@@ -119,6 +119,7 @@ GUIDES = {
     "tf": "../how_to/bags_and_topics.md",
     "explore": "../how_to/explore_schedules.md",
     "sweep": "../how_to/sweep.md",
+    "procedures": "../how_to/procedures.md",
     "replay": "../how_to/replay.md",
     "diff": "../how_to/replay.md",
     "trace": "../how_to/looking_at_a_run.md",

@@ -26,6 +26,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--console": (None, "show the flight computer's console"),
     "-n --count": ("N", "end after so many"),
     "--cpp-nodes": ("PROFILE|MISSION", "section cpp_nodes of"),
+    "--csv": ("FILE|-", "write (a row for each topic of each run|the requirement matrix)"),
     "--dot": ("FILE|-", "for graphviz"),
     "--enable": ("HOST[:PORT]", "ask TO_LAB there to begin to send"),
     "--faults": ("FILE|seed:N", "fault"),

@@ -29,9 +29,9 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     add_json(outputs, "the results")
     outputs.add_argument("--csv", metavar="FILE|-", help="write the requirement matrix as CSV")
     outputs.add_argument("--html", metavar="FILE", help="write the requirement matrix and the tests as a page")
-    outputs.add_argument("--since", metavar="FILE", help="report changes since the campaign of an earlier --json")
+    outputs.add_argument("--baseline", metavar="FILE", help="report changes since the campaign of an earlier --json")
     outputs.add_argument("--journals", metavar="DIR", help="keep a journal of each suite with a failed test")
-    outputs.add_argument("--verbose", action="store_true", help="print the output of passed tests, too")
+    outputs.add_argument("--show-output", action="store_true", help="print the output of passed tests, too")
     add_ci_outputs(parser)
     parser.set_defaults(module="cfepy.extra.procedures.procedures_command")
 
@@ -64,7 +64,7 @@ def _add_inputs(group: argparse._ArgumentGroup) -> None:
         "--bus", action="store_true", help="put commands on the bus and hear all telemetry, without CI_LAB and TO_LAB"
     )
     group.add_argument(
-        "--udp",
+        "--computer",
         metavar="HOST[:PORT[:PORT]]",
         help="test a computer on the network, in real time; ports of CI_LAB and TO_LAB",
     )

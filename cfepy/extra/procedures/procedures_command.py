@@ -47,7 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         if arguments.explore is not None:
             return _explore(files, settings, arguments)
-        result = fly_procedures(files, settings, lambda each: _print_result(each, arguments.verbose))
+        result = fly_procedures(files, settings, lambda each: _print_result(each, arguments.show_output))
     except UnsupportedError as error:
         raise UsageError(str(error), file=arguments.procedures) from None
     return _report(result, arguments)
@@ -69,7 +69,7 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
         definitions=tuple(Path(each).resolve() for each in arguments.definitions),
         tests=tuple(arguments.tests),
         through_lab=False if arguments.bus else None,
-        udp=None if arguments.udp is None else place_of(arguments.udp),
+        udp=None if arguments.computer is None else place_of(arguments.computer),
         line_delay=arguments.line_delay,
         journals=None if arguments.journals is None else Path(arguments.journals),
     )
@@ -98,7 +98,7 @@ def place_of(text: str) -> tuple[str, int, int]:
     try:
         numbers = [int(each) for each in ports]
     except ValueError:
-        raise UsageError(f"expected HOST:PORT:PORT, not {text!r}", field="--udp") from None
+        raise UsageError(f"expected HOST:PORT:PORT, not {text!r}", field="--computer") from None
     return host, *(numbers + [CI_PORT, TO_PORT][len(numbers) :])[:2]  # type: ignore[return-value]
 
 
@@ -121,7 +121,7 @@ def _report(result: CampaignResult, arguments: argparse.Namespace) -> int:
     wall, virtual = sum(each.wall for each in result.tests), sum(each.seconds for each in result.tests)
     print(f"{summary_line(result)}; {virtual:.1f} virtual s in {wall:.1f} s")
     data = campaign_data(result)
-    changes = None if arguments.since is None else changes_since(Path(arguments.since), data)
+    changes = None if arguments.baseline is None else changes_since(Path(arguments.baseline), data)
     for line in changes or []:
         print(f"changed: {line}")
     if arguments.json is not None:

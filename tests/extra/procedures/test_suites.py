@@ -59,7 +59,7 @@ def test_command_writes_matrix_json_and_junit(tmp_path: Path, capsys: pytest.Cap
     assert "cES2000,never tested,not run,," in table
     assert 'name="requirement" value="cES1001"' in (tmp_path / "a.xml").read_text(encoding="utf-8")
     assert "never tested" in (tmp_path / "a.html").read_text(encoding="utf-8")
-    again = ["--test", "test_noop", "--since", names["a.json"]]
+    again = ["--test", "test_noop", "--baseline", names["a.json"]]
     assert main(["procedures", str(SUITE), "lab", *again]) == 0
     assert "changed: requirement cES1003: failed before, gone now" in capsys.readouterr().out
 
