@@ -148,7 +148,10 @@ OWN = (
         commands=("procedures",),
         title="Test procedures",
         parser=".procedure_options",
-        hooks={"procedure_tests": ".procedure_items:ProcedureTests"},
+        hooks={
+            "procedure_tests": ".procedure_items:ProcedureTests",
+            "cosmos_plugin": ".cosmos_plugin:plugin_files",
+        },
     ),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
     _own("attach", hooks={"realtime_flights": ".attach_door:AttachDoor"}),

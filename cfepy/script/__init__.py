@@ -7,10 +7,20 @@ the whole run are in `cfepy.monitors`. See docs/how_to/ground_tools.md for the l
 
 from __future__ import annotations
 
-from cfepy.script.conditions import APP_STATES, OPERATORS, Collected, RosAction, Scene, Since
+from cfepy.script.conditions import (
+    APP_STATES,
+    OPERATORS,
+    Collected,
+    Comparison,
+    EventCondition,
+    RosAction,
+    Scene,
+    Since,
+    TelemetryCondition,
+)
 from cfepy.script.script_run import LOOK_NS, OVER, Outcome, ScriptRun, StepVerdict
 from cfepy.script.standing import TYPED, StandingScript
-from cfepy.script.text import RESET_TYPES, ROS_STEPS, Step, without_when
+from cfepy.script.text import RESET_TYPES, ROS_STEPS, Step, read_script, without_when
 
 __all__ = [
     "APP_STATES",
@@ -21,6 +31,8 @@ __all__ = [
     "ROS_STEPS",
     "TYPED",
     "Collected",
+    "Comparison",
+    "EventCondition",
     "Outcome",
     "RosAction",
     "Scene",
@@ -29,5 +41,7 @@ __all__ = [
     "StandingScript",
     "Step",
     "StepVerdict",
+    "TelemetryCondition",
+    "read_script",
     "without_when",
 ]

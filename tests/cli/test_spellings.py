@@ -71,7 +71,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--check-determinism": ("N", "run it N times side by side"),
     "--ros-master": ("URI", "join ROS on this computer"),
     "--schedule": ("TEXT", "order of tasks where several could run"),
-    "--script": ("FILE", "send commands and check their effects"),
+    "--script": ("FILE", "(send commands and check their effects|translate this mission script)"),
     "--seed": ("N", "(seed of all random values|seeds|plan of this seed)"),
     "--set": ("/PARAM=VALUE", "a ROS parameter"),
     "--stall": ("SECONDS", "fail if a task computes for so many seconds of CPU time"),

@@ -199,10 +199,12 @@ def _add_export(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -
         "cosmos",
         help="commands and telemetry of a mission as text for COSMOS and OpenC3",
         description="Write a mission's packets as command and telemetry text, a file for the folder `cmd_tlm` of a "
-        "target of COSMOS or OpenC3.",
-        examples=("cfepy export cosmos lab -o lab.txt",),
+        "target of COSMOS or OpenC3. With a folder as output, NAME/, write a whole plugin.",
+        examples=("cfepy export cosmos lab -o lab.txt", "cfepy export cosmos lab --script checks.txt -o plugin/"),
     )
     add_mission(cosmos)
+    text = "translate this mission script to a procedure of the plugin"
+    cosmos.add_argument("--script", metavar="FILE", help=text)
     add_output(cosmos, "standard output", "-")
     ctf = formats.add_parser(
         "ctf",

@@ -43,6 +43,12 @@ DICTIONARY_FORMATS: Hook[Mapping[str, Callable[[MissionSpec, Dictionary], str | 
 """Writers of a mission's packets by the name of their format; each makes one text, or the texts of files by name."""
 
 
+COSMOS_PLUGIN: Hook[Callable[[MissionSpec, str, str | None, Dictionary], Mapping[str, str]]] = Hook("cosmos_plugin")
+"""Makes the files of a plugin folder for COSMOS. Arguments: the mission, its packets as text, a mission script or None,
+its dictionary. Returns texts by path.
+"""
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Export the data that the command line names.
 
@@ -52,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
     Raises:
         UsageError: there is no such run, mission, message or field, it cannot boot, or a file cannot be written.
     """
-    formats = {"xtce": _xtce, "ros": _ros, "cosmos": _text_of_dictionary, "python": _text_of_dictionary}
+    formats = {"xtce": _xtce, "ros": _ros, "cosmos": _cosmos, "python": _text_of_dictionary}
     formats["ctf"] = _files_of_dictionary
     return formats.get(arguments.format, _values)(arguments)
 
@@ -75,6 +81,20 @@ def _known(arguments: argparse.Namespace) -> tuple[MissionSpec, Dictionary]:
     for problem in dictionary.problems:
         print(f"cfepy: {problem}", file=sys.stderr)
     return spec, dictionary
+
+
+def _cosmos(arguments: argparse.Namespace) -> int:
+    if arguments.script is None and not arguments.output.endswith("/"):
+        return _text_of_dictionary(arguments)
+    if arguments.output == STDOUT:
+        raise UsageError("a plugin is a folder; give one", field="--output")
+    spec, dictionary = _known(arguments)
+    text = DICTIONARY_FORMATS.need("the format cosmos")["cosmos"](spec, dictionary)
+    assert isinstance(text, str)
+    files = COSMOS_PLUGIN.need("a plugin folder for COSMOS")(spec, text, arguments.script, dictionary)
+    _write_files(files, arguments)
+    print(f"{arguments.output}: {len(files)} files")
+    return ENDED_WELL
 
 
 def _text_of_dictionary(arguments: argparse.Namespace) -> int:

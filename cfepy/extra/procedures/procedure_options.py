@@ -36,6 +36,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     parser.set_defaults(module="cfepy.extra.procedures.procedures_command")
 
 
+def _delay_of(text: str) -> float:
+    return 0.0 if text == "0" else seconds_of(text)
+
+
 def _add_inputs(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--target", metavar="NAME", default="", help="name of the target (default: that of its folder)")
     group.add_argument(
@@ -54,7 +58,7 @@ def _add_inputs(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--test", dest="tests", metavar="TEXT", action="append", default=[], help="only these tests")
     group.add_argument(
         "--line-delay",
-        type=seconds_of,
+        type=_delay_of,
         default=0.1,
         metavar="SECONDS",
         help="pause before each line of a procedure (default: 0.1, as in COSMOS)",
