@@ -52,6 +52,7 @@ class Settings:
         udp: address of a flight computer instead of a mission: host, command port, telemetry port.
         journals: folder for journals of suites with a failed test.
         line_delay: pause before each line of a procedure in s.
+        ground_seed: seed of the ground station's delays; 0 for none.
     """
 
     plan: RunPlan
@@ -65,6 +66,7 @@ class Settings:
     udp: tuple[str, int, int] | None = None
     journals: Path | None = None
     line_delay: float = LINE_DELAY_S
+    ground_seed: int = 0
 
 
 @dataclass(slots=True)
@@ -249,7 +251,7 @@ class FlyingSuite:
         self.flight = Flight(plan, policy=policy, attachments=attachments, again=self.command)
         self._stack.callback(self.flight.close)
         self.flight.run_until_operational()
-        return FlightStation(self.flight, telemetry, self._settings.through_lab)
+        return FlightStation(self.flight, telemetry, self._settings.through_lab, self._settings.ground_seed)
 
     def _end_journal(self) -> None:
         if self._recorder is None or self.flight is None or self.journal is None:
@@ -353,6 +355,7 @@ class FlyingSuite:
         words = ["cfepy", "procedures", str(self._file), *plan.words, "--seed", str(plan.seed)]
         words += ["--schedule", plan.schedule.text()] if plan.schedule != Schedule() else []
         words += ["--faults", plan.faults] if plan.faults else []
+        words += ["--ground-seed", str(self._settings.ground_seed)] if self._settings.ground_seed else []
         return command_line(words)
 
 
@@ -392,6 +395,6 @@ def target_of(file: Path, settings: Settings, mission: str) -> tuple[str, Path |
     return settings.target.upper() or folder.name.upper(), folder
 
 
-def with_schedule(settings: Settings, schedule: Schedule) -> Settings:
-    """Return settings with another schedule."""
-    return replace(settings, plan=replace(settings.plan, schedule=schedule))
+def with_schedule(settings: Settings, schedule: Schedule, ground_seed: int) -> Settings:
+    """Return settings with another schedule and other delays of the ground station."""
+    return replace(settings, plan=replace(settings.plan, schedule=schedule), ground_seed=ground_seed)

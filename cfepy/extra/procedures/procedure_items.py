@@ -262,7 +262,9 @@ class ProcedureItem(pytest.Item):
         lines = [f"{kind}: {verdicts.passed} passed, {verdicts.failed} failed", verdicts.first.message]
         if verdicts.is_racy:
             lines.append(f"cause: {verdicts.cause}")
-        lines.append(f"first under --cfepy-schedule {verdicts.schedule}, {verdicts.first.place}")
+        lines.append(
+            f"first under {verdicts.schedule} with the ground seed {verdicts.ground_seed}, {verdicts.first.place}"
+        )
         raise ProcedureFailure("\n".join(lines))
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:

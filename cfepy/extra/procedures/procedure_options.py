@@ -63,6 +63,13 @@ def _add_inputs(group: argparse._ArgumentGroup) -> None:
         metavar="SECONDS",
         help="pause before each line of a procedure (default: 0.1, as in COSMOS)",
     )
+    group.add_argument(
+        "--ground-seed",
+        type=int,
+        default=0,
+        metavar="N",
+        help="let pauses of the ground station last up to 50 ms longer, by this seed (default: exact pauses)",
+    )
     group.add_argument("--explore", type=int, metavar="N", help="fly under N schedules, and report racy tests")
     group.add_argument(
         "--bus", action="store_true", help="put commands on the bus and hear all telemetry, without CI_LAB and TO_LAB"

@@ -71,6 +71,7 @@ def settings_of(arguments: argparse.Namespace) -> Settings:
         through_lab=False if arguments.bus else None,
         udp=None if arguments.computer is None else place_of(arguments.computer),
         line_delay=arguments.line_delay,
+        ground_seed=arguments.ground_seed,
         journals=None if arguments.journals is None else Path(arguments.journals),
     )
 
@@ -177,5 +178,6 @@ def _explore(files: Sequence[Path], settings: Settings, arguments: argparse.Name
 def _print_racy(each: Verdicts) -> None:
     assert each.first is not None
     print(f"racy: {each.name}: {each.passed} passed, {each.failed} failed")
-    print(f"  first under --schedule {each.schedule}, {each.first.place}: {each.first.message}")
+    options = f"--schedule {each.schedule} --ground-seed {each.ground_seed}"
+    print(f"  first with {options}, {each.first.place}: {each.first.message}")
     print(f"  cause: {each.cause}")

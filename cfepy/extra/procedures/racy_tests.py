@@ -1,4 +1,8 @@
-"""Flies suites under many schedules and finds the tests whose verdict depends on the schedule."""
+"""Flies suites under many schedules and finds the tests whose verdict depends on the schedule.
+
+A ground station is not synchronous with the flight computer, so each schedule but the first has other pauses of the
+ground station, too. Applications then poll and send at another moment of each test.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +13,6 @@ from pathlib import Path
 from cfepy.extra.procedures.flying_suites import FAIL, PASS, Settings, TestResult, fly_procedures, with_schedule
 from cfepy.schedules import Schedule
 
-_BETWEEN_LOOKS = "between two looks"
-
 
 @dataclass(slots=True)
 class Verdicts:
@@ -19,7 +21,8 @@ class Verdicts:
     Attributes:
         name: its full name.
         passed, failed: number of schedules.
-        first: the first failure, and its schedule.
+        first: the first failure.
+        schedule, ground_seed: its schedule, and the seed of the pauses.
         differs: the first event of the failing flight that the passing one under fifo does not have at its place.
     """
 
@@ -28,6 +31,7 @@ class Verdicts:
     failed: int = 0
     first: TestResult | None = None
     schedule: str = ""
+    ground_seed: int = 0
     differs: str = ""
     events: list[str] = field(default_factory=list)
 
@@ -73,8 +77,8 @@ def explore_procedures(
         The verdicts of each test, in order.
     """
     found: dict[str, Verdicts] = {}
-    for schedule in schedules_of(count):
-        result = fly_procedures(files, with_schedule(settings, schedule))
+    for number, schedule in enumerate(schedules_of(count)):
+        result = fly_procedures(files, with_schedule(settings, schedule, number))
         for each in result.tests:
             if not each.is_test:
                 continue
@@ -86,10 +90,10 @@ def explore_procedures(
             elif each.verdict == FAIL:
                 verdicts.failed += 1
                 if verdicts.first is None:
-                    verdicts.first, verdicts.schedule = each, schedule.text()
+                    verdicts.first, verdicts.schedule, verdicts.ground_seed = each, schedule.text(), number
                     verdicts.differs = _first_difference(texts, verdicts.events)
         failed = sum(each.verdict == FAIL for each in result.tests)
-        note(f"{schedule.text()}: {len(result.tests) - failed} passed, {failed} failed")
+        note(f"{schedule.text()}, ground seed {number}: {len(result.tests) - failed} passed, {failed} failed")
     return list(found.values())
 
 
