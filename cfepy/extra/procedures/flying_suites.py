@@ -228,6 +228,7 @@ class FlyingSuite:
         self._procedures = self._stack.enter_context(loader)
         self._stack.enter_context(group_output(self._lines.append))
         self._stack.callback(self._end_journal)
+        self._stack.callback(self._read_trackers)
         self._load(target)
 
     def _connected(self) -> Station:
@@ -252,6 +253,11 @@ class FlyingSuite:
         self._stack.callback(self.flight.close)
         self.flight.run_until_operational()
         return FlightStation(self.flight, telemetry, self._settings.through_lab, self._settings.ground_seed)
+
+    def _read_trackers(self) -> None:
+        self._requirements.current = self._suite or self._file.stem
+        for each in self._procedures.trackers():
+            self._requirements.read_tracker(each)
 
     def _end_journal(self) -> None:
         if self._recorder is None or self.flight is None or self.journal is None:

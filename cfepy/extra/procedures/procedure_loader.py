@@ -226,9 +226,21 @@ class Procedures:
         known = [each.name for folder in self._folders for each in folder.glob("**/*.py")]
         raise UsageError(f"{name} does not exist; {did_you_mean(Path(name).name, known, 'give its folder')}")
 
+    def trackers(self) -> list[Any]:
+        """Return the objects of procedures and of their modules that track requirements, each once."""
+        roots = tuple(f"{each}/" for each in self._folders)
+        own = [vars(each) for each in sys.modules.values() if (getattr(each, "__file__", None) or "").startswith(roots)]
+        found = {id(value): value for names in [self._globals, *own] for value in names.values() if _is_tracker(value)}
+        return list(found.values())
+
     def place(self, error: BaseException) -> str:
         """Return the line of a procedure that raised an exception."""
         return place_in(error.__traceback__, self.files)
+
+
+def _is_tracker(value: Any) -> bool:
+    """Return whether a value is like NASA's RequirementTracker."""
+    return not isinstance(value, type) and hasattr(value, "set_requirement") and hasattr(value, "requirements")
 
 
 def _connections() -> ModuleType:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.extra.procedures.demo import fly_script
+from tests.extra.procedures.demo import fly, fly_script, verdicts
 
 START = "wait_check_packet('LAB', 'CFE_ES_HK', 1, 20)\n"
 
@@ -96,8 +96,6 @@ def test_pause_before_each_line_takes_virtual_time(tmp_path: Path) -> None:
 
 
 def test_second_door_flies_tests_for_a_connection(tmp_path: Path) -> None:
-    from tests.extra.procedures.demo import fly, verdicts
-
     file = tmp_path / "methods.py"
     file.write_text(
         """
@@ -123,3 +121,33 @@ class sample_methods:
     )
     result = fly(file, through_lab=False)
     assert verdicts(result) == [("sample_methods::test_aliveness", "PASS")]
+
+
+def test_requirement_tracker_of_a_procedure_is_read_at_the_end(tmp_path: Path) -> None:
+    (tmp_path / "my_utils.py").write_text(
+        """
+import time
+from openc3.script import *
+
+class RequirementTracker:
+    def __init__(self):
+        self.requirements = {}
+
+    def set_requirement(self, name, state, message):
+        self.requirements[name] = {"state": state, "events": [{"message": message}]}
+
+tracker = RequirementTracker()
+
+def pause():
+    time.sleep(3)
+""",
+        encoding="utf-8",
+    )
+    file = tmp_path / "script.py"
+    lines = "from my_utils import pause, tracker\npause()\ntracker.set_requirement('R7', 'P', 'it waited')\n"
+    file.write_text(lines, encoding="utf-8")
+    result = fly(file, through_lab=False, line_delay=0.0)
+    assert result.tests[0].seconds == 3.0
+    assert [(each.name, each.state, each.tests) for each in result.requirements.rows()] == [
+        ("R7", "P", {"script": ("P", "it waited")})
+    ]

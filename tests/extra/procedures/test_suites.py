@@ -67,8 +67,7 @@ def test_command_writes_matrix_json_and_junit(tmp_path: Path, capsys: pytest.Cap
 def test_test_is_racy_if_its_verdict_depends_on_the_schedule(tmp_path: Path) -> None:
     file = tmp_path / "racy.py"
     file.write_text(
-        "wait_check_packet('LAB', 'CFE_ES_HK', 1, 10)\nwait(3.8)\n"
-        "wait_check('LAB CFE_ES_HK RECEIVED_COUNT == 1', 1)\n",
+        "wait_check_packet('LAB', 'CFE_ES_HK', 1, 10)\nwait(3.8)\nwait_check('LAB CFE_ES_HK RECEIVED_COUNT == 1', 1)\n",
         encoding="utf-8",
     )
     notes: list[str] = []
