@@ -19,6 +19,14 @@ class executive_services(Group):
         enable_output()
         wait_check("<%= target_name %> CFE_ES_HK PROCESSOR_RESETS == 1", 20)
 
+    @requirement("cES1003")
+    def test_z_power_on_reset(self):
+        cmd("<%= target_name %> CFE_ES_CMD_RESTART with RESTART_TYPE 2")
+        wait(2)
+        enable_output()
+        wait_check_packet("<%= target_name %>", "CFE_ES_HK", 1, 20)
+        check("<%= target_name %> CFE_ES_HK PROCESSOR_RESETS == 0")
+
 
 class lab_suite(Suite):
     def __init__(self):

@@ -88,7 +88,7 @@ class Template:
                     output.append(tag.text)
             elif tag.kind == "=":
                 if output is not None:
-                    output.append(str(self._value(tag.text, names, file, tag.line)))
+                    output.append(_printed(self._value(tag.text, names, file, tag.line)))
             elif tag.kind != "#":
                 word = tag.text.split(None, 1)[0] if tag.text else ""
                 if word in ("end", "else", "elsif"):
@@ -206,6 +206,13 @@ class Template:
         if known not in names:
             raise UsageError(f"the variable {known} has no value; set it with --variable '{known}=VALUE'")
         return names[known]
+
+
+def _printed(value: Any) -> str:
+    """Return a value as Ruby prints it."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return "" if value is None else str(value)
 
 
 class _Unsupported(Exception):

@@ -37,6 +37,11 @@ def test_template_has_conditions_and_loops(size: int, text: str) -> None:
     assert Template({"$size": size, "name": "n"}).render(TEMPLATE, FILE) == text
 
 
+def test_template_prints_values_as_ruby_does() -> None:
+    variables = {"$yes": True, "$none": None, "text": "a"}
+    assert Template(variables).render("<%= $yes %> <%= $none %>|<%= text %> <%= 2 * 3 %>", FILE) == "true |a 6"
+
+
 @pytest.mark.parametrize(
     ("template", "text", "line"),
     [
