@@ -73,9 +73,13 @@ def pytest_configure(config: pytest.Config) -> None:
     paths = config.getoption("--procedures")
     if paths:
         from cfepy.plugins import Hook
+        from cfepy.status import UsageError
 
         tests: Hook[type] = Hook("procedure_tests")
-        _add_configured(config, "cfepy-procedures", tests.need("--procedures"))
+        try:
+            _add_configured(config, "cfepy-procedures", tests.need("--procedures"))
+        except UsageError as error:
+            raise pytest.UsageError(str(error)) from None
         if config.args_source is not pytest.Config.ArgsSource.ARGS:
             config.args = list(paths)
 

@@ -53,3 +53,10 @@ def test_explored_suite_reports_tests_that_fail(pytester: pytest.Pytester) -> No
     result = run(pytester, "--explore", "2", "-k", "test_noop or test_wrong")
     result.assert_outcomes(passed=1, failed=1, deselected=2)
     result.stdout.fnmatch_lines(["*always failed: 0 passed, 2 failed*"])
+
+
+def test_folder_without_procedures_is_bad_usage(pytester: pytest.Pytester) -> None:
+    (pytester.path / "empty").mkdir()
+    result = pytester.runpytest_inprocess("--procedures", "empty")
+    assert result.ret == pytest.ExitCode.USAGE_ERROR
+    result.stderr.fnmatch_lines(["ERROR: *empty: has no suite*"])
