@@ -23,8 +23,9 @@ bool join(const std::string &ns, std::string_view name, std::string &full)
     {
         return false;
     }
-    full = "/";
-    for (const std::string_view part : {std::string_view(name[0] == '/' ? "" : ns), std::string_view("/"), name})
+    const std::string_view before = name[0] == '/' ? std::string_view() : std::string_view(ns);
+    full                          = "/";
+    for (const std::string_view part : {before, std::string_view("/"), name})
     {
         for (const char c : part)
         {

@@ -125,6 +125,7 @@ void Latching::end()
     if (!g_node.ended && (connect_ || disconnect_))
     {
         callbacks_->removeByID(reinterpret_cast<std::uintptr_t>(this));
+        callbacks_->expect_no_more(kPeersAtOnce);
     }
 }
 

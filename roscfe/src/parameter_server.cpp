@@ -152,9 +152,12 @@ void names(std::vector<std::string> &found)
         return;
     }
     from_json(told.c_str(), list);
-    for (int i = 0; i < list.size(); ++i)
+    for (int i = 0; list.getType() == XmlRpcValue::TypeArray && i < list.size(); ++i)
     {
-        found.push_back(static_cast<const std::string &>(list[i]));
+        if (list[i].getType() == XmlRpcValue::TypeString)
+        {
+            found.push_back(static_cast<const std::string &>(list[i]));
+        }
     }
 }
 

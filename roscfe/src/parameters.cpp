@@ -403,7 +403,7 @@ void open_parameters()
     if (!g_node.has_table)
     {
         CFE_EVS_SendEvent(kParameterEid, CFE_EVS_EventType_ERROR, "%s: no table of parameters: 0x%08lX",
-                          g_node.name.c_str(), static_cast<unsigned long>(status));
+                          g_node.name.c_str(), as<unsigned long>(static_cast<std::uint32_t>(status)));
     }
     XmlRpcValue tree;
     if (g_node.has_master && !node.params_are_given && get_row("/", tree))

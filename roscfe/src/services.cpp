@@ -226,7 +226,7 @@ Registration enroll_service(Kind kind, const std::string &name, const char *type
 void offer(const boost::shared_ptr<Service> &service, const char *type, const char *md5)
 {
     service->answer_id_ = enroll_service(Kind::server, service->name_, type, md5).msg_id;
-    service->callbacks_->expect(16);
+    service->callbacks_->expect(Service::kWaiting);
     g_node.services.push_back(service);
     if (!listen(service->answer_id_ | kCommandBit))
     {
@@ -243,6 +243,7 @@ void withdraw(const boost::shared_ptr<Service> &service)
     if (!g_node.ended)
     {
         service->callbacks_->removeByID(reinterpret_cast<std::uintptr_t>(service.get()));
+        service->callbacks_->expect_no_more(Service::kWaiting);
         const auto request_id = static_cast<std::uint16_t>(service->answer_id_ | kCommandBit);
         CFE_SB_Unsubscribe(CFE_SB_ValueToMsgId(request_id), g_node.pipe);
         listen_no_more(request_id);

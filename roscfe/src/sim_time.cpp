@@ -41,6 +41,8 @@ std::uint32_t number_at(const std::uint8_t *at)
            static_cast<std::uint32_t>(at[2]) << 16 | static_cast<std::uint32_t>(at[3]) << 24;
 }
 
+constexpr std::int64_t kMost = 0xFFFFFFFF * kSecond + kSecond - 1; // of ros::Time
+
 // The time counts as soon as it is taken over; there is no callback.
 class Clock : public Subscription
 {
@@ -49,10 +51,15 @@ class Clock : public Subscription
 
     bool receive(const std::uint8_t *bytes, std::size_t size) override
     {
-        if (size == kClockBytes)
+        const std::int64_t now = size == kClockBytes ? number_at(bytes) * kSecond + number_at(bytes + 4) : kMost + 1;
+        if (now > kMost)
         {
-            set_time(number_at(bytes) * kSecond + number_at(bytes + 4));
+            ++bad_;
+            ++g_counters.bad;
+            return false;
         }
+        ++g_counters.received;
+        set_time(now);
         return false;
     }
     CallResult call() override { return Invalid; }

@@ -1,6 +1,7 @@
 // What the core does for listeners, which are tested without a bus: nothing comes.
 #include "ros/callback_queue.h"
 #include "ros/time.h"
+#include "roscfe/ground.h"
 #include "roscfe/subscription.h"
 
 namespace ros
@@ -17,5 +18,6 @@ CallbackQueue *getGlobalCallbackQueue()
 
 namespace roscfe
 {
+Counters g_counters;
 void subscribe(const boost::shared_ptr<Subscription> &, const char *, const char *, const char *) {}
 } // namespace roscfe

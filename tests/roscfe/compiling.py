@@ -6,6 +6,8 @@ import subprocess
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from dev.roscfe.building import CPP
+
 ROSCFE = Path(__file__).parents[2] / "roscfe"
 HEADERS = ROSCFE / "include"
 BOOST = ROSCFE / "boost"
@@ -25,13 +27,13 @@ def compiled(
     Args:
         folder: folder of the result.
         sources: files.
-        options: options of g++.
+        options: options of the compiler.
         name: name of the program.
         headers: folders of headers.
     """
     program = folder / name
     includes = [f"-I{path}" for path in headers]
-    command = ["g++", "-std=c++17", *includes, *options, "-o", str(program), *map(str, sources)]
+    command = [*CPP, "-std=c++17", *includes, *options, "-o", str(program), *map(str, sources)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return program

@@ -29,6 +29,7 @@ class CallbackQueue : public CallbackQueueInterface
     void addCallback(const CallbackInterfacePtr &callback, std::uint64_t owner_id = 0) override;
     void removeByID(std::uint64_t owner_id) override;
     void expect(std::size_t count) override;
+    void expect_no_more(std::size_t count) override { room_ -= count; }
 
     // Call the first one, all that are there, or wait up to a time for the first.
     CallOneResult callOne() { return callOne(WallDuration()); }

@@ -34,6 +34,7 @@ class CallbackQueueInterface
 
     // Of roscfe: as many more callbacks may wait, so that none is allocated for later.
     virtual void expect(std::size_t) {}
+    virtual void expect_no_more(std::size_t) {} // since who was to add them has ended
 };
 
 } // namespace ros

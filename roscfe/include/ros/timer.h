@@ -169,7 +169,14 @@ class TimerOf
     struct Stop
     {
         boost::shared_ptr<State> state;
-        void                     operator()(void *) const { state->alive = state->running = false; }
+        void                     operator()(void *) const
+        {
+            state->alive = state->running = false;
+            if (state->callbacks != nullptr)
+            {
+                state->callbacks->expect_no_more(1);
+            }
+        }
     };
 
     boost::shared_ptr<State> state_;

@@ -34,6 +34,8 @@ class Service : public ros::CallbackInterface
     std::size_t waiting() const { return count_; } // requests
     bool       receive(std::uint32_t number, const std::uint8_t *bytes, std::size_t size);
 
+    static constexpr std::size_t kWaiting = 16; // requests
+
     const std::string            name_;
     ros::CallbackQueueInterface *callbacks_;
     std::uint16_t                answer_id_   = 0;
@@ -44,8 +46,6 @@ class Service : public ros::CallbackInterface
     std::size_t                  most_    = 0; // bytes of a request; 0 is as many as it likes
 
   private:
-    static constexpr std::size_t kWaiting = 16; // requests
-
     struct Request
     {
         std::uint32_t             number = 0;

@@ -88,6 +88,10 @@ class MessageFilter : public MessageFilterBase,
         bc_.frames().watch_no_more(*this);
         input_.disconnect();
         MessageFilter::clear();
+        if (callbacks_ != nullptr)
+        {
+            callbacks_->expect_no_more(2 * room_);
+        }
     }
     MessageFilter(const MessageFilter &) = delete;
     MessageFilter &operator=(const MessageFilter &) = delete;
@@ -123,6 +127,10 @@ class MessageFilter : public MessageFilterBase,
 
     void setQueueSize(std::uint32_t new_queue_size) override
     {
+        if (callbacks_ != nullptr)
+        {
+            callbacks_->expect_no_more(2 * room_);
+        }
         queue_size_ = new_queue_size;
         room_       = roscfe::queue_size(new_queue_size);
         slots_      = boost::make_shared<roscfe::Slots<M>>(room_ + kKept);

@@ -221,16 +221,17 @@ void unsubscribe(const boost::shared_ptr<Subscription> &subscription)
         return;
     }
     subscription->callbacks_->removeByID(reinterpret_cast<std::uintptr_t>(subscription.get()));
+    if (subscription->msg_id_ == 0)
+    {
+        return; // it was refused
+    }
+    subscription->callbacks_->expect_no_more(subscription->queue_);
     for (const boost::shared_ptr<Subscription> &each : all)
     {
         if (each->msg_id_ == subscription->msg_id_)
         {
             return;
         }
-    }
-    if (subscription->msg_id_ == 0)
-    {
-        return; // it was refused
     }
     CFE_SB_Unsubscribe(CFE_SB_ValueToMsgId(subscription->msg_id_), g_node.pipe);
     if (listen_no_more != nullptr)

@@ -4,6 +4,7 @@
 #include "ros/callback_queue.h"
 #include "ros/console.h"
 #include "ros/time.h"
+#include "roscfe/ground.h"
 
 namespace roscfe
 {
@@ -72,13 +73,20 @@ class Ear final : public Subscription
         const ros::Time now = ros::Time::now();
         if (now < last_)
         {
-            ROS_WARN("Detected jump back in time of %gs. Clearing TF buffer.", (last_ - now).toSec());
+            // Not as a ros::Duration, which has no room for more than 68 years.
+            ROS_WARN("Detected jump back in time of %gs. Clearing TF buffer.",
+                     seconds(static_cast<std::int64_t>(last_.toNSec()) - static_cast<std::int64_t>(now.toNSec())));
             buffer_.clear();
         }
         last_ = now;
-        if (!take(buffer_, bytes, size, is_static_))
+        if (take(buffer_, bytes, size, is_static_))
+        {
+            ++g_counters.received;
+        }
+        else
         {
             ++bad_;
+            ++g_counters.bad;
         }
         return false; // no callback is due
     }

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <deque>
-#include <string>
+#include <new>
 #include <vector>
 
 extern "C" {
@@ -15,25 +15,95 @@ extern "C" {
 #include "cfe_sb_msg.h"
 }
 
+#include "cfe_stand_in.h"
 #include "roscfe/node.h"
 
 extern "C" void NODE_AppMain(void);
 
+extern "C" __attribute__((weak)) void __gcov_dump(); // writes which lines were reached, where that is measured
+
+#if !defined(ROSCFE_PROFILE_HOST)
+extern "C" {
+void *__real_malloc(std::size_t size);
+void  __real_free(void *at);
+}
+#endif
+
+namespace stand_in
+{
+
+void *outside_memory(std::size_t size)
+{
+#if defined(ROSCFE_PROFILE_HOST)
+    return std::malloc(size);
+#else
+    return __real_malloc(size);
+#endif
+}
+
+void outside_free(void *at)
+{
+#if defined(ROSCFE_PROFILE_HOST)
+    std::free(at);
+#else
+    __real_free(at);
+#endif
+}
+
+} // namespace stand_in
+
 namespace
 {
 
-typedef std::vector<std::uint8_t> Packet;
+template <class T>
+struct Outside
+{
+    typedef T value_type;
 
-constexpr CFE_ResourceId_t kPipe = {0x00030001};
+    Outside() = default;
+    template <class U>
+    Outside(const Outside<U> &)
+    {
+    }
+    T *  allocate(std::size_t count) { return static_cast<T *>(stand_in::outside_memory(count * sizeof(T))); }
+    void deallocate(T *at, std::size_t) { stand_in::outside_free(at); }
+    template <class U>
+    bool operator==(const Outside<U> &) const
+    {
+        return true;
+    }
+    template <class U>
+    bool operator!=(const Outside<U> &) const
+    {
+        return false;
+    }
+};
+
+template <class T>
+using Vector = std::vector<T, Outside<T>>;
+typedef Vector<std::uint8_t> Packet;
+
+constexpr CFE_ResourceId_t kPipe = {stand_in::kPipe};
 constexpr std::int64_t     kSecond = 1000000000, kMillisecond = 1000000;
 
-std::int64_t               g_now = 100 * kSecond;
-std::vector<std::uint32_t> g_subscriptions;
-std::deque<Packet>         g_pipe;
-std::size_t                g_depth   = 0;
-bool                       g_reports = false;
-Packet                     g_received; // until the next one is
-std::vector<std::uint8_t>  g_table;
+// The state lives as long as the program, whose end destroys nothing.
+struct State
+{
+    std::int64_t                            now = 100 * kSecond;
+    Vector<std::uint32_t>                   subscriptions;
+    std::deque<Packet, Outside<Packet>>     pipe;
+    std::size_t                             depth   = 0;
+    bool                                    reports = false;
+    Packet                                  received; // until the next one is, and just as long as it
+    Vector<std::uint8_t>                    table;
+};
+
+State &state()
+{
+    alignas(State) static unsigned char memory[sizeof(State)];
+    static State *                      made = new (memory) State;
+    return *made;
+}
 
 // Bytes of a header: the stream id, the sequence, the length, all with the high byte first.
 std::uint8_t *bytes_of(void *message)
@@ -55,7 +125,7 @@ void set_word(void *message, int at, unsigned value)
 
 bool is_subscribed(std::uint32_t id)
 {
-    for (const std::uint32_t each : g_subscriptions)
+    for (const std::uint32_t each : state().subscriptions)
     {
         if (each == id)
         {
@@ -65,13 +135,6 @@ bool is_subscribed(std::uint32_t id)
     return false;
 }
 
-void put(const Packet &packet)
-{
-    if (is_subscribed(word(packet.data(), 0)) && g_pipe.size() < g_depth)
-    {
-        g_pipe.push_back(packet);
-    }
-}
 
 template <class Report>
 Packet packet_of(std::uint32_t id, const Report &report)
@@ -82,13 +145,32 @@ Packet packet_of(std::uint32_t id, const Report &report)
     return packet;
 }
 
+void put(const Packet &packet)
+{
+    stand_in::put(packet.data(), packet.size());
+}
+
+// The list of subscriptions, in as many packets as it takes.
 void report_all()
 {
-    CFE_SB_AllSubscriptionsTlm_t report{};
-    for (const std::uint32_t each : g_subscriptions)
+    Vector<std::uint32_t> all = state().subscriptions;
+    for (std::size_t at = 0; stand_in::other_subscription != nullptr && stand_in::other_subscription(at) != 0; ++at)
     {
-        auto &entry = report.Payload.Entry[report.Payload.Entries++];
-        entry.MsgId = CFE_SB_ValueToMsgId(each);
+        all.push_back(stand_in::other_subscription(at));
+    }
+    CFE_SB_AllSubscriptionsTlm_t report{};
+    for (const std::uint32_t each : all)
+    {
+        if (report.Payload.Entries == CFE_MISSION_SB_SUB_ENTRIES_PER_PKT || &each == all.data())
+        {
+            if (&each != all.data())
+            {
+                put(packet_of(CFE_SB_ALLSUBS_TLM_MID, report));
+            }
+            ++report.Payload.PktSegment;
+            report.Payload.Entries = 0;
+        }
+        report.Payload.Entry[report.Payload.Entries++].MsgId = CFE_SB_ValueToMsgId(each);
     }
     put(packet_of(CFE_SB_ALLSUBS_TLM_MID, report));
 }
@@ -102,20 +184,65 @@ void report_one(std::uint32_t id)
     put(packet_of(CFE_SB_ONESUB_TLM_MID, report));
 }
 
-// Whether a test wants a function to fail: its name is the value of CFE_FAILS in the environment.
+// Whether a test wants a function to fail: the value of CFE_FAILS in the environment is its name, and behind a colon how
+// many of its calls succeed first.
 bool fails(const char *function)
 {
-    const char *wanted = std::getenv("CFE_FAILS");
-    return wanted != nullptr && std::strcmp(wanted, function) == 0;
+    static int        calls  = 0;
+    const char *      wanted = std::getenv("CFE_FAILS");
+    const std::size_t size   = std::strlen(function);
+    if (wanted == nullptr || std::strncmp(wanted, function, size) != 0 || (wanted[size] != '\0' && wanted[size] != ':'))
+    {
+        return false;
+    }
+    return calls++ >= (wanted[size] == ':' ? std::atoi(wanted + size + 1) : 0);
+}
+
+void print_event(const char *format, std::va_list values)
+{
+    char text[1024];
+    std::vsnprintf(text, sizeof text, format, values);
+    if (stand_in::event != nullptr)
+    {
+        stand_in::event(text);
+    }
+    else
+    {
+        std::fprintf(stderr, "%s\n", text);
+    }
 }
 
 [[noreturn]] void end(int status)
 {
     std::fflush(stdout);
+    if (__gcov_dump != nullptr)
+    {
+        __gcov_dump();
+    }
     std::_Exit(status);
 }
 
 } // namespace
+
+namespace stand_in
+{
+
+bool put(const std::uint8_t *packet, std::size_t size)
+{
+    if (!is_subscribed(word(packet, 0)) || state().pipe.size() >= state().depth)
+    {
+        return false;
+    }
+    state().pipe.emplace_back(packet, packet + size);
+    return true;
+}
+
+void advance(std::int64_t ns)
+{
+    state().now += ns;
+}
+
+} // namespace stand_in
 
 int main()
 {
@@ -168,39 +295,40 @@ CFE_Status_t CFE_EVS_SendEvent(uint16, CFE_EVS_EventType_Enum_t, const char *for
 {
     va_list values;
     va_start(values, format);
-    std::vfprintf(stderr, format, values);
+    print_event(format, values);
     va_end(values);
-    std::fputc('\n', stderr);
     return CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_TBL_Register(CFE_TBL_Handle_t *handle, const char *, size_t size, uint16, CFE_TBL_CallbackFuncPtr_t)
 {
     *handle = CFE_TBL_Handle_t();
-    g_table.assign(size, 0);
-    return CFE_SUCCESS;
+    state().table.assign(size, 0);
+    return fails("CFE_TBL_Register") ? CFE_TBL_ERR_REGISTRY_FULL : CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_TBL_Load(CFE_TBL_Handle_t, CFE_TBL_SrcEnum_t, const void *from)
 {
-    std::memcpy(g_table.data(), from, g_table.size());
-    return CFE_SUCCESS;
+    std::memcpy(state().table.data(), from, state().table.size());
+    return fails("CFE_TBL_Load") ? CFE_TBL_ERR_LOAD_IN_PROGRESS : CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_TBL_Manage(CFE_TBL_Handle_t)
 {
-    return CFE_SUCCESS;
+    const bool loaded = stand_in::load != nullptr &&
+                        stand_in::load(reinterpret_cast<char *>(state().table.data()), state().table.size());
+    return loaded ? CFE_TBL_INFO_UPDATED : CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_TBL_Modified(CFE_TBL_Handle_t)
 {
-    return CFE_SUCCESS;
+    return fails("CFE_TBL_Modified") ? CFE_TBL_ERR_NO_ACCESS : CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_TBL_GetAddress(void **address, CFE_TBL_Handle_t)
 {
-    *address = g_table.data();
-    return CFE_SUCCESS;
+    *address = state().table.data();
+    return fails("CFE_TBL_GetAddress") ? CFE_TBL_ERR_NO_ACCESS : CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_TBL_ReleaseAddress(CFE_TBL_Handle_t)
@@ -240,7 +368,7 @@ CFE_Status_t CFE_MSG_SetFcnCode(CFE_MSG_Message_t *message, CFE_MSG_FcnCode_t co
 
 CFE_Status_t CFE_MSG_GetFcnCode(const CFE_MSG_Message_t *message, CFE_MSG_FcnCode_t *code)
 {
-    *code = static_cast<CFE_MSG_FcnCode_t>(word(message, 6) >> 8 & 0x7F);
+    *code = static_cast<CFE_MSG_FcnCode_t>(bytes_of(const_cast<CFE_MSG_Message_t *>(message))[6] & 0x7F);
     return CFE_SUCCESS;
 }
 
@@ -264,26 +392,31 @@ CFE_Status_t CFE_MSG_SetSegmentationFlag(CFE_MSG_Message_t *message, CFE_MSG_Seg
 CFE_Status_t CFE_SB_CreatePipe(CFE_SB_PipeId_t *pipe, uint16 depth, const char *)
 {
     *pipe   = kPipe;
-    g_depth = depth;
+    state().depth = depth;
     return fails("CFE_SB_CreatePipe") ? CFE_SB_MAX_PIPES_MET : CFE_SUCCESS;
 }
 
-CFE_Status_t CFE_SB_GetPipeName(char *name, size_t size, CFE_SB_PipeId_t)
+CFE_Status_t CFE_SB_GetPipeName(char *name, size_t size, CFE_SB_PipeId_t pipe)
 {
-    std::snprintf(name, size, "NODE_PIPE");
+    const auto id = static_cast<std::uint32_t>(CFE_RESOURCEID_TO_ULONG(pipe));
+    if (id != stand_in::kPipe && stand_in::has_pipe != nullptr && !stand_in::has_pipe(id))
+    {
+        return CFE_SB_BAD_ARGUMENT;
+    }
+    std::snprintf(name, size, id == stand_in::kPipe ? "NODE_PIPE" : "P%08lX", static_cast<unsigned long>(id));
     return CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_SB_SubscribeEx(CFE_SB_MsgId_t id, CFE_SB_PipeId_t, CFE_SB_Qos_t, uint16)
 {
-    if (fails("CFE_SB_SubscribeEx") && (id.Value & 0xFF00) == 0x0A00)
+    if (fails("CFE_SB_SubscribeEx"))
     {
         return CFE_SB_MAX_MSGS_MET;
     }
     if (!is_subscribed(id.Value))
     {
-        g_subscriptions.push_back(id.Value);
-        if (g_reports)
+        state().subscriptions.push_back(id.Value);
+        if (state().reports)
         {
             report_one(id.Value);
         }
@@ -293,11 +426,11 @@ CFE_Status_t CFE_SB_SubscribeEx(CFE_SB_MsgId_t id, CFE_SB_PipeId_t, CFE_SB_Qos_t
 
 CFE_Status_t CFE_SB_Unsubscribe(CFE_SB_MsgId_t id, CFE_SB_PipeId_t)
 {
-    for (std::size_t at = 0; at < g_subscriptions.size(); ++at)
+    for (std::size_t at = 0; at < state().subscriptions.size(); ++at)
     {
-        if (g_subscriptions[at] == id.Value)
+        if (state().subscriptions[at] == id.Value)
         {
-            g_subscriptions.erase(g_subscriptions.begin() + static_cast<std::ptrdiff_t>(at));
+            state().subscriptions.erase(state().subscriptions.begin() + static_cast<std::ptrdiff_t>(at));
             break;
         }
     }
@@ -308,23 +441,36 @@ void CFE_SB_TimeStampMsg(CFE_MSG_Message_t *) {}
 
 CFE_SB_Buffer_t *CFE_SB_AllocateMessageBuffer(size_t size)
 {
-    return static_cast<CFE_SB_Buffer_t *>(std::calloc(1, size));
+    if (fails("CFE_SB_AllocateMessageBuffer"))
+    {
+        return nullptr;
+    }
+    // cFE's memory is not cleared either.
+    return static_cast<CFE_SB_Buffer_t *>(std::memset(stand_in::outside_memory(size), 0xA5, size));
 }
 
 CFE_Status_t CFE_SB_ReleaseMessageBuffer(CFE_SB_Buffer_t *buffer)
 {
-    std::free(buffer);
+    stand_in::outside_free(buffer);
     return CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_SB_TransmitBuffer(CFE_SB_Buffer_t *buffer, bool)
 {
+    if (fails("CFE_SB_TransmitBuffer"))
+    {
+        return CFE_SB_MSG_TOO_BIG;
+    }
     static std::uint16_t counts[0x2000];
     const std::uint8_t * bytes = bytes_of(buffer);
     const unsigned       id    = word(bytes, 0);
     set_word(buffer, 2, (word(bytes, 2) & 0xC000) | (counts[id & 0x1FFF]++ & 0x3FFF));
     const Packet packet(bytes, bytes + word(bytes, 4) + 7);
-    std::free(buffer);
+    stand_in::outside_free(buffer);
+    if (stand_in::sent != nullptr && stand_in::sent(packet.data(), packet.size()))
+    {
+        return CFE_SUCCESS;
+    }
     if (id != CFE_SB_SUB_RPT_CTRL_MID)
     {
         put(packet);
@@ -335,14 +481,18 @@ CFE_Status_t CFE_SB_TransmitBuffer(CFE_SB_Buffer_t *buffer, bool)
     }
     else
     {
-        g_reports = packet[6] == CFE_SB_ENABLE_SUB_REPORTING_CC;
+        state().reports = packet[6] == CFE_SB_ENABLE_SUB_REPORTING_CC;
     }
     return CFE_SUCCESS;
 }
 
 CFE_Status_t CFE_SB_ReceiveBuffer(CFE_SB_Buffer_t **buffer, CFE_SB_PipeId_t, int32 wait_ms)
 {
-    if (g_pipe.empty())
+    if (state().pipe.empty() && stand_in::fill != nullptr)
+    {
+        stand_in::fill();
+    }
+    if (state().pipe.empty())
     {
         if (wait_ms == CFE_SB_POLL)
         {
@@ -352,12 +502,13 @@ CFE_Status_t CFE_SB_ReceiveBuffer(CFE_SB_Buffer_t **buffer, CFE_SB_PipeId_t, int
         {
             end(0);
         }
-        g_now += wait_ms * kMillisecond;
+        state().now += wait_ms * kMillisecond;
         return CFE_SB_TIME_OUT;
     }
-    g_received = g_pipe.front();
-    g_pipe.pop_front();
-    *buffer = reinterpret_cast<CFE_SB_Buffer_t *>(g_received.data());
+    state().received.~Packet(); // what still points to it is wrong
+    new (&state().received) Packet(std::move(state().pipe.front()));
+    state().pipe.pop_front();
+    *buffer = reinterpret_cast<CFE_SB_Buffer_t *>(state().received.data());
     return CFE_SUCCESS;
 }
 
@@ -365,13 +516,13 @@ CFE_Status_t CFE_SB_ReceiveBuffer(CFE_SB_Buffer_t **buffer, CFE_SB_PipeId_t, int
 
 int32 OS_GetLocalTime(OS_time_t *time)
 {
-    *time = OS_TimeFromTotalNanoseconds(g_now);
+    *time = OS_TimeFromTotalNanoseconds(state().now);
     return OS_SUCCESS;
 }
 
 int32 OS_TaskDelay(uint32 milliseconds)
 {
-    g_now += milliseconds * kMillisecond;
+    state().now += milliseconds * kMillisecond;
     return OS_SUCCESS;
 }
 
@@ -383,20 +534,21 @@ void OS_printf(const char *format, ...)
     va_end(values);
 }
 
-int32 OS_QueueGetIdByName(osal_id_t *, const char *)
+int32 OS_QueueGetIdByName(osal_id_t *id, const char *name)
 {
-    return OS_ERR_NAME_NOT_FOUND;
+    *id = 0x00020001;
+    return stand_in::has_queue != nullptr && stand_in::has_queue(name, 0) ? OS_SUCCESS : OS_ERR_NAME_NOT_FOUND;
 }
 
-int32 OS_QueueGetInfo(osal_id_t, OS_queue_prop_t *)
+int32 OS_QueueGetInfo(osal_id_t id, OS_queue_prop_t *)
 {
-    return OS_ERR_INVALID_ID;
+    return stand_in::has_queue != nullptr && stand_in::has_queue(nullptr, id) ? OS_SUCCESS : OS_ERR_INVALID_ID;
 }
 
 int32 OS_CondVarCreate(osal_id_t *id, const char *, uint32)
 {
     *id = 0x000F0001;
-    return OS_SUCCESS;
+    return fails("OS_CondVarCreate") ? OS_ERR_NO_FREE_IDS : OS_SUCCESS;
 }
 
 int32 OS_CondVarGetIdByName(osal_id_t *, const char *)
@@ -422,7 +574,7 @@ int32 OS_CondVarUnlock(osal_id_t)
 int32 OS_CondVarTimedWait(osal_id_t, const OS_time_t *until)
 {
     const std::int64_t ns = OS_TimeGetTotalNanoseconds(*until);
-    g_now                 = ns > g_now ? ns : g_now;
+    state().now                 = ns > state().now ? ns : state().now;
     return OS_ERROR_TIMEOUT;
 }
 
