@@ -52,6 +52,19 @@ def test_mutex_locked_twice_by_its_owner_ends_the_node(tmp_path: Path, profile: 
     assert (done.returncode, done.stdout[:21]) == (3, "refused: boost::mutex")
 
 
+def test_locks_between_threads_have_no_race(tmp_path: Path) -> None:
+    """Under ThreadSanitizer, which finds the race if the locks are left out."""
+    flags = ("-DROSCFE_PROFILE_HOST", "-O1", "-g1", "-fsanitize=thread")
+    sources = [FOLDER / "threads.cpp", STUBS]
+    locked = compile_program(tmp_path / "locked", sources, *flags, base=STRICT_FLAGS)
+    done = subprocess.run([locked], capture_output=True, text=True, timeout=100, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "8000 8000 1\n", "")
+    unlocked = compile_program(tmp_path / "unlocked", sources, *flags, "-DUNLOCKED", base=STRICT_FLAGS)
+    done = subprocess.run([unlocked], capture_output=True, text=True, timeout=100, check=False)
+    assert done.returncode != 0
+    assert "WARNING: ThreadSanitizer: data race" in done.stderr
+
+
 @needs_boost
 def test_interface_library_compiles_with_the_original_boost(tmp_path: Path) -> None:
     include = ROSCFE / "include"
