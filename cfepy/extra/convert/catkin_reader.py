@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from cfepy.extra.c import CMakeBudget, CMakeScript, GeneratorExpressions, split_list, version_of
+from cfepy.extra.convert.configured_headers import HEADERS, configured_text
 from cfepy.extra.convert.cpp_package import CppPackage, CppTarget
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import CMAKE_BYTES
@@ -117,6 +118,8 @@ class CatkinReader(CMakeScript):
         known |= {"PROJECT_SOURCE_DIR": [root], "CMAKE_SOURCE_DIR": [root], "CMAKE_CXX_COMPILER_VERSION": ["12.2.0"]}
         known |= {"CMAKE_BINARY_DIR": [f"{root}/build"], "PROJECT_BINARY_DIR": [f"{root}/build"]}
         known |= {"CATKIN_DEVEL_PREFIX": [f"{root}/devel"], "CMAKE_SIZEOF_VOID_P": ["8"], "CMAKE_HOST_UNIX": ["1"]}
+        known |= {"CATKIN_GLOBAL_INCLUDE_DESTINATION": ["include"]}
+        known |= {"CATKIN_PACKAGE_INCLUDE_DESTINATION": [f"include/{package.name}"]}
         known |= {f"CMAKE_CXX_FLAGS_{each}": ["-DNDEBUG"] for each in ("RELEASE", "RELWITHDEBINFO", "MINSIZEREL")}
         known |= {name: list(values) for name, values in (variables or {}).items()}
         place = f"{root}/build" if outer is None else f"{root}/build/{os.path.relpath(folder, package.folder)}"
@@ -156,7 +159,7 @@ class CatkinReader(CMakeScript):
         target.sources = expressions.words(target.sources)
         target.links = [*expressions.words(target.links), *_objects(target.sources)]
         includes = expressions.words([*made.includes, *scope.includes])
-        self._grow(target.includes, _existing(target.folder, includes))
+        self._grow(target.includes, self._existing(target.folder, includes))
         self._grow(target.definitions, expressions.words([*made.definitions, *scope.definitions]))
 
     def _property(self, name: str, which: str) -> str:
@@ -221,6 +224,8 @@ class CatkinReader(CMakeScript):
                 self._enter(self.folder / inner)
             case "include", [file, *_]:
                 self._include(file)
+            case "configure_file", [template, made, *options]:
+                self._configure(template, made, options)
             case "include_directories", folders:
                 self._grow(self._scope.includes, (each for each in folders if each not in _PLACES))
             case "add_definitions" | "add_compile_options" | "add_compile_definitions", flags:
@@ -262,6 +267,20 @@ class CatkinReader(CMakeScript):
         self.variables["CMAKE_CURRENT_LIST_DIR"] = [str((self.folder / file).parent)]
         self.run(text_limited(self.folder / file, CMAKE_BYTES, "replace"))
         self.variables["CMAKE_CURRENT_LIST_DIR"] = before
+
+    def _configure(self, given: str, output: str, options: Sequence[str]) -> None:
+        """Record a header that is made from a template of the package or of one beside it."""
+        template = Path(os.path.normpath(self.folder / given))
+        made = Path(os.path.normpath(Path(self.variables["CMAKE_CURRENT_BINARY_DIR"][0]) / output))
+        made = made / template.name if output.endswith("/") or os.path.isdir(made) else made
+        root = self._package.folder
+        if made.suffix not in HEADERS or not made.is_relative_to(root) or not template.is_relative_to(root.parent):
+            return
+        if os.path.isfile(template):
+            text = configured_text(text_limited(template, CMAKE_BYTES, "replace"), self.variables, options)
+            self.spend(len(text or ""))
+            if text is not None:
+                self._package.configured[made] = text
 
     def _of_target(self, name: str, given: str, words: Sequence[str]) -> None:
         made = self._made.get(self._aliases.get(given, given))
@@ -353,15 +372,16 @@ class CatkinReader(CMakeScript):
         headers = [EIGEN] if {"EIGEN3", "EIGEN", "Eigen3", "Eigen"}.intersection(said.get("DEPENDS", [])) else []
         own = ["include"] if is_simple and os.path.isdir(self.folder / "include") else []
         folders = [*own, *said.get("INCLUDE_DIRS", []), *headers]
-        self._grow(self._package.includes, _existing(self.folder, folders))
+        self._grow(self._package.includes, self._existing(self.folder, folders))
         libraries = self.variables.get(self._simple_libraries, []) if is_simple else []
         self._grow(self._package.exported, [*libraries, *said.get("LIBRARIES", [])])
         self._grow(self._package.depends, said.get("CATKIN_DEPENDS", []))
 
-
-def _existing(folder: Path, words: Iterable[str]) -> list[Path]:
-    named = [folder / each for each in words if "$" not in each]
-    return [each for each in named if os.path.isdir(each)]
+    def _existing(self, folder: Path, words: Iterable[str]) -> list[Path]:
+        """Return the folders that exist, or that CMake makes."""
+        named = [folder / each for each in words if "$" not in each]
+        made = [self._package.folder / each for each in ("build", "devel")]
+        return [each for each in named if os.path.isdir(each) or any(map(each.is_relative_to, made))]
 
 
 def _objects(sources: list[str]) -> list[str]:

@@ -64,6 +64,7 @@ class CppPackage:
         exported: its libraries that others link with.
         depends: packages that it depends on.
         plugins: classes of pluginlib, by name.
+        configured: texts of headers that CMake makes from templates, by absolute path.
     """
 
     name: str
@@ -73,6 +74,7 @@ class CppPackage:
     exported: list[str] = field(default_factory=list)
     depends: list[str] = field(default_factory=list)
     plugins: dict[str, PluginClass] = field(default_factory=dict)
+    configured: dict[Path, str] = field(default_factory=dict)
 
     def executables(self) -> list[str]:
         """Return the types of its nodes, sorted."""

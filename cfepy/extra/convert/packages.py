@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from cfepy.extra.convert.catkin_reader import FILE, CatkinReader
+from cfepy.extra.convert.configured_headers import include_folders
 from cfepy.extra.convert.cpp_package import CppPackage, CppTarget, PluginClass, Program
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import CPP_FILES, XML_BYTES
@@ -124,7 +125,7 @@ class _Collector:
         _add(program.sources, source_files(target))
         if max(len(self._taken), len(program.sources)) > CPP_FILES:
             raise UsageError(f"{program.type} is made of more than {CPP_FILES:,} files; split it", file=package.folder)
-        _add(program.includes, [*target.includes, *package.includes])
+        _add(program.includes, include_folders(package, [*target.includes, *package.includes]))
         _add(program.definitions, target.definitions)
         for name in target.links:
             inner = package.targets.get(name)
@@ -142,7 +143,7 @@ class _Collector:
         folder = next((each for each in self._packages.folders(name) if os.path.isfile(each / FILE)), None)
         other = CppPackage(name, Path()) if folder is None else read_package(folder, name)
         self._read[name] = other
-        _add(self._program.includes, other.includes)
+        _add(self._program.includes, include_folders(other, other.includes))
         for library in other.exported:
             if library in other.targets:
                 yield other, other.targets[library]

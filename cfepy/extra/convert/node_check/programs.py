@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from cfepy.extra.convert.build import provided_packages
+from cfepy.extra.convert.configured_headers import include_folders
 from cfepy.extra.convert.conversion import task_of
 from cfepy.extra.convert.cpp_package import CppPackage, Program
 from cfepy.extra.convert.packages import MANIFEST, SUFFIXES, program_of, read_package
@@ -52,14 +53,15 @@ def _of_file(path: Path, environ: Mapping[str, str]) -> Program:
         return Program(CppPackage("", path.parent), path.stem, [path])
     package = read_package(folder, name)
     include = folder / "include"
-    includes = [*package.includes, *([include] if os.path.isdir(include) else [])]
+    includes = [*include_folders(package, package.includes), *([include] if os.path.isdir(include) else [])]
     nodelets = {each.library: name for name, each in package.nodelets().items()}
     for target in package.targets.values():
         if any(os.path.abspath(target.folder / each) == str(path) for each in target.sources):
             kind = nodelets.get(target.name) if target.is_library else target.file_name or target.name
             if kind is not None:
                 return _program(package, kind, environ)
-            return Program(package, path.stem, [path], [*target.includes, *includes], target.definitions)
+            own = include_folders(package, target.includes)
+            return Program(package, path.stem, [path], [*own, *includes], target.definitions)
     return Program(package, path.stem, [path], includes)
 
 
