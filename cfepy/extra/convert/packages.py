@@ -2,6 +2,8 @@
 
 It is read from package.xml and CMakeLists.txt, also in the forms of rosbuild and catkin_simple; nothing is built. A
 linked library belongs to the package, to a nearby package, or comes from outside; outside libraries are listed by name.
+A library of a nearby package is left out if no file of the node includes a header of that package: catkin links all of
+them, and a node needs nothing of this one.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from typing import TYPE_CHECKING, TypeVar
 from cfepy.extra.convert.catkin_reader import FILE, CatkinReader
 from cfepy.extra.convert.configured_headers import include_folders
 from cfepy.extra.convert.cpp_package import CppPackage, CppTarget, PluginClass, Program
+from cfepy.extra.convert.cpp_sources import collect
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import CPP_FILES, XML_BYTES
 from cfepy.reading.plain_xml import XmlError, plain_xml
@@ -31,6 +34,7 @@ MANIFEST = "package.xml"
 SUFFIXES = (".cpp", ".cc", ".cxx", ".c++", ".C", ".c")
 _TRIED = (".c", ".C", ".c++", ".cc", ".cpp", ".cxx")
 """Suffixes of a source that is written without one, in the order in which CMake tries them."""
+_SYSTEM = "/usr"
 _SYSTEM_LIBRARIES = ("m", "pthread", "rt", "dl", "stdc++", "boost_system", "boost_thread", "boost_date_time")
 """Libraries that a node links on Linux, and that its application does not need."""
 
@@ -99,6 +103,7 @@ class _Collector:
         self._ours = ours
         self._read: dict[str, CppPackage] = {program.package.name: program.package}
         self._taken: set[tuple[str, str]] = set()
+        self._offering: dict[str, CppPackage] = {}  # nearby packages with libraries, none of which is taken yet
         self._outside = dict.fromkeys(program.outside)
 
     def take(self, package: CppPackage, target: CppTarget) -> None:
@@ -107,6 +112,16 @@ class _Collector:
         Raises:
             UsageError: one of its sources does not exist, or they are too many.
         """
+        self._take(package, target)
+        while used := self._used():
+            for name in used:
+                other = self._offering.pop(name)
+                for library in other.exported:
+                    if library in other.targets:
+                        self._take(other, other.targets[library])
+        self._program.outside = list(self._outside)
+
+    def _take(self, package: CppPackage, target: CppTarget) -> None:
         open_at = [self._taking(package, target)]
         while open_at:
             inner = next(open_at[-1], None)
@@ -114,7 +129,6 @@ class _Collector:
                 open_at.pop()
             else:
                 open_at.append(self._taking(*inner))
-        self._program.outside = list(self._outside)
 
     def _taking(self, package: CppPackage, target: CppTarget) -> Iterator[tuple[CppPackage, CppTarget]]:
         """Add a target. Yields the inner targets, each of which must be added before the iteration goes on."""
@@ -133,20 +147,42 @@ class _Collector:
                 yield package, inner
             elif name not in _SYSTEM_LIBRARIES and not name.startswith(("-", "/")):
                 self._outside[name] = None
-        for name in package.depends:
-            yield from self._dependency(name)
+        self._see_dependencies(package)
 
-    def _dependency(self, name: str) -> Iterator[tuple[CppPackage, CppTarget]]:
-        """Add the headers of a nearby package that this one depends on. Yields its exported libraries."""
-        if name in self._ours or name in self._read:
-            return
-        folder = next((each for each in self._packages.folders(name) if os.path.isfile(each / FILE)), None)
-        other = CppPackage(name, Path()) if folder is None else read_package(folder, name)
-        self._read[name] = other
-        _add(self._program.includes, include_folders(other, other.includes))
-        for library in other.exported:
-            if library in other.targets:
-                yield other, other.targets[library]
+    def _see_dependencies(self, package: CppPackage) -> None:
+        """Add the headers of the nearby packages that one depends on, also through others."""
+        waiting = list(package.depends)
+        for name in waiting:
+            if name in self._ours or name in self._read:
+                continue
+            folder = next((each for each in self._packages.folders(name) if os.path.isfile(each / FILE)), None)
+            other = CppPackage(name, Path()) if folder is None else read_package(folder, name)
+            self._read[name] = other
+            _add(self._program.includes, include_folders(other, other.includes))
+            waiting += other.depends
+            if any(library in other.targets for library in other.exported):
+                self._offering[name] = other
+
+    def _used(self) -> list[str]:
+        """Return the names of the offering packages that a file of the program includes a header of.
+
+        All are used if the files cannot be read: the check reports such a file.
+        """
+        if not self._offering:
+            return []
+        try:
+            files = collect(self._program.sources, self._program.includes).contents
+        except (OSError, UsageError):
+            return list(self._offering)
+        folders = {parent for file in files for parent in Path(os.path.normpath(file)).parents}
+        return [name for name, each in self._offering.items() if not folders.isdisjoint(_folders_of(each))]
+
+
+def _folders_of(package: CppPackage) -> Iterator[Path]:
+    """Yield the folder of a package, and the folders of its headers, unless they are the computer's."""
+    for each in (package.folder, *include_folders(package, package.includes)):
+        if not each.is_relative_to(_SYSTEM):
+            yield Path(os.path.normpath(each))
 
 
 def _add(found: list[T], more: Iterable[T]) -> None:

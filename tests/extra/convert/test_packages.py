@@ -59,7 +59,7 @@ FILES = {
     "demo/include/demo/core.h": "",
     "demo/src/core/a.cpp": "",
     "demo/src/core/b.cpp": "",
-    "demo/src/talker.cpp": "",
+    "demo/src/talker.cpp": "#include <helpers.h>\n",
     "demo/more/CMakeLists.txt": "rosbuild_add_executable(old ${CMAKE_CURRENT_SOURCE_DIR}/old.cpp gone.cpp)\n",
     "demo/more/old.cpp": "",
     "helpers/CMakeLists.txt": HELPERS,
@@ -104,6 +104,43 @@ def test_eigen_headers_exported_by_a_package_reach_its_users(tmp_path: Path, mon
     package = read_package(tmp_path / "demo", "demo")
     program = program_of(package, "talker", Packages(tmp_path / "demo/src/talker.cpp", {}), ours=["roscpp"])
     assert eigen in program.includes
+
+
+@pytest.mark.parametrize(("text", "is_linked"), [("", False), ("#include <helpers.h>\n", True)])
+def test_library_of_another_package_is_linked_only_if_its_headers_are_included(
+    text: str, is_linked: bool, tmp_path: Path
+) -> None:
+    write(tmp_path, {**FILES, "demo/src/talker.cpp": text})
+    package = read_package(tmp_path / "demo", "demo")
+    program = program_of(package, "talker", Packages(tmp_path / "demo/src/talker.cpp", {}), ours=["roscpp"])
+    assert (tmp_path / "helpers/lib/helping.cc" in program.sources) is is_linked
+    assert tmp_path / "helpers/include" in program.includes
+
+
+def test_library_behind_a_header_of_a_library_is_linked(tmp_path: Path) -> None:
+    more = {
+        "helpers/CMakeLists.txt": f"{HELPERS}find_package(catkin REQUIRED COMPONENTS deep)\n",
+        "helpers/lib/helping.cc": "#include <deep/deep.h>\n",
+        "deep/package.xml": "<package><name>deep</name></package>",
+        "deep/CMakeLists.txt": "project(deep)\nadd_library(deep deep.cpp)\n"
+        "catkin_package(INCLUDE_DIRS include LIBRARIES deep)\n",
+        "deep/include/deep/deep.h": "",
+        "deep/deep.cpp": "",
+    }
+    write(tmp_path, FILES | more)
+    package = read_package(tmp_path / "demo", "demo")
+    program = program_of(package, "talker", Packages(tmp_path / "demo/src/talker.cpp", {}), ours=["roscpp"])
+    assert program.sources[-2:] == [tmp_path / "helpers/lib/helping.cc", tmp_path / "deep/deep.cpp"]
+
+
+def test_all_libraries_are_linked_if_a_source_is_too_large_to_be_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path, FILES | {"demo/src/talker.cpp": "// " + "x" * 100})
+    monkeypatch.setattr("cfepy.extra.convert.cpp_sources.CPP_BYTES", 50)
+    package = read_package(tmp_path / "demo", "demo")
+    program = program_of(package, "talker", Packages(tmp_path / "demo/src/talker.cpp", {}), ours=["roscpp"])
+    assert tmp_path / "helpers/lib/helping.cc" in program.sources
 
 
 def test_missing_target_is_reported(tmp_path: Path) -> None:
