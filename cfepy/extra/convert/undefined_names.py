@@ -20,6 +20,7 @@ _PROVIDED = re.compile(
     r"(?:(?:vtable|typeinfo|typeinfo name|VTT|guard variable|non-virtual thunk) (?:for|to) )?"
     r"(?:ros|roscfe|tf|tf2|tf2_ros|actionlib|XmlRpc|message_filters|nodelet|pluginlib|class_loader|dynamic_reconfigure"
     r"|diagnostic_updater|interactive_markers|laser_geometry|topic_tools|angles|bond|sensor_msgs)::"
+    r"|roscfe_\w+$"  # std::cout and its kin without <iostream>
 )
 """Names of the interface library. It is not linked for a check, and defines all that its headers declare."""
 

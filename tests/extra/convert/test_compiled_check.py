@@ -169,6 +169,7 @@ def test_undefined_names_are_read_from_the_linker() -> None:
 /usr/bin/ld: /home/a/node.cpp:8: undefined reference to `help(int)'
 /usr/bin/ld: node.o:(.data.rel+0x0): undefined reference to `vtable for Own'
 /usr/bin/ld: /home/a/node.cpp:9: undefined reference to `CFE_ES_ExitApp'
+/usr/bin/ld: /home/a/node.cpp:9: undefined reference to `roscfe_cerr'
 /usr/bin/ld: /home/a/node.cpp:9: undefined reference to `vtable for ros::Thing'
 """
     assert [tuple(each) for each in undefined_names(said, with_library=False)] == [
