@@ -24,9 +24,9 @@ from rospy_shim.types.msgs import shipped
 LIST = Path(__file__).with_suffix(".tsv")
 _HEADERS = (
     "XmlRpcValue.h actionlib/client/simple_action_client.h actionlib/server/simple_action_server.h "
-    "message_filters/subscriber.h ros/ros.h tf/tf.h tf/transform_broadcaster.h tf/transform_listener.h "
-    "tf2_ros/buffer.h tf2_ros/static_transform_broadcaster.h tf2_ros/transform_broadcaster.h "
-    "tf2_ros/transform_listener.h"
+    "message_filters/subscriber.h ros/node_handle.h ros/ros.h ros/service.h tf/tf.h "
+    "tf/transform_broadcaster.h tf/transform_listener.h tf2_ros/buffer.h tf2_ros/static_transform_broadcaster.h "
+    "tf2_ros/transform_broadcaster.h tf2_ros/transform_listener.h"
 )
 HEADERS = _HEADERS.split()
 """Headers that nodes include."""

@@ -1,6 +1,7 @@
 // What nodes use of Boost. It compiles against Boost itself as well: boost.txt is what it prints there.
 #include <cstdio>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <boost/array.hpp>
@@ -16,6 +17,7 @@
 #include <boost/scoped_ptr.hpp>
 #include <boost/shared_array.hpp>
 #include <boost/shared_ptr.hpp>
+#include <boost/utility/enable_if.hpp>
 #include <boost/weak_ptr.hpp>
 
 struct Base
@@ -139,10 +141,29 @@ static void arrays()
     }
 }
 
+template <class T>
+typename boost::enable_if<std::is_integral<T>, const char *>::type kind(T)
+{
+    return "integer";
+}
+
+template <class T>
+typename boost::disable_if<std::is_integral<T>, const char *>::type kind(T)
+{
+    return "other";
+}
+
+template <class T>
+typename boost::lazy_enable_if_c<sizeof(T) == 1, std::remove_const<T>>::type small(T value)
+{
+    return value;
+}
+
 int main()
 {
     pointers();
     callables();
     arrays();
+    std::printf("%s %s %c\n", kind(1), kind(1.5), small('x'));
     std::printf("%zu\n", sizeof(boost::uint16_t));
 }

@@ -18,6 +18,8 @@
 #include <boost/scoped_ptr.hpp>
 #include <boost/weak_ptr.hpp>
 
+#include "ros/time.h"
+
 namespace ros
 {
 
@@ -40,9 +42,19 @@ class WallTimer;
 class SteadyTimer;
 class ServiceServer;
 class ServiceClient;
+class CallbackInterface;
+class CallbackQueue;
 class CallbackQueueInterface;
 class TransportHints;
 class SingleSubscriberPublisher;
+typedef boost::shared_ptr<NodeHandle> NodeHandlePtr;
+
+template <class T, class D>
+struct TimerEventOf;
+typedef TimerEventOf<Time, Duration>           TimerEvent;
+typedef TimerEventOf<WallTime, WallDuration>   WallTimerEvent;
+typedef TimerEventOf<SteadyTime, WallDuration> SteadyTimerEvent;
+
 typedef std::vector<Publisher>     V_Publisher;
 typedef std::vector<Subscriber>    V_Subscriber;
 typedef std::vector<ServiceServer> V_ServiceServer;

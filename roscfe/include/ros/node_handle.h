@@ -20,6 +20,7 @@
 #include "ros/subscribe_options.h"
 #include "ros/subscriber.h"
 #include "ros/timer.h"
+#include "roscfe/brought_along.h"
 #include "roscfe/parts.h"
 
 namespace ros
@@ -386,8 +387,6 @@ class NodeHandle
     CallbackQueueInterface *queue_ = nullptr;
     M_string                remappings_;
 };
-
-typedef boost::shared_ptr<NodeHandle> NodeHandlePtr;
 
 } // namespace ros
 

@@ -2,27 +2,6 @@
 #ifndef ROSCPP_ROS_H
 #define ROSCPP_ROS_H
 
-// roscpp brings these along, and nodes rely on it: isnan without std::, boost::lexical_cast, usleep, INT_MAX.
-#include <boost/lexical_cast.hpp>
-#include <boost/noncopyable.hpp>
-
-#include <cassert>
-#include <cfloat>
-#include <climits>
-#include <complex>
-#include <mutex>
-#if defined(_GLIBCXX_HAS_GTHREADS) || defined(_LIBCPP_VERSION) || !defined(ROSCFE_PROFILE_HOST)
-#include <boost/thread/mutex.hpp>
-#endif
-
-#include <math.h>
-#if __has_include(<sys/time.h>)
-#include <sys/time.h>
-#endif
-#if __has_include(<unistd.h>)
-#include <unistd.h>
-#endif
-
 #include "ros/time.h"
 
 #include "ros/rate.h"

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "ros/names.h"
+#include "ros/node_handle.h"
 #include "ros/service_client.h"
 
 namespace ros

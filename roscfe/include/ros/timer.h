@@ -183,9 +183,6 @@ class TimerOf
     boost::shared_ptr<void>  keeper_;
 };
 
-typedef TimerEventOf<Time, Duration>           TimerEvent;
-typedef TimerEventOf<WallTime, WallDuration>   WallTimerEvent;
-typedef TimerEventOf<SteadyTime, WallDuration> SteadyTimerEvent;
 typedef boost::function<void(const TimerEvent &)>       TimerCallback;
 typedef boost::function<void(const WallTimerEvent &)>   WallTimerCallback;
 typedef boost::function<void(const SteadyTimerEvent &)> SteadyTimerCallback;
