@@ -26,7 +26,7 @@ from dev.convert.stimulus.comparing import Likeness, Part, compared
 from dev.convert.stimulus.debian import NotBuilt, RoscppNode
 from dev.convert.stimulus.flight import Fault, NodeFlight
 from dev.convert.stimulus.script import Scene, Seen, script
-from dev.convert.survey import Node, listed
+from dev.convert.survey import FRESH, LIST, Node, listed
 from rospy_shim.types.msgs import Packages
 
 HERE = Path(__file__).parent
@@ -88,6 +88,7 @@ def main() -> None:
     """Try nodes."""
     parser = argparse.ArgumentParser(prog="python -m dev.convert.stimulus", description=__doc__)
     parser.add_argument("sources", type=Path, nargs="?", help="folder OWNER/NAME/...")
+    parser.add_argument("--list", type=Path, default=LIST, help=f"another list, such as {FRESH.name}")
     parser.add_argument("--only", default="", help="a part of OWNER/NAME/file")
     parser.add_argument("--converts", type=Path, required=True, help="the verdicts of dev.convert.survey --json")
     parser.add_argument("--json", type=Path, help="results; those that are there already are kept")
@@ -104,7 +105,7 @@ def main() -> None:
             print(row.verdict, row.node, row.why)
         return
     done = json.loads(arguments.json.read_text(encoding="utf-8")) if arguments.json and arguments.json.is_file() else {}
-    for node in listed():
+    for node in listed(arguments.list):
         name = f"{node.repository}/{node.file}"
         if name not in convert or arguments.only not in name or name in done:
             continue
