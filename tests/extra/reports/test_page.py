@@ -254,7 +254,7 @@ def test_page_of_a_journal_has_the_story_and_a_title(tmp_path: Path) -> None:
     rmtree(mission)
     assert main(["report", str(journal), "-o", str(page)]) == 0
     text = page.read_text(encoding="utf-8")
-    assert "<h1>race.cfepy: WHEELS ended with exit status 1 (node /wheels)</h1>" in text
+    assert "<h1>race.cfepy: WHEELS ended with exit status 1 (node /wheels): the wheels made " in text
     assert '<a href="#story">What happened</a>: an update of Odometer.travelled is lost' in text
     assert 'data-task="ODOMETER.right_ti.2">writes Odometer.travelled</span>' in text
 
