@@ -6,8 +6,6 @@
 #include <string>
 #include <type_traits>
 
-#include <boost/utility/enable_if.hpp>
-
 #include "ros/message_forward.h"
 #include "ros/time.h"
 #include "roscfe/wire.h"

@@ -9,6 +9,8 @@
 #include <ostream>
 #include <stdexcept>
 
+#include <boost/utility/enable_if.hpp> // as in roscpp, where all headers bring it along
+
 #include "ros/duration.h"
 #include "ros/exception.h"
 #include "roscfe/refuse.h"
