@@ -74,6 +74,7 @@ ORDER = (
     "Fly a mission",
     "ROS",
     "Find races and faults",
+    "Test procedures",
     "Do a run again",
     "Look at a run",
     "Ground",

@@ -12,7 +12,7 @@ from tests.cli.parsers import whole
 
 SCREEN = 45  # lines
 WIDTH = 80
-MOST_COMMANDS = 30
+MOST_COMMANDS = 31
 ELSEWHERE = ("rosbag record", "rosbag play", "rosbag fix")  # they only name another command
 HELPS = {each.prog.removeprefix("cfepy").strip(): each for each in parsers_below(whole())}
 COMMANDS = {words: each for words, each in HELPS.items() if words and words not in ELSEWHERE}

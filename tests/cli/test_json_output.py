@@ -13,6 +13,7 @@ from tests.cli.parsers import options, parsers
 from tests.extra.c.trees.small_trees import write_tree
 
 DATA = Path(__file__).parents[1] / "data"
+EXAMPLES = Path(__file__).parents[2] / "examples"
 LAB = ["lab", "--for", "0.7"]
 LINES = ("tlm", "rostopic echo")  # an object a line
 COMMANDS: dict[str, list[str]] = {
@@ -20,6 +21,7 @@ COMMANDS: dict[str, list[str]] = {
     "sweep": ["sweep", *LAB, "--quiet", "--jobs", "1"],
     "board report": ["board", "report", *LAB],
     "explore": ["explore", *LAB, "--seeds", "1", "--jobs", "1", "--no-stuck"],
+    "procedures": ["procedures", "{examples}/procedures/lab_suite.py", "lab"],
     "graph --mids": ["graph", "--mids", *LAB],
     "build": ["build", "{tree}", "-o", "{made}"],
     "check": ["check", "lab"],
@@ -52,7 +54,7 @@ def test_nothing_else_is_on_standard_output(command: str, tmp_path: Path, capsys
     tree = tmp_path / "tree"
     if command == "build":
         write_tree(tree)
-    places = {"data": DATA, "ping": ping, "tree": tree, "made": tmp_path / "made"}
+    places = {"data": DATA, "examples": EXAMPLES, "ping": ping, "tree": tree, "made": tmp_path / "made"}
     main([word.format(**places) for word in COMMANDS[command]] + ["--json", "-"])
     out = capsys.readouterr().out
     for text in out.splitlines() if command in LINES else [out]:

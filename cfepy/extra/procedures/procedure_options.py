@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from cfepy.cli.options import add_ci_outputs, add_json, add_mission, add_run_options, seconds_of
+from cfepy.cli.parser import shared_group
 
 
 def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -14,11 +15,10 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
         help="fly test procedures in Python, written for OpenC3 COSMOS",
         examples=(
             "cfepy procedures suites lab",
-            "cfepy procedures suites lab --requirements requirements.yaml --html matrix.html",
+            "cfepy procedures suites lab --requirements ids.yaml --html matrix.html",
             "cfepy procedures noop.py lab --explore 20",
         ),
-        description="Fly the suites of a folder, or one script, against a mission in virtual time. Each suite has a "
-        "flight of its own.",
+        description="Fly the suites of a folder, or one script, against a mission in virtual time.",
         epilog="exit status: 0 all passed, 1 a test failed or is racy, 2 bad usage",
     )
     parser.add_argument("procedures", metavar="SUITE|SCRIPT", help="a file of procedures, or a folder with suites")
@@ -32,7 +32,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     outputs.add_argument("--baseline", metavar="FILE", help="report changes since the campaign of an earlier --json")
     outputs.add_argument("--journals", metavar="DIR", help="keep a journal of each suite with a failed test")
     outputs.add_argument("--show-output", action="store_true", help="print the output of passed tests, too")
-    add_ci_outputs(parser)
+    add_ci_outputs(shared_group(parser, "continuous integration"))
     parser.set_defaults(module="cfepy.extra.procedures.procedures_command")
 
 
@@ -41,14 +41,14 @@ def _delay_of(text: str) -> float:
 
 
 def _add_inputs(group: argparse._ArgumentGroup) -> None:
-    group.add_argument("--target", metavar="NAME", default="", help="name of the target (default: that of its folder)")
+    group.add_argument("--target", metavar="NAME", default="", help="name of the target (default: its folder's)")
     group.add_argument(
         "--variable",
         dest="variables",
-        metavar="NAME=VALUE",
+        metavar="NAME=X",
         action="append",
         default=[],
-        help="set a variable of ERB, such as '$size=64'; again for more",
+        help="set a variable of ERB, such as '$size=64'",
     )
     group.add_argument(
         "--definitions", metavar="DIR", action="append", default=[], help="read cmd_tlm of this target's folder, too"
@@ -60,22 +60,20 @@ def _add_inputs(group: argparse._ArgumentGroup) -> None:
         "--line-delay",
         type=_delay_of,
         default=0.1,
-        metavar="SECONDS",
-        help="pause before each line of a procedure (default: 0.1, as in COSMOS)",
+        metavar="S",
+        help="pause before each line (default: 0.1 s, as in COSMOS)",
     )
     group.add_argument(
         "--ground-seed",
         type=int,
         default=0,
         metavar="N",
-        help="let pauses of the ground station last up to 50 ms longer, by this seed (default: exact pauses)",
+        help="seed of longer pauses of the ground, up to 50 ms",
     )
     group.add_argument("--explore", type=int, metavar="N", help="fly under N schedules, and report racy tests")
-    group.add_argument(
-        "--bus", action="store_true", help="put commands on the bus and hear all telemetry, without CI_LAB and TO_LAB"
-    )
+    group.add_argument("--bus", action="store_true", help="command and hear the bus itself, not CI_LAB and TO_LAB")
     group.add_argument(
         "--computer",
-        metavar="HOST[:PORT[:PORT]]",
-        help="test a computer on the network, in real time; ports of CI_LAB and TO_LAB",
+        metavar="HOST",
+        help="test a computer in real time, HOST[:PORT[:PORT]]",
     )
