@@ -1,4 +1,7 @@
-"""`cfepy export cosmos MISSION -o FOLDER/`: the plugin folder, and a mission script that flies as a procedure."""
+"""`cfepy export cosmos MISSION -o FOLDER/`: the plugin folder, and a mission script that flies as a procedure.
+
+These are the steps of docs/how_to/procedures.md.
+"""
 
 from __future__ import annotations
 
