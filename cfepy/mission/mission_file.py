@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any
 from cfepy.config.platform import REAL_TIME, SCHEDULINGS
 from cfepy.config.versions import DEFAULT_RELEASE, RELEASES
 from cfepy.mission.cpp_nodes import CppNodesConfig, read_cpp_nodes
-from cfepy.mission.device_config import DeviceConfig, read_devices
 from cfepy.mission.epoch import read_epoch, refuse_both
 from cfepy.mission.limits import MissionLimits, read_limits
 from cfepy.mission.parameter_files import merged, read_files, read_tree
@@ -31,6 +30,7 @@ from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
 if TYPE_CHECKING:
+    from cfepy.mission.device_config import DeviceConfig
     from cfepy.mission.drawn_parameters import ParameterDistribution
 
 DEMANDS = ("invariants", "results", "deadlines", "inversions")
@@ -397,6 +397,12 @@ def _single(read: Callable[[Marked], Any]) -> Callable[[Marked, Mistakes], Any]:
     return lambda section, mistakes: mistakes.attempt(partial(read, section))
 
 
+def _read_devices(section: Marked, mistakes: Mistakes) -> Mapping[str, DeviceConfig]:
+    from cfepy.mission.device_config import read_devices  # few missions have devices
+
+    return read_devices(section, mistakes)
+
+
 _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "name": _single(Marked.text),
     "board": _single(Marked.text),
@@ -418,7 +424,7 @@ _READERS: Mapping[str, Callable[[Marked, Mistakes], Any]] = {
     "launch": read_launches,
     "sweep": read_sweep,
     "dictionary": read_dictionary,
-    "devices": read_devices,
+    "devices": _read_devices,
 }
 """The readers of the sections, which return the attributes of `MissionSections`, or None for an invalid section."""
 

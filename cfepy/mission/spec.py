@@ -13,7 +13,6 @@ from cfepy.es import NODE_SYMBOL, StartupEntry
 from cfepy.es import entries as read_entries
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.mission.cpp_nodes import CppNodesConfig
-from cfepy.mission.device_config import DeviceConfig
 from cfepy.mission.limits import MissionLimits
 from cfepy.nodes import CppNode, NodeConfig, RosConfig
 from cfepy.psp import BoardProfile
@@ -25,6 +24,7 @@ from cfepy.units import NS_PER_S, NS_PER_US
 UNIX_AT_CFE_EPOCH = 315_532_800  # 1980-01-01 in seconds since 1970-01-01
 
 if TYPE_CHECKING:
+    from cfepy.mission.device_config import DeviceConfig
     from cfepy.mission.drawn_parameters import ParameterDistribution
 
 
