@@ -24,7 +24,8 @@ class unique_lock
     unique_lock(unique_lock &&other) noexcept { swap(other); }
     unique_lock &operator=(unique_lock &&other) noexcept
     {
-        unique_lock(std::move(other)).swap(*this);
+        unique_lock taken(std::move(other));
+        swap(taken);
         return *this;
     }
     ~unique_lock()
