@@ -61,7 +61,7 @@ DICTIONARY = "dictionary"
 
 
 def foreign_declarations(spec: MissionSpec) -> Iterator[ForeignDeclarations]:
-    """Yield what each add-on reads of a mission.
+    """Yield the declarations that each add-on reads of a mission.
 
     A mission that has neither a dictionary nor a compiled application declares nothing outside Python, and loads no
     add-on.

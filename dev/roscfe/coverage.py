@@ -112,8 +112,8 @@ def measure(folder: Path, tests: list[str]) -> tuple[int, Coverage]:
 def read(folder: Path) -> Coverage:
     """Return the coverage that objects in a folder, and in its folders, have counted.
 
-    A line of a header or of a template counts once, however many objects have it. Its branches are those of the
-    instance with most of them.
+    A line of a header or of a template counts once, however many objects have it. Its branches are the branches
+    of the instance with most of them.
     """
     library, lines, branches = (
         str(shipped("roscfe").resolve()),
@@ -156,9 +156,7 @@ def _add(lines: Counter[tuple[str, int]], branches: dict[tuple[str, int], list[i
 def main(arguments: list[str]) -> int:
     """Print the coverage. Returns 1 if it is below `LEAST`, or a test fails."""
     parser = argparse.ArgumentParser(prog="python -m dev.roscfe.coverage", description=main.__doc__)
-    parser.add_argument(
-        "tests", nargs="*", default=TESTS, metavar="TEST", help="tests of pytest; those of TESTS by default"
-    )
+    parser.add_argument("tests", nargs="*", default=TESTS, metavar="TEST", help="tests of pytest (default: TESTS)")
     parser.add_argument("--files", action="store_true", help="print a row for each file")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="a new folder that keeps the objects")
     given = parser.parse_args(arguments)

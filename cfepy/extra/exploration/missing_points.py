@@ -1,4 +1,4 @@
-"""What an exploration without a failure leaves open: gaps between points, and files that two tasks use.
+"""The places that an exploration without a failure leaves open: gaps between points, and files of two tasks.
 
 A gap is a function that accesses a shared object twice with no scheduling point between. No schedule of an exploration
 at calls alone lets another task in there. One more run, of the default schedule, finds them. It watches accesses as the
@@ -26,7 +26,7 @@ MOST_TOLD = 5
 
 
 class Unseen(NamedTuple):
-    """What no schedule has tried, or what none has shown to be safe.
+    """The places that no schedule has tried.
 
     Attributes:
         gaps: functions that access shared objects twice with no point between; a line each.
@@ -38,7 +38,7 @@ class Unseen(NamedTuple):
 
 
 def unseen_by(trial: Trial, options: Schedule) -> Unseen:
-    """Fly the run once more. Returns what all schedules with these options leave open.
+    """Fly the run once more. Returns the places that all schedules with these options leave open.
 
     Args:
         trial: the trial.

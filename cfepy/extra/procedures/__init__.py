@@ -2,7 +2,7 @@
 
 Code that gives procedures the functions of `openc3.script` belongs here: names from definitions, commands, telemetry,
 waits, checks, suites, and the requirement matrix. It is written by COSMOS's documentation and depends on none of its
-packages. The central files are `flying_suites.py`, which flies suites, and `script_api.py`, the functions.
+packages. The central file is `cfepy/extra/procedures/flying_suites.py`, which flies suites.
 """
 
 from __future__ import annotations

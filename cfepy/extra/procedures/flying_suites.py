@@ -303,7 +303,7 @@ class FlyingSuite:
 
     @contextmanager
     def _captured(self) -> Iterator[None]:
-        """Keep what procedures print."""
+        """Keep the output of procedures."""
         printed = _Lines(self._lines.append)
         with contextlib.redirect_stdout(printed):
             yield

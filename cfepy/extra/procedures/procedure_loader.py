@@ -147,7 +147,7 @@ class Procedures:
                 sys.modules[name] = self._before[name]
 
     def _import(self, name: str, *given: Any, **options: Any) -> Any:
-        """Import a module for a procedure, whose module `time` is that of the mission."""
+        """Import a module for a procedure, whose module `time` has the mission's clock."""
         known = set(sys.modules)
         found = builtins.__import__(name, *given, **options)
         roots = tuple(f"{each}/" for each in self._folders)

@@ -1,7 +1,7 @@
-"""Requirements of a campaign: which test shows which requirement, and what became of it.
+"""Requirements of a campaign: which test shows which requirement, and with which result.
 
-The states are those of RequirementTracker in NASA's COSMOS plugin: U untested, P passed, F failed, I needs inspection,
-A needs analysis, IA needs both.
+The states are the states of RequirementTracker in NASA's COSMOS plugin: U untested, P passed, F failed, I needs
+inspection, A needs analysis, IA needs both.
 """
 
 from __future__ import annotations

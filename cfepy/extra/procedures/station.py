@@ -53,7 +53,7 @@ class Waited(NamedTuple):
 
 
 class Station(ABC):
-    """What a procedure requires of a connection to a flight computer.
+    """The connection of a procedure to a flight computer.
 
     Attributes:
         sent: number of commands sent by MsgId and function code.
@@ -135,7 +135,7 @@ class Station(ABC):
         return Waited(True, start, self.now - start)
 
     def begin_test(self) -> None:
-        """Begin a test; a failed wait tells whether its condition was true at any time since."""
+        """Begin a test; a failed wait reports whether its condition was true at any time since."""
         self._arrivals, self._at_start = [], dict(self._newest)
 
     def _missed(self, condition: Callable[[], bool]) -> tuple[float, float] | None:

@@ -50,7 +50,7 @@ class Alone:
         nodes: sources of the nodes to fly; they determine the needed parts of the library.
         target: the target computer.
         profile: the profile of the library and of the messages.
-        flags: further flags of the compiler and the linker, such as those of a sanitizer.
+        flags: further flags of the compiler and the linker, such as the flags of a sanitizer.
         own_flags: flags of the library's sources only.
     """
 
@@ -103,7 +103,7 @@ class Alone:
         Args:
             source: the node's main file.
             more: further sources.
-            entry: its entry point, of the application NODE; None for that of the probes.
+            entry: its entry point, of the application NODE; None for the probes' entry point.
         """
         main = self._folder / "main.h"
         main.write_text(main_header(True), encoding="utf-8")

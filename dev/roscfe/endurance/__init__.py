@@ -1,7 +1,7 @@
 """Three nodes in C++ that fly for long: topics, a service, parameters and transforms, once a second each.
 
 `python -m dev.roscfe.endurance --hours 24` flies them in one mission on cfepy, in the profile pool, and asks each for
-its housekeeping: no arena may grow after the first minutes, nothing may be lost, and the counters must be those of the
+its housekeeping: no arena may grow after the first minutes, nothing may be lost, and the counters must agree with the
 rates.
 """
 

@@ -140,7 +140,7 @@ def plan_of(folder: Path, **nodes: str) -> RunPlan:
 
 
 def explored(plan: RunPlan, seeds: int = 40) -> Report:
-    """Return what schedules of the policy random show."""
+    """Return the report of schedules of the policy random."""
     return Expedition(plan, seeds=seeds, policy="random", jobs=1).run()
 
 

@@ -47,7 +47,7 @@ class OpenDevice:
         name: its path.
         device: the device; None for an I2C bus, whose devices have addresses.
         bus: number of the I2C bus.
-        flags: those of open.
+        flags: the flags of open.
     """
 
     def __init__(self, name: str, device: Device | None, bus: int, flags: int) -> None:

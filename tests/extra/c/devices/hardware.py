@@ -44,7 +44,7 @@ class Inverter(Device):
 
 
 class Echo(Device):
-    """Gives back what it was written, once."""
+    """Gives back the bytes that it was written, once."""
 
     def __init__(self) -> None:
         self._kept = b""
