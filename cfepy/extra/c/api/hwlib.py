@@ -1,7 +1,7 @@
 """uart_*, i2c_*, spi_*, gpio_* and can_*: the calls of NOS3's hwlib, on the devices of the mission.
 
-A mission that brings hwlib itself as a library uses that one, on device files (`device_files`). Without a device the
-functions fail as hwlib does on Linux.
+A mission that brings hwlib itself as a library uses that one, on device files (`device_files`). Without a device,
+before it is initialized and after it is closed, the functions fail as on Linux with a descriptor that is not open.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ UART_OPEN, SPI_OPEN, GPIO_OPEN, CAN_UP = 12, 21, 9, 8
 UART_HANDLE, SPI_HANDLE, GPIO_HANDLE, SPI_MODE, I2C_IS_OPEN = 8, 8, 4, 20, 8
 I2C_OPEN, I2C_CLOSED = 0, 1
 SPI_ERR_FILE_OPEN, SPI_ERR_FILE_HANDLE, SPI_ERR_INVAL_MD, SPI_ERR_IOC_MSG, HIGHEST_MODE = -2, -4, -5, -12, 3
-GPIO_WRITE_ERR, GPIO_READ_ERR = -3, -4
+GPIO_READ_ERR = -4
 CAN_SOCK_OPEN_ERR, CAN_WRITE_ERR, CAN_READ_TIMEOUT_ERR = -6, -9, -11
 CAN_FRAME = Struct("<IB3x8s")
 """struct can_frame: identifier, length, data."""
@@ -41,9 +41,17 @@ class Hwlib:
 
     def __init__(self, c: CRuntime) -> None:
         self._c = c
+        self._buses: set[int] = set()  # numbers of the I2C buses that are open
 
-    def _named(self, info: int) -> Device | None:
-        """Return the device that the first member of a structure names."""
+    def _named(self, info: int, open_at: int | None = None) -> Device | None:
+        """Return the device that the first member of a structure names.
+
+        Args:
+            info: address of the structure.
+            open_at: offset of its member isOpen or isUp, without which there is no device; None while it is opened.
+        """
+        if open_at is not None and not self._c.memory.u8(info + open_at):
+            return None
         address = self._c.memory.u64(info)
         return self._c.devices.find(self._c.memory.text(address)) if address else None
 
@@ -62,17 +70,17 @@ class Hwlib:
         return SUCCESS if is_there else OS_ERR_FILE
 
     def uart_waiting(self, info: int) -> int:
-        device = self._named(info)
+        device = self._named(info, UART_OPEN)
         return 0 if device is None else device.waiting()
 
     def uart_flush(self, info: int) -> int:
-        device = self._named(info)
+        device = self._named(info, UART_OPEN)
         while device is not None and device.waiting():
             device.read(device.waiting())
         return SUCCESS
 
     def uart_read(self, info: int, buffer: int, count: int) -> int:
-        device = self._named(info)
+        device = self._named(info, UART_OPEN)
         if not buffer:
             return OS_ERR_FILE
         if device is None:
@@ -82,14 +90,14 @@ class Hwlib:
         return len(data)
 
     def uart_write(self, info: int, buffer: int, count: int) -> int:
-        device = self._named(info)
+        device = self._named(info, UART_OPEN)
         if device is None:
             return FAILED
         device.write(self._data(buffer, count))
         return count
 
     def uart_close(self, info: int) -> int:
-        is_there = self._named(info) is not None
+        is_there = self._named(info, UART_OPEN) is not None
         self._put(info + UART_OPEN, 0)
         return SUCCESS if is_there else OS_ERR_FILE
 
@@ -98,10 +106,13 @@ class Hwlib:
     def i2c_init(self, info: int) -> int:
         is_there = self._c.devices.has_bus(self._bus(info))
         self._put(info + I2C_IS_OPEN, I2C_OPEN if is_there else I2C_CLOSED)
+        if is_there:
+            self._buses.add(self._bus(info))
         return SUCCESS if is_there else OS_ERROR
 
     def i2c_transaction(self, info: int, address: int, sent: int, sent_count: int, received: int, count: int) -> int:
-        device = self._c.devices.i2c(self._bus(info), address)
+        bus = self._bus(info)
+        device = self._c.devices.i2c(bus, address) if bus in self._buses else None
         if device is None:
             return OS_ERROR
         if sent_count:
@@ -111,11 +122,13 @@ class Hwlib:
         return SUCCESS
 
     def i2c_several(self, info: int, argument: int) -> int:
-        done = i2c_messages(self._c.memory, self._c.devices, self._bus(info), argument)
+        bus = self._bus(info)
+        done = i2c_messages(self._c.memory, self._c.devices, bus, argument) if bus in self._buses else None
         return OS_ERROR if done is None else SUCCESS
 
     def i2c_close(self, info: int) -> int:
         self._put(info + I2C_IS_OPEN, I2C_CLOSED)
+        self._buses.discard(self._bus(info))
         return SUCCESS
 
     def _bus(self, info: int) -> int:
@@ -134,7 +147,7 @@ class Hwlib:
         return SUCCESS if self._c.memory.u8(info + SPI_MODE) <= HIGHEST_MODE else SPI_ERR_INVAL_MD
 
     def spi_transaction(self, info: int, sent: int, received: int, count: int) -> int:
-        device = self._named(info)
+        device = self._named(info, SPI_OPEN)
         if device is None:
             return SPI_ERR_IOC_MSG
         answer = device.transfer(self._data(sent, count) if sent else bytes(count))
@@ -143,16 +156,19 @@ class Hwlib:
         return SUCCESS
 
     def spi_close(self, info: int) -> int:
+        is_there = self._named(info, SPI_OPEN) is not None
         self._put(info + SPI_OPEN, 0)
-        return SUCCESS if self._named(info) is not None else SPI_ERR_FILE_HANDLE
+        return SUCCESS if is_there else SPI_ERR_FILE_HANDLE
 
     # -- pins ----------------------------------------------------------------------------------------------------------
 
-    def _pin(self, info: int) -> Device | None:
+    def _pin(self, info: int, is_open: bool = True) -> Device | None:
+        if is_open and not self._c.memory.u8(info + GPIO_OPEN):
+            return None
         return self._c.devices.find(f"gpio{self._c.memory.u32(info)}")
 
     def gpio_init(self, info: int) -> int:
-        is_there = self._pin(info) is not None
+        is_there = self._pin(info, is_open=False) is not None
         self._put(info + GPIO_OPEN, is_there)
         self._c.memory.put_u32(info + GPIO_HANDLE, 0 if is_there else FAILED)
         return SUCCESS if is_there else OS_ERR_FILE
@@ -168,7 +184,7 @@ class Hwlib:
     def gpio_write(self, info: int, value: int) -> int:
         device = self._pin(info)
         if device is None:
-            return GPIO_WRITE_ERR
+            return OS_ERR_FILE  # the file of a pin that is not exported does not exist
         device.write(bytes([value]))
         return SUCCESS
 
@@ -184,7 +200,7 @@ class Hwlib:
         return SUCCESS if is_there else CAN_SOCK_OPEN_ERR
 
     def can_write(self, info: int, identifier: int, buffer: int, count: int) -> int:
-        device = self._named(info)
+        device = self._named(info, CAN_UP)
         if device is None or count > CAN_BYTES:
             return CAN_WRITE_ERR
         device.write(CAN_FRAME.pack(identifier, count, self._data(buffer, count)))
@@ -208,8 +224,12 @@ class Hwlib:
         self._c.memory.poke(call.received, data[: min(count, call.room)])
         return SUCCESS
 
+    def can_close(self, info: int) -> int:
+        self._put(info + CAN_UP, 0)
+        return SUCCESS
+
     def _frame(self, info: int, wait_ns: int | None) -> bytes | None:
-        device = self._named(info)
+        device = self._named(info, CAN_UP)
         data = b"" if device is None else awaited(self._c, device, CAN_FRAME.size, wait_ns)
         return data if len(data) == CAN_FRAME.size else None
 
@@ -269,4 +289,4 @@ def declare(api: Declarations, c: CRuntime) -> None:
         lambda info, i, tx, n, rx, m, s, us: hwlib.can_exchange(info, CanCall(i, tx, n, rx, m, _wait(s, us))),
         FAILED,
     )
-    api.add("can_close_device", "P", lambda info: SUCCESS, FAILED)
+    api.add("can_close_device", "P", hwlib.can_close, FAILED)

@@ -55,12 +55,38 @@ static void Buses(void)
     Say("can late", can_nonblocking_read(&Can, &Frame, sizeof(Frame), 0, 100000), NULL, 0);
 }
 
+/* The devices are there, and the application has not opened them, or has closed them. */
+static void Closed(int IsAfter)
+{
+    uart_info_t Uart = {.deviceString = "/dev/ttyS1", .baud = 115200};
+    i2c_bus_info_t Bus = {.handle = 1};
+    spi_info_t Spi = {.deviceString = "/dev/spidev0.0", .spi_mode = 1};
+    gpio_info_t Pin = {.pin = 24};
+    can_info_t Can = {.handle = "can0"};
+    uint8 Data[4] = {1, 2, 3, 4};
+
+    if (IsAfter) {
+        uart_init_port(&Uart), spi_init_dev(&Spi), gpio_init(&Pin), can_init_dev(&Can);
+        uart_close_port(&Uart), i2c_master_close(&Bus), spi_close_device(&Spi), gpio_close(&Pin), can_close_device(&Can);
+    }
+    Say("closed uart", uart_write_port(&Uart, Data, 4), NULL, 0);
+    Say("closed uart", uart_read_port(&Uart, Data, 4), NULL, 0);
+    Say("closed i2c", i2c_write_transaction(&Bus, 0x1E, Data, 1, 10), NULL, 0);
+    Say("closed spi", spi_transaction(&Spi, Data, Data, 4, 0, 8, 0), NULL, 0);
+    Say("closed gpio", gpio_write(&Pin, 1), NULL, 0);
+    Say("closed gpio", gpio_read(&Pin, Data), NULL, 0);
+    Say("closed can", can_write(&Can, 0x123, Data, 2), NULL, 0);
+}
+
 void SENSOR_Main(void)
 {
     CFE_EVS_Register(NULL, 0, CFE_EVS_EventFilter_BINARY);
+    Closed(0);
     Serial("/dev/ttyS1");
     Serial("/dev/ttyS9");
     Buses();
+    OS_TaskDelay(2000); /* more than 32 events at once are squelched */
+    Closed(1);
     while (CFE_ES_RunLoop(NULL)) {
         OS_TaskDelay(1000);
     }
