@@ -16,15 +16,13 @@ from cfepy.extra.dictionaries.packets import DeclaredPacket, DeclaredTable, Sour
 from cfepy.extra.dictionaries.placed_items import header_value, payload_of, plain_or_bits
 from cfepy.extra.dictionaries.placed_types import MOST_BITS, MOST_CELLS
 from cfepy.msg import FieldPlace, Measurement, ValueNames
+from cfepy.reading.cosmos_lines import DERIVED, item_forms, kind_of_item, next_word, whole_number, words_of
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.reading.suggestions import did_you_mean
 from cfepy.status import UsageError
 
-_WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|\'((?:[^\'\\]|\\.)*)\'|(#.*)|(\S+)')
-_KINDS = {"UINT": "u", "INT": "i", "FLOAT": "f", "STRING": "char", "BLOCK": "block", "BOOL": "bool"}
 _ORDERS = {"BIG_ENDIAN": True, "LITTLE_ENDIAN": False}
-_ITEMS = ("ITEM", "PARAMETER")
 _IGNORED = (
     *("FORMAT_STRING", "META", "HAZARDOUS", "HIDDEN", "DISABLED", "ALLOW_SHORT", "ACCESSOR", "TEMPLATE", "OVERFLOW"),
     *("REQUIRED", "KEY", "VALIDATOR", "RESPONSE", "SCREEN", "RELATED_ITEM", "VIRTUAL", "RESTRICTED", "SUBPACKET"),
@@ -149,7 +147,7 @@ class _Reader:
     def _take(self, line: int, written: str) -> None:
         if "<%" in written:
             raise UsageError("Ruby between <% and %> is not executed; write the lines that it prints")
-        words = _words(written)
+        words = words_of(written)
         if not words:
             return
         keyword = words[0].upper()
@@ -170,9 +168,9 @@ class _Reader:
             self._inside(self._packet, keyword, words, line)
 
     def _inside(self, packet: _Packet, keyword: str, words: list[str], line: int) -> None:
-        parts = keyword.split("_")
-        if parts[-1] in _ITEMS and {*parts[:-1]} <= {"APPEND", "ID", "ARRAY"}:
-            packet.items.append(_item(packet, {*parts[:-1]}, words, line))
+        forms = item_forms(keyword)
+        if forms is not None:
+            packet.items.append(_item(packet, forms, words, line))
             if len(packet.items) > MOST_CELLS:
                 raise UsageError(f"the packet has more than {MOST_CELLS:,} items; split it")
         elif keyword in _DETAILS:
@@ -197,16 +195,6 @@ class _Reader:
             self._content.add_problem(UsageError(error.text, file=self._file, line=packet.line), self._file)
 
 
-def _words(written: str) -> list[str]:
-    """Return the words of a line without its comment."""
-    words = []
-    for match in _WORD.finditer(written):
-        if match[3] is not None:
-            break
-        words.append(next(part for part in (match[1], match[2], match[4]) if part is not None))
-    return words
-
-
 def _begun(keyword: str, words: list[str], line: int) -> _Packet:
     if len(words) < 4 or words[3].upper() not in _ORDERS:
         raise UsageError(f"{keyword} requires a target, a name, and BIG_ENDIAN or LITTLE_ENDIAN")
@@ -220,7 +208,7 @@ def _begun_table(words: list[str], line: int) -> _Packet:
     if kind not in ("KEY_VALUE", "ROW_COLUMN") or words[2].upper() not in _ORDERS:
         raise UsageError("TABLE requires a name, BIG_ENDIAN or LITTLE_ENDIAN, and KEY_VALUE or ROW_COLUMN with rows")
     rest = words[4:]
-    rows = _integer(_next(rest, "the number of rows")) if kind == "ROW_COLUMN" else 1
+    rows = whole_number(next_word(rest, "the number of rows")) if kind == "ROW_COLUMN" else 1
     if not 1 <= rows <= MOST_CELLS:
         raise UsageError(f"a table has 1 to {MOST_CELLS:,} rows, not {rows}")
     text = rest[0] if rest else ""
@@ -230,21 +218,19 @@ def _begun_table(words: list[str], line: int) -> _Packet:
 def _item(packet: _Packet, kinds: set[str], words: list[str], line: int) -> _Item:
     """Return an item from its line, and move the end of the packet."""
     rest = words[1:]
-    name = _next(rest, "a name")
-    start = packet.end if "APPEND" in kinds else _integer(_next(rest, "a bit offset"))
-    bits = _integer(_next(rest, "a number of bits"))
-    kind = _next(rest, "a type").upper()
-    if kind == "DERIVED":
+    name = next_word(rest, "a name")
+    start = packet.end if "APPEND" in kinds else whole_number(next_word(rest, "a bit offset"))
+    bits = whole_number(next_word(rest, "a number of bits"))
+    kind = kind_of_item(rest)
+    if kind == DERIVED:
         return _Item(name, "derived", 0, 0, 0, True, line)
-    if kind not in _KINDS:
-        raise UsageError(f"unknown type {kind}; expected {', '.join([*_KINDS, 'DERIVED'])}")
     count = 0
     if "ARRAY" in kinds:
-        whole = _integer(_next(rest, "the bits of the array"))
+        whole = whole_number(next_word(rest, "the bits of the array"))
         count = whole // bits if bits > 0 else 0
         if count < 1:
             raise UsageError(f"an array of {whole} bits cannot have items of {bits} bits; correct the numbers")
-    item = _Item(name, _KINDS[kind], start, bits, count, packet.big_endian, line, is_id="ID" in kinds)
+    item = _Item(name, kind, start, bits, count, packet.big_endian, line, is_id="ID" in kinds)
     _check_size(item)
     if "ARRAY" not in kinds:
         item.value = _value(item, packet.is_command, rest)
@@ -260,15 +246,15 @@ def _item(packet: _Packet, kinds: set[str], words: list[str], line: int) -> _Ite
 def _value(item: _Item, is_command: bool, rest: list[str]) -> int | None:
     """Return the value that a parameter or an ID item always has, or has unless the user gives another one."""
     if not is_command:
-        return _integer(_next(rest, "the value of the ID")) if item.is_id else None
+        return whole_number(next_word(rest, "the value of the ID")) if item.is_id else None
     if item.kind in ("char", "block"):
-        _next(rest, "a default value")
+        next_word(rest, "a default value")
         return None
-    _next(rest, "a lowest value")
-    _next(rest, "a highest value")
-    value = _next(rest, "a default value")
+    next_word(rest, "a lowest value")
+    next_word(rest, "a highest value")
+    value = next_word(rest, "a default value")
     try:
-        return _integer(value)
+        return whole_number(value)
     except UsageError:
         return None  # a floating-point number, or a name of a state
 
@@ -295,19 +281,6 @@ def _check_order(item: _Item) -> None:
         raise UsageError("a LITTLE_ENDIAN number that is not whole bytes is not supported; make it BIG_ENDIAN")
 
 
-def _next(rest: list[str], what: str) -> str:
-    if not rest:
-        raise UsageError(f"{what} is missing; add it")
-    return rest.pop(0)
-
-
-def _integer(word: str) -> int:
-    try:
-        return int(word, 0)
-    except ValueError:
-        raise UsageError(f"must be a whole number, not {word!r}") from None
-
-
 def _number(word: str) -> float:
     try:
         return float(word)
@@ -324,7 +297,7 @@ def _state(item: _Item, words: list[str]) -> None:
     if item.kind not in ("u", "i"):
         raise UsageError("STATE requires a UINT or an INT")
     if words[2].upper() != "ANY":
-        item.names[words[1]] = _integer(words[2])
+        item.names[words[1]] = whole_number(words[2])
 
 
 def _units(item: _Item, words: list[str]) -> None:

@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from cfepy.extra.procedures.flying_suites import (
         CampaignResult,
         FlyingSuite,
+        ProcedureResult,
         Settings,
-        TestResult,
         fly_procedures,
     )
     from cfepy.extra.procedures.procedure_loader import find_procedures, suites_in
@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 __all__ = [
     "CampaignResult",
     "FlyingSuite",
+    "ProcedureResult",
     "Requirements",
     "Settings",
-    "TestResult",
     "Verdicts",
     "explore_procedures",
     "find_procedures",
@@ -45,7 +45,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "CampaignResult",
                 "FlyingSuite",
                 "Settings",
-                "TestResult",
+                "ProcedureResult",
                 "fly_procedures",
             ),
             ".procedure_loader": ("find_procedures", "suites_in"),

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 from cfepy.extra.procedures.packet_items import Item, PacketDefinition
+from cfepy.reading.cosmos_lines import DERIVED, item_forms, kind_of_item, next_word, whole_number, words_of
 from cfepy.reading.input_files import read_limited
 from cfepy.reading.input_limits import LINE_FILE_BYTES
 from cfepy.status import UsageError
 
-_WORD = re.compile(r'"((?:[^"\\]|\\.)*)"|\'((?:[^\'\\]|\\.)*)\'|(#.*)|(\S+)')
-_KINDS = {"UINT": "u", "INT": "i", "FLOAT": "f", "STRING": "char", "BLOCK": "block", "BOOL": "bool"}
 _LIMIT = re.compile(r"(MIN|MAX)(?:_(U?INT|FLOAT)(\d+))?")
 _MID, _CODE = 0, 48
 _ASSIGNED = re.compile(r"^\s*(\$\w+)\s*=\s*(true|false|-?\d+|0x[0-9A-Fa-f]+|\"[^\"\n]*\"|'[^'\n]*')\s*(?:#.*)?$", re.M)
@@ -39,7 +38,7 @@ def read_definitions(text: str, file: Path, note: Callable[[str], object]) -> li
     """
     reader = _Reader(file, note)
     for line, written in enumerate(text.replace("&\n", "").splitlines(), 1):
-        words = _words(written)
+        words = words_of(written)
         try:
             if words:
                 reader.take(words[0].upper(), words[1:], line)
@@ -47,15 +46,6 @@ def read_definitions(text: str, file: Path, note: Callable[[str], object]) -> li
             raise UsageError(error.text, file=file, line=line) from None
     reader.finish()
     return reader.packets
-
-
-def _words(written: str) -> list[str]:
-    words = []
-    for match in _WORD.finditer(written):
-        if match[3] is not None:
-            break
-        words.append(next(part for part in (match[1], match[2], match[4]) if part is not None))
-    return words
 
 
 class _Reader:
@@ -107,9 +97,9 @@ class _Reader:
         self.packets.append(packet)
 
     def _inside(self, packet: PacketDefinition, keyword: str, words: list[str]) -> None:
-        parts = keyword.split("_")
-        if parts[-1] in ("ITEM", "PARAMETER") and {*parts[:-1]} <= {"APPEND", "ID", "ARRAY"}:
-            self._item = self._read_item({*parts[:-1]}, words, packet.is_command)
+        forms = item_forms(keyword)
+        if forms is not None:
+            self._item = self._read_item(forms, words, packet.is_command)
             if self._item is not None:
                 packet.items[self._item.name] = self._item
         elif keyword == "HAZARDOUS":
@@ -123,24 +113,22 @@ class _Reader:
 
     def _read_item(self, kinds: set[str], words: list[str], is_command: bool) -> Item | None:
         rest = list(words)
-        name = _next(rest, "a name").upper()
-        start = self._end if "APPEND" in kinds else _integer(_next(rest, "a bit offset"))
-        bits = _integer(_next(rest, "a number of bits"))
-        kind = _next(rest, "a type").upper()
-        if kind == "DERIVED":
+        name = next_word(rest, "a name").upper()
+        start = self._end if "APPEND" in kinds else whole_number(next_word(rest, "a bit offset"))
+        bits = whole_number(next_word(rest, "a number of bits"))
+        kind = kind_of_item(rest)
+        if kind == DERIVED:
             return None
-        if kind not in _KINDS:
-            raise UsageError(f"unknown type {kind}; expected {', '.join([*_KINDS, 'DERIVED'])}")
-        item = Item(name, _KINDS[kind], start, bits, self._big_endian)
+        item = Item(name, kind, start, bits, self._big_endian)
         if bits < 0 or start < 0:
             raise UsageError("a place or size from the end of the packet is not supported; give it from the start")
         if "ARRAY" in kinds:
-            item.count = max(_integer(_next(rest, "the bits of the array")) // max(bits, 1), 1)
+            item.count = max(whole_number(next_word(rest, "the bits of the array")) // max(bits, 1), 1)
             item.default = []
         elif is_command:
             self._read_range(item, rest)
         if "ID" in kinds or name in ("CCSDS_STREAMID", "CCSDS_FC"):
-            value = item.default if is_command else _integer(_next(rest, "the value of the ID"))
+            value = item.default if is_command else whole_number(next_word(rest, "the value of the ID"))
             self._ids[item.start] = value
             item.default = value
         if rest:
@@ -152,16 +140,16 @@ class _Reader:
 
     def _read_range(self, item: Item, rest: list[str]) -> None:
         if item.kind in ("char", "block"):
-            item.default = _next(rest, "a default value")
+            item.default = next_word(rest, "a default value")
             return
-        low, high = _next(rest, "a lowest value"), _next(rest, "a highest value")
+        low, high = next_word(rest, "a lowest value"), next_word(rest, "a highest value")
         item.low, item.high = _limit(low, item), _limit(high, item)
-        item.default = _default(_next(rest, "a default value"))
+        item.default = _default(next_word(rest, "a default value"))
 
 
 def _default(word: str) -> Any:
     try:
-        return _integer(word)
+        return whole_number(word)
     except UsageError:
         try:
             return float(word)
@@ -185,7 +173,7 @@ def _limit(word: str, item: Item) -> float:
 def _detail(item: Item, keyword: str, words: list[str]) -> None:
     if keyword == "STATE" and len(words) > 1:
         if words[1].upper() != "ANY":
-            item.states[words[0].upper()] = _integer(words[1])
+            item.states[words[0].upper()] = whole_number(words[1])
         if len(words) > 2 and words[2].upper() == "HAZARDOUS":
             item.hazardous[words[0].upper()] = words[3] if len(words) > 3 else "it is hazardous"
     elif keyword == "REQUIRED":
@@ -207,19 +195,6 @@ def _detail(item: Item, keyword: str, words: list[str]) -> None:
         item.low = float(words[0])
     elif keyword == "MAXIMUM_VALUE" and words:
         item.high = float(words[0])
-
-
-def _next(rest: list[str], what: str) -> str:
-    if not rest:
-        raise UsageError(f"{what} is missing; add it")
-    return rest.pop(0)
-
-
-def _integer(word: str) -> int:
-    try:
-        return int(word, 0)
-    except ValueError:
-        raise UsageError(f"must be a whole number, not {word!r}") from None
 
 
 def ruby_variables(folders: Iterable[Path]) -> dict[str, Any]:

@@ -6,14 +6,13 @@ else is refused with its file and line, because cfepy does not run Ruby.
 
 from __future__ import annotations
 
-import ast
-import operator
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.status import UsageError
+from rospy_shim.types.expression import ExpressionError, value_of
 
 _TAG = re.compile(r"<%(=|#|-)?(.*?)-?%>(\n?)", re.DOTALL)
 _IF = re.compile(r"(if|elsif|unless)\s+(.+?)(?:\s+then)?$", re.DOTALL)
@@ -23,19 +22,10 @@ _REQUIRE = re.compile(r"require(_relative)?\b")
 _ASSIGN = re.compile(r"(\$?\w+)\s*=(?!=)\s*(.+)$", re.DOTALL)
 _GLOBAL = "ruby_global_"
 _MOST_ROUNDS = 100_000
-_OPERATORS: dict[type[ast.AST], Callable[[Any, Any], Any]] = {
-    ast.Add: operator.add,
-    ast.Sub: operator.sub,
-    ast.Mult: operator.mul,
-    ast.Div: operator.floordiv,
-    ast.Mod: operator.mod,
-    ast.Eq: operator.eq,
-    ast.NotEq: operator.ne,
-    ast.Lt: operator.lt,
-    ast.LtE: operator.le,
-    ast.Gt: operator.gt,
-    ast.GtE: operator.ge,
-}
+_RUBY = re.compile(r"\"[^\"]*\"|'[^']*'|&&|\|\||/|\$\w+")
+_OPERATORS = {"&&": " and ", "||": " or ", "/": "//"}  # whole numbers are divided to whole numbers
+_LITERALS: Mapping[str, Any] = {"true": True, "false": False, "nil": None}
+_UNBOUND = re.compile(r"name '(?P<name>\w+)' is not defined")
 
 Helper = Callable[..., str]
 
@@ -167,45 +157,43 @@ class Template:
         return end + 1
 
     def _value(self, ruby: str, names: Mapping[str, Any], file: Path, line: int) -> Any:
-        text = re.sub(r"\$(\w+)", _GLOBAL + r"\1", ruby.strip())
-        text = text.replace("&&", " and ").replace("||", " or ")
+        """Return the value of an expression that means the same in Ruby and in Python."""
+        shown = f"<% {ruby.strip()} %>"
+        if "#{" in ruby or "**" in ruby:
+            raise UsageError(f"Ruby is not executed: {shown}", file=file, line=line)
+        text = _RUBY.sub(_in_python, ruby.strip())
+        known = {_GLOBAL + name[1:] if name.startswith("$") else name: value for name, value in names.items()}
+        for name in re.findall(r"(\w+)\s*\(", text):
+            helper = self._helper(name)
+            if helper is not None:
+                known[name] = helper
         try:
-            return self._evaluated(ast.parse(text, mode="eval").body, names)
-        except (SyntaxError, _Unsupported):
-            raise UsageError(f"Ruby is not executed: <% {ruby.strip()} %>", file=file, line=line) from None
+            return value_of(text, {**known, **_LITERALS})
+        except (SyntaxError, ExpressionError):
+            raise UsageError(f"Ruby is not executed: {shown}", file=file, line=line) from None
         except UsageError as error:
             raise UsageError(error.text, file=file, line=line) from None
-        except (TypeError, ZeroDivisionError) as error:
-            raise UsageError(f"<% {ruby.strip()} %>: {error}", file=file, line=line) from None
+        except NameError as error:
+            what = _without_value(error, text) or f"Ruby is not executed: {shown}"
+            raise UsageError(what, file=file, line=line) from None
+        except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
+            raise UsageError(f"{shown}: {error}", file=file, line=line) from None
 
-    def _evaluated(self, node: ast.expr, names: Mapping[str, Any]) -> Any:
-        match node:
-            case ast.Constant():
-                return node.value
-            case ast.Name():
-                return self._variable(node.id, names)
-            case ast.BinOp() if type(node.op) in _OPERATORS:
-                left, right = self._evaluated(node.left, names), self._evaluated(node.right, names)
-                return _OPERATORS[type(node.op)](left, right)
-            case ast.Compare() if len(node.ops) == 1 and type(node.ops[0]) in _OPERATORS:
-                left, right = self._evaluated(node.left, names), self._evaluated(node.comparators[0], names)
-                return _OPERATORS[type(node.ops[0])](left, right)
-            case ast.BoolOp():
-                values = [self._evaluated(each, names) for each in node.values]
-                return all(values) if isinstance(node.op, ast.And) else any(values)
-            case ast.Call(func=ast.Name(id=name)) if not node.keywords:
-                helper = self._helper(name)
-                if helper is not None:
-                    return helper(*(self._evaluated(each, names) for each in node.args))
-        raise _Unsupported
 
-    def _variable(self, name: str, names: Mapping[str, Any]) -> Any:
-        if name in ("true", "false", "nil"):
-            return {"true": True, "false": False, "nil": None}[name]
-        known = "$" + name.removeprefix(_GLOBAL) if name.startswith(_GLOBAL) else name
-        if known not in names:
-            raise UsageError(f"the variable {known} has no value; set it with --variable '{known}=VALUE'")
-        return names[known]
+def _in_python(found: re.Match[str]) -> str:
+    """Return an operator or a global variable of Ruby as Python has it; texts stay."""
+    word = found[0]
+    return _GLOBAL + word[1:] if word.startswith("$") else _OPERATORS.get(word, word)
+
+
+def _without_value(error: NameError, text: str) -> str:
+    """Return the error of an unknown variable; empty if the name is of a class or a function of Ruby."""
+    match = _UNBOUND.search(str(error))
+    name = "" if match is None else match["name"]
+    if not name or re.search(rf"\b{name}\s*[.(]", text):
+        return ""
+    known = f"${name.removeprefix(_GLOBAL)}" if name.startswith(_GLOBAL) else name
+    return f"the variable {known} has no value; set it with --variable '{known}=VALUE'"
 
 
 def _printed(value: Any) -> str:
@@ -213,10 +201,6 @@ def _printed(value: Any) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     return "" if value is None else str(value)
-
-
-class _Unsupported(Exception):
-    """An expression beyond the supported part of Ruby."""
 
 
 def _whole(value: Any, file: Path, line: int) -> int:

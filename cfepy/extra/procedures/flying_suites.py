@@ -70,8 +70,8 @@ class Settings:
 
 
 @dataclass(slots=True)
-class TestResult:
-    """The end of a test.
+class ProcedureResult:
+    """The result of a test, a setup or a teardown.
 
     Attributes:
         suite: name of the suite, or of the script's file.
@@ -103,29 +103,26 @@ class TestResult:
 
     @property
     def full_name(self) -> str:
-        """ProcedureSuite, group and method."""
+        """The names of the suite, the group and the method."""
         return f"{self.suite}::{self.name}"
-
-
-TestResult.__test__ = False  # type: ignore[attr-defined]  # pytest collects classes whose names begin with Test
 
 
 @dataclass(slots=True)
 class CampaignResult:
     """The results of all suites, the requirements, and remarks."""
 
-    tests: list[TestResult] = field(default_factory=list)
+    tests: list[ProcedureResult] = field(default_factory=list)
     requirements: Requirements = field(default_factory=Requirements)
     notes: list[str] = field(default_factory=list)
 
     @property
-    def failed(self) -> list[TestResult]:
+    def failed(self) -> list[ProcedureResult]:
         """The tests, setups and teardowns that failed."""
         return [each for each in self.tests if each.verdict == FAIL]
 
 
 def fly_procedures(
-    files: Sequence[Path], settings: Settings, note: Callable[[TestResult], object] = lambda result: None
+    files: Sequence[Path], settings: Settings, note: Callable[[ProcedureResult], object] = lambda result: None
 ) -> CampaignResult:
     """Fly files of procedures, each suite in a mission of its own.
 
@@ -309,7 +306,7 @@ class FlyingSuite:
             yield
         printed.end()
 
-    def run(self, step: ProcedureStep) -> TestResult | None:
+    def run(self, step: ProcedureStep) -> ProcedureResult | None:
         """Run a method; returns None for a setup or teardown that passed.
 
         Args:
@@ -320,7 +317,7 @@ class FlyingSuite:
         """
         owner = getattr(step.call, "__self__", None)
         ids = marked(getattr(step.call, "__func__", step.call), type(owner)) if owner is not None else ()
-        result = TestResult(step.suite, step.name, requirements=ids, is_test=step.is_test)
+        result = ProcedureResult(step.suite, step.name, requirements=ids, is_test=step.is_test)
         self._requirements.current = result.full_name
         self._lines.clear()
         first = 0 if self.flight is None else len(self.flight.events)

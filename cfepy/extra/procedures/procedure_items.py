@@ -19,8 +19,8 @@ from cfepy.extra.procedures.flying_suites import (
     SKIP,
     CampaignResult,
     FlyingSuite,
+    ProcedureResult,
     Settings,
-    TestResult,
 )
 from cfepy.extra.procedures.matrix import matrix_csv, matrix_page
 from cfepy.extra.procedures.procedure_loader import find_procedures, suites_in
@@ -57,7 +57,7 @@ class ProcedureTests:
         self._folders = [Path(each).resolve() for each in config.getoption("--procedures")]
         self._files = {file for folder in self._folders for file in find_procedures(folder)}
         self.requirements = Requirements(_path(config.getoption("--requirements")))
-        self._results: list[TestResult] = []
+        self._results: list[ProcedureResult] = []
         mission = config.getoption("--mission")
         stall = config.getoption("--cfepy-stall")
         plan = RunPlan(
@@ -107,7 +107,7 @@ class ProcedureTests:
                     self.requirements.set_status([key], state, message)
         verdict = SKIP if report.skipped else PASS if report.passed else FAIL
         suite, _, test = report.nodeid.partition("::")
-        self._results.append(TestResult(suite, test, verdict, str(report.longrepr or "").split("\n", 1)[0]))
+        self._results.append(ProcedureResult(suite, test, verdict, str(report.longrepr or "").split("\n", 1)[0]))
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write the requirement matrix; with xdist, only the controlling process does."""
@@ -178,12 +178,12 @@ class SuiteNode(pytest.Collector):
             if each is not None:
                 raise ProcedureFailure(_text(each, flying))
 
-    def run(self, name: str) -> TestResult:
+    def run(self, name: str) -> ProcedureResult:
         """Run a test, with the setups and teardowns that come before it; a failed one is the result."""
         flying = self.flying
         assert flying is not None
         step = next(each for each in flying.steps if each.name == name)
-        before: list[TestResult | None] = []
+        before: list[ProcedureResult | None] = []
         if not self._begun:
             before.append(self._run(flying, "", SETUP))
             self._begun.append("")
@@ -198,10 +198,10 @@ class SuiteNode(pytest.Collector):
         assert result is not None
         return result
 
-    def _end_group(self, flying: FlyingSuite, group: str) -> TestResult | None:
+    def _end_group(self, flying: FlyingSuite, group: str) -> ProcedureResult | None:
         return self._run(flying, group, TEARDOWN) if group else None
 
-    def _run(self, flying: FlyingSuite, group: str, script: str) -> TestResult | None:
+    def _run(self, flying: FlyingSuite, group: str, script: str) -> ProcedureResult | None:
         found: list[ProcedureStep] = [each for each in flying.steps if each.group == group and each.script == script]
         return flying.run(found[0]) if found else None
 
@@ -278,7 +278,7 @@ class ProcedureItem(pytest.Item):
         return self.path, None, f"{self.suite.name}::{self.name}"
 
 
-def _text(result: TestResult, flying: FlyingSuite) -> str:
+def _text(result: ProcedureResult, flying: FlyingSuite) -> str:
     """Return message, place, last events, console and the command that repeats the flight."""
     lines = [result.message]
     if not result.is_test:

@@ -14,8 +14,8 @@ from cfepy.extra.procedures.flying_suites import (
     FAIL,
     PASS,
     CampaignResult,
+    ProcedureResult,
     Settings,
-    TestResult,
     fly_procedures,
 )
 from cfepy.extra.procedures.matrix import campaign_data, changes_since, matrix_csv, matrix_page, summary_line
@@ -30,6 +30,7 @@ from cfepy.writing.ci_findings import CiFinding, FindingPlace
 from cfepy.writing.junit import FAILURE, SKIPPED, Case, Problem, Suite
 
 _LAST_EVENTS = 8
+_HIGHEST_PORT = 65_535
 RULE = {"failed-test": "a test of a procedure failed"}
 
 
@@ -90,20 +91,21 @@ def variable_of(text: str) -> tuple[str, Any]:
 
 
 def place_of(text: str) -> tuple[str, int, int]:
-    """Return host, command port and telemetry port of HOST:PORT:PORT.
+    """Return host, command port and telemetry port of HOST[:PORT[:PORT]].
 
     Raises:
-        UsageError: if a port is not a number.
+        UsageError: there are more ports, or one is not a number from 1 to 65,535.
     """
-    host, *ports = text.split(":")
-    try:
-        numbers = [int(each) for each in ports]
-    except ValueError:
-        raise UsageError(f"expected HOST:PORT:PORT, not {text!r}", field="--computer") from None
-    return host, *(numbers + [CI_PORT, TO_PORT][len(numbers) :])[:2]  # type: ignore[return-value]
+    host, *words = text.split(":")
+    ports = [int(each) if each.isdecimal() else 0 for each in words]
+    if not host or len(ports) > 2 or not all(0 < each <= _HIGHEST_PORT for each in ports):
+        expected = f"HOST[:PORT[:PORT]] with ports from 1 to {_HIGHEST_PORT:,}"
+        raise UsageError(f"expected {expected}, not {text!r}", field="--computer")
+    command_port, telemetry_port = (*ports, *(CI_PORT, TO_PORT)[len(ports) :])
+    return host, command_port, telemetry_port
 
 
-def _print_result(each: TestResult, verbose: bool) -> None:
+def _print_result(each: ProcedureResult, verbose: bool) -> None:
     print(f"{each.verdict} {each.full_name}  {each.seconds:.3f} s", flush=True)
     if each.verdict != PASS:
         print(f"  {each.place}{': ' if each.place else ''}{each.message}")
@@ -152,12 +154,12 @@ def junit_suite(result: CampaignResult, mission: str) -> Suite:
     return Suite(f"cfepy procedures {mission}", cases, states)
 
 
-def _place(each: TestResult) -> FindingPlace | None:
+def _place(each: ProcedureResult) -> FindingPlace | None:
     file, _, line = each.place.rpartition(":")
     return FindingPlace(Path(file), int(line)) if file else None
 
 
-def _places(each: TestResult) -> tuple[FindingPlace, ...]:
+def _places(each: ProcedureResult) -> tuple[FindingPlace, ...]:
     place = _place(each)
     return () if place is None else (place,)
 

@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from cfepy.extra.procedures.flying_suites import FAIL, PASS, Settings, TestResult, fly_procedures, with_schedule
+from cfepy.extra.procedures.flying_suites import FAIL, PASS, ProcedureResult, Settings, fly_procedures, with_schedule
 from cfepy.schedules import Schedule
 
 
@@ -29,7 +29,7 @@ class Verdicts:
     name: str
     passed: int = 0
     failed: int = 0
-    first: TestResult | None = None
+    first: ProcedureResult | None = None
     schedule: str = ""
     ground_seed: int = 0
     differs: str = ""

@@ -37,6 +37,10 @@ def test_template_has_conditions_and_loops(size: int, text: str) -> None:
     assert Template({"$size": size, "name": "n"}).render(TEMPLATE, FILE) == text
 
 
+def test_template_divides_whole_numbers_and_keeps_texts() -> None:
+    assert Template({"$size": 7}).render("<%= $size / 2 %> <%= 'a/b && c' %>", FILE) == "3 a/b && c"
+
+
 def test_template_prints_values_as_ruby_does() -> None:
     variables = {"$yes": True, "$none": None, "text": "a"}
     assert Template(variables).render("<%= $yes %> <%= $none %>|<%= text %> <%= 2 * 3 %>", FILE) == "true |a 6"
@@ -50,6 +54,9 @@ def test_template_prints_values_as_ruby_does() -> None:
         ("<% if 1 == 1 %>\na", "missing <% end %>", 1),
         ("a\n<% end %>", "unexpected <% end %>", 2),
         ("<%= 1 / 0 %>", "division", 1),
+        ('<%= "a#{1}" %>', "Ruby is not executed", 1),
+        ("<%= 2 ** 3 %>", "Ruby is not executed", 1),
+        ("<%= ('a' * 1000000) * 1000000 %>", "Ruby is not executed", 1),
         ("<% 200000.times do |i| %><% end %>", "at most 100,000 rounds", 1),
     ],
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -14,8 +15,7 @@ from tests.extra.procedures.demo import PLUGIN, SUITE, fly, settings
 @pytest.fixture(scope="module", autouse=True)
 def loaded(tmp_path_factory: pytest.TempPathFactory) -> None:
     """Load every module that a flight needs, because pytester unloads those that a suite imports."""
-    import cfepy.extra.procedures.procedure_items  # noqa: F401
-
+    import_module("cfepy.extra.procedures.procedure_items")
     fly(PLUGIN, tests=("test_noop",), journals=tmp_path_factory.mktemp("journals"))
     explore_procedures([SUITE], settings(tests=("test_noop",)), 2)
 

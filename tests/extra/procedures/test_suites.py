@@ -8,6 +8,8 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.extra.procedures import CampaignResult, explore_procedures
+from cfepy.extra.procedures.procedures_command import place_of
+from cfepy.status import UsageError
 from tests.extra.procedures.demo import PLUGIN, SUITE, fly, settings, verdicts
 
 
@@ -67,7 +69,8 @@ def test_command_writes_matrix_json_and_junit(tmp_path: Path, capsys: pytest.Cap
 def test_test_is_racy_if_its_verdict_depends_on_the_schedule(tmp_path: Path) -> None:
     file = tmp_path / "racy.py"
     file.write_text(
-        "wait_check_packet('LAB', 'CFE_ES_HK', 1, 10)\nwait(3.8)\nwait_check('LAB CFE_ES_HK RECEIVED_COUNT == 1', 1)\n",
+        "wait_check_packet('LAB', 'CFE_ES_HK', 1, 10)\nwait(0.78)\n"
+        "wait_check('LAB CFE_ES_HK RECEIVED_COUNT == 1', 0.2)\n",
         encoding="utf-8",
     )
     notes: list[str] = []
@@ -85,3 +88,21 @@ def test_folder_without_a_suite_is_refused(tmp_path: Path, capsys: pytest.Captur
 
 def test_folder_finds_its_suites() -> None:
     assert verdicts(fly(PLUGIN, tests=("test_noop",))) == [("es_group::test_noop", "PASS")]
+
+
+@pytest.mark.parametrize(
+    ("text", "place"),
+    [
+        ("ground", ("ground", 1234, 1235)),
+        ("10.0.0.1:2000", ("10.0.0.1", 2000, 1235)),
+        ("10.0.0.1:2000:2001", ("10.0.0.1", 2000, 2001)),
+    ],
+)
+def test_computer_has_a_host_and_two_ports(text: str, place: tuple[str, int, int]) -> None:
+    assert place_of(text) == place
+
+
+@pytest.mark.parametrize("text", ["h:1:2:3", "h:0", "h:65536", "h:x", "h:-1", ":1"])
+def test_wrong_computer_is_reported(text: str) -> None:
+    with pytest.raises(UsageError, match="--computer: expected HOST"):
+        place_of(text)
