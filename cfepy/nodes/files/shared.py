@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 _PATHS = (str, bytes, os.PathLike)
 _IN_MEMORY = (":memory:", "")
 _BUSY_S = 0.001  # from one look at a database that is locked to the next
+_LOCKED = "database is locked"  # SQLite's text for a lock for which its busy handler waits
 _LOOKING = ("SELECT", "PRAGMA", "EXPLAI")
+_ENDING = ("COMMIT", "END", "ROLLBA")
 _ARRAY_READERS = ("fromfile", "fromregex", "genfromtxt", "load", "loadtxt")
 _ARRAY_SUFFIXES = {"save": ".npy", "savez": ".npz", "savez_compressed": ".npz", "savetxt": ""}
 
@@ -30,8 +32,9 @@ def codecs_module(universe: Universe) -> ModuleType:
 def sqlite3_module(universe: Universe) -> ModuleType:
     """`sqlite3`: its databases are files of the run; a host database is copied when it is opened.
 
-    A connection waits in virtual time for a lock that another connection has. Other tasks may run before a statement
-    while schedules are explored.
+    A connection waits in virtual time for a lock that another connection has. As in SQLite, a transaction that has read
+    does not wait to write, because two of them would wait for each other. Other tasks may run before a statement while
+    schedules are explored.
     """
     import sqlite3
 
@@ -42,29 +45,32 @@ def sqlite3_module(universe: Universe) -> ModuleType:
         return database if plain in _IN_MEMORY else universe.claimed(plain)
 
     def uri_place(uri: str) -> str:
-        head, _, query = uri.removeprefix("file:").partition("?")
-        if not uri.startswith("file:") or head in _IN_MEMORY or "mode=memory" in query:
+        path, query = _path_in(uri), uri.partition("?")[2]
+        if path in _IN_MEMORY or not uri.startswith("file:"):
             return uri
-        path = unquote(head if not head.startswith("//") else "/" + head[2:].partition("/")[2])
         reads = "mode=ro" in query or "immutable=1" in query
         where = universe.resolve(path) if reads else universe.claimed(path)
         return f"file:{quote(str(where))}{'?' if query else ''}{query}"
 
-    def patient(connection: Any, action: Callable[[], Any], statement: Any = "") -> Any:
+    def patient(connection: Any, action: Callable[[], Any], statement: Any = "COMMIT") -> Any:
         """Execute a statement, as soon as no other connection has a lock against it."""
+        word = statement.lstrip()[:6].upper() if isinstance(statement, str) else ""
         if points is not None and connection.path in _IN_MEMORY:
             points.pause()
         elif points is not None:
-            is_read = isinstance(statement, str) and statement.lstrip()[:6].upper() in _LOOKING
-            points.access(universe.absolute(connection.path), not is_read)
+            points.access(universe.absolute(connection.path), word not in _LOOKING)
+        waits = not connection.has_read or word in _ENDING
         end_ns = universe.kernel.now + round(connection.patience * 1e9)
         while True:
             try:
-                return action()
+                done = action()
             except sqlite3.OperationalError as error:
-                if "locked" not in str(error) or universe.kernel.now >= end_ns:
+                if str(error) != _LOCKED or not waits or universe.kernel.now >= end_ns:
                     raise
                 universe.clock.wait(_BUSY_S)
+            else:
+                connection.has_read = connection.in_transaction and (connection.has_read or word in _LOOKING)
+                return done
 
     class Cursor(sqlite3.Cursor):
         __doc__ = sqlite3.Cursor.__doc__
@@ -83,8 +89,9 @@ def sqlite3_module(universe: Universe) -> ModuleType:
 
         def __init__(self, database: Any, timeout: float = 5.0, *args: Any, **options: Any) -> None:
             is_uri = options.get("uri", False) and isinstance(database, str)
-            self.path = os.fsdecode(database)
+            self.path = _path_in(database) if is_uri else os.fsdecode(database)
             self.patience = timeout
+            self.has_read = False  # in the transaction that is open
             super().__init__(uri_place(database) if is_uri else place(database), 0.0, *args, **options)
 
         def cursor(self, factory: Any = Cursor) -> Any:
@@ -119,6 +126,14 @@ def sqlite3_module(universe: Universe) -> ModuleType:
         return sqlite3.connect(database, *args, **options)
 
     return proxy(sqlite3, connect=connect, Connection=Connection, Cursor=Cursor)
+
+
+def _path_in(uri: str) -> str:
+    """Return the path in a URI of SQLite; empty for a database in memory."""
+    head, _, query = uri.removeprefix("file:").partition("?")
+    if head in _IN_MEMORY or "mode=memory" in query:
+        return ""
+    return unquote(head if not head.startswith("//") else "/" + head[2:].partition("/")[2])
 
 
 def sqlite3_part(universe: Universe) -> ModuleType:
