@@ -67,7 +67,7 @@ class SourceWatch(Attachment):
         """
         files = set() if self._accesses is None else self._accesses.seen
         unmatched = Points.parse(text).unmatched(files)
-        if files and unmatched:
+        if self._accesses is not None and unmatched:
             known = sorted({name for file in files for name in source_names(file)})
             hint = did_you_mean(unmatched[0], known, f"it has {listed(known)}", before="; ")
             raise UsageError(f"the mission loads no module {unmatched[0]!r}{hint}", field="--points")

@@ -89,7 +89,11 @@ class Story:
         is_wide = most >= min(len(self.tasks), max(2, len(of_cause)))
         tasks = self._tasks(most if is_wide else max(MOST_OF_A_PAGE, len(of_cause)))
         events = drawn(self.rows, tasks, width) if is_wide else listed(self.rows, tasks, width)
-        cause = wrap(CAUSE + self.cause, width, subsequent_indent=" " * len(CAUSE)) if self.cause else []
+        cause = (
+            wrap(CAUSE + self.cause, width, subsequent_indent=" " * len(CAUSE), break_on_hyphens=False)
+            if self.cause
+            else []
+        )
         return [*cause, *([""] if cause else []), *events, *self._last_lines(width)]
 
     def table(self) -> tuple[tuple[str, ...], list[tuple[int | None, str, str, bool]]]:
@@ -120,7 +124,7 @@ class Story:
         if not self.end:
             return []
         at = "at the end" if self.end_ns is None else f"{self.end_ns / NS_PER_S:.6f}"
-        lines = wrap(self.end, width - TIME_WIDTH)
+        lines = wrap(self.end, width - TIME_WIDTH, break_on_hyphens=False)
         return [(at if not number else "").ljust(TIME_WIDTH) + line for number, line in enumerate(lines)]
 
 

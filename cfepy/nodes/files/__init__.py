@@ -3,8 +3,7 @@
 Everything that determines a program's view of a path belongs here: the layers and copying on write (`overlay`), paths
 and places (`paths`), metadata (`stamps`), and Python's functions that take paths or descriptors: `open` (`opened`),
 those of `os` (`file_calls`) and those of modules that open files in C (`shared`). `file_points` lets other tasks run
-before file calls while schedules are explored. The files of OSAL are in
-`cfepy.osal`.
+before file calls while schedules are explored. The files of OSAL are in `cfepy.osal`.
 """
 
 from __future__ import annotations

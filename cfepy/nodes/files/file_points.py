@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, cast
 
 from cfepy.interpreter.own_code import called_as
@@ -25,6 +26,8 @@ _LOOKING = frozenset(
     {"access", "getxattr", "listdir", "listxattr", "lstat", "pathconf", "readlink", "scandir", "stat", "statvfs"}
 )
 _WITHOUT = frozenset({"close", "closerange", "fstat"})  # they change nothing that another task sees
+_TWO_PATHS = frozenset({"link", "rename", "replace"})
+_SECOND_PATH = frozenset({"symlink"})  # the first is the text of the link
 _KEYWORDS = ("path", "src", "dst")
 
 
@@ -66,20 +69,25 @@ class FilePoints:
         """
         if name in _WITHOUT:
             return function
+        first, last = (1, 2) if name in _SECOND_PATH else (0, 2) if name in _TWO_PATHS else (0, 1)
+        keywords = _KEYWORDS[2:] if name in _SECOND_PATH else _KEYWORDS
 
         def call(*args: Any, **options: Any) -> Any:
-            is_write = bool(args[1] & _WRITING) if name == "open" and len(args) > 1 else name not in _LOOKING
+            is_write = name not in _LOOKING
+            if name == "open":
+                flags = args[1] if len(args) > 1 else options.get("flags", 0)
+                is_write = bool(flags & _WRITING)
             self.pause()
-            given = [*args[:2], *(options[each] for each in _KEYWORDS if each in options)]
-            for path in given:
-                if isinstance(path, _PATHS) and os.fspath(path):
-                    self.report(where(path, options.get("dir_fd")), is_write)
+            for path in (*args[first:last], *(options[each] for each in keywords if each in options)):
+                if isinstance(path, _PATHS):
+                    with suppress(OSError):  # the call itself raises it
+                        self.report(where(path, options.get("dir_fd")), is_write)
             return function(*args, **options)
 
         return called_as(call, name)
 
     def layers(self, where: Callable[[Any], str]) -> Mapping[type, type]:
-        """Return the classes of open files, derived from Python's own, by these.
+        """Return the classes of open files, by the class of Python that each is derived from.
 
         Args:
             where: makes a path of the program absolute.
@@ -122,7 +130,7 @@ class FilePoints:
 
             def close(this) -> None:
                 # not while the garbage collector closes it, at any place
-                if not (this.closed or this._finalizing) and this.writable():
+                if not (this.closed or getattr(this, "_finalizing", False)) and this.writable():
                     this._access(True)
                 this._is_closing = True
                 super().close()

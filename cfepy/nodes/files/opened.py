@@ -183,7 +183,7 @@ def _layered(raw: io.FileIO, mode: str, buffering: int, texts: dict[str, Any], l
         mode: as for `open`.
         buffering: as for `open`.
         texts: encoding and the like, as for `open`.
-        layers: classes for the outermost layer, by Python's own; those that are missing are Python's own.
+        layers: the class of the outermost layer, by Python's class; Python's own class if it is missing.
     """
     if buffering == 0:
         return raw  # as `io.open` does
