@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Generator, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -52,7 +52,8 @@ def pytest_cmdline_main(config: pytest.Config) -> None:
         return
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     if option.numprocesses is None and option.dist == "no" and not option.tx and cores > 1:
-        option.numprocesses, option.dist = cores, "loadgroup" if option.markexpr == "slow" else "worksteal"
+        # the slow tests of a file share what they build, so each file is in one process
+        option.numprocesses, option.dist = cores, "loadfile" if option.markexpr == "slow" else "worksteal"
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
@@ -93,8 +94,8 @@ def test_of(item: pytest.Item) -> str:
     return f"{item.path.relative_to(TESTS).as_posix()}::{getattr(item, 'originalname', item.name)}"
 
 
-@pytest.hookimpl(wrapper=True, tryfirst=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, None, None]:
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark the tests of the quick loop, and check that the table of costs only lists existing tests."""
     if MISSING:
         items[:] = [item for item in items if not lacks_add_on(test_of(item))]
@@ -105,5 +106,3 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if not config.pluginmanager.hasplugin(METER):  # the meter measures them, too
         for item in costs.slow_ones(items):
             item.add_marker(costs.SLOW)
-    yield
-    items.sort(key=lambda item: item.get_closest_marker("xdist_group") is None)  # long ones, one after the other, first

@@ -39,7 +39,7 @@ SHIPPED = [
     "rospy_shim/types/msgs/definitions/std_msgs.msgs",
 ]
 
-pytestmark = [pytest.mark.slow, pytest.mark.xdist_group("wheel")]  # one wheel and one environment for all
+pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
