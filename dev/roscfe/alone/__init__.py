@@ -71,7 +71,8 @@ class Alone:
         self._flags = [f"-I{messages}", f"-I{FOLDER}", "-isystem", str(headers_folder())]
         self._flags += [*profile_flags(profile), *flags]
         library = self._objects(self.sources, [*STRICT_FLAGS, *WITHOUT_TYPES, *own_flags])
-        self._library = [*library, *self._objects([FOLDER / "cfe_stand_in.cpp"], FLIGHT_FLAGS, "stand_in")]
+        stand_in = [FOLDER / "cfe_stand_in.cpp", FOLDER.parent / "cfe_messages.cpp"]
+        self._library = [*library, *self._objects(stand_in, FLIGHT_FLAGS, "stand_in")]
 
     def fly(self, source: Path) -> list[str]:
         """Return a node's output. It has the name, the namespace and the remappings of `dev.roscfe.probing`."""

@@ -15,6 +15,7 @@ extern "C" {
 #include "cfe_sb_msg.h"
 }
 
+#include "../cfe_messages.h"
 #include "cfe_stand_in.h"
 #include "roscfe/node.h"
 
@@ -105,23 +106,8 @@ State &state()
     return *made;
 }
 
-// Bytes of a header: the stream id, the sequence, the length, all with the high byte first.
-std::uint8_t *bytes_of(void *message)
-{
-    return static_cast<std::uint8_t *>(message);
-}
-
-unsigned word(const void *message, int at)
-{
-    const std::uint8_t *bytes = static_cast<const std::uint8_t *>(message) + at;
-    return static_cast<unsigned>(bytes[0] << 8 | bytes[1]);
-}
-
-void set_word(void *message, int at, unsigned value)
-{
-    bytes_of(message)[at]     = static_cast<std::uint8_t>(value >> 8);
-    bytes_of(message)[at + 1] = static_cast<std::uint8_t>(value);
-}
+using stand_in::set_word;
+using stand_in::word;
 
 bool is_subscribed(std::uint32_t id)
 {
@@ -336,57 +322,6 @@ CFE_Status_t CFE_TBL_ReleaseAddress(CFE_TBL_Handle_t)
     return CFE_SUCCESS;
 }
 
-// -- messages ----------------------------------------------------------------------------------------------------------
-
-CFE_Status_t CFE_MSG_Init(CFE_MSG_Message_t *message, CFE_SB_MsgId_t id, CFE_MSG_Size_t size)
-{
-    const std::size_t header = (id.Value & 0x1000) != 0 ? 8 : 12;
-    std::memset(message, 0, size < header ? size : header);
-    set_word(message, 0, id.Value);
-    set_word(message, 2, 0xC000);
-    set_word(message, 4, static_cast<unsigned>(size - 7));
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_GetMsgId(const CFE_MSG_Message_t *message, CFE_SB_MsgId_t *id)
-{
-    *id = CFE_SB_ValueToMsgId(word(message, 0));
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_GetSize(const CFE_MSG_Message_t *message, CFE_MSG_Size_t *size)
-{
-    *size = word(message, 4) + 7;
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_SetFcnCode(CFE_MSG_Message_t *message, CFE_MSG_FcnCode_t code)
-{
-    bytes_of(message)[6] = static_cast<std::uint8_t>(code);
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_GetFcnCode(const CFE_MSG_Message_t *message, CFE_MSG_FcnCode_t *code)
-{
-    *code = static_cast<CFE_MSG_FcnCode_t>(bytes_of(const_cast<CFE_MSG_Message_t *>(message))[6] & 0x7F);
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_GetSegmentationFlag(const CFE_MSG_Message_t *message, CFE_MSG_SegmentationFlag_t *flag)
-{
-    static const CFE_MSG_SegmentationFlag_t kFlags[] = {CFE_MSG_SegFlag_Continue, CFE_MSG_SegFlag_First,
-                                                        CFE_MSG_SegFlag_Last, CFE_MSG_SegFlag_Unsegmented};
-    *flag = kFlags[word(message, 2) >> 14];
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_SetSegmentationFlag(CFE_MSG_Message_t *message, CFE_MSG_SegmentationFlag_t flag)
-{
-    const unsigned bits = static_cast<unsigned>(flag - CFE_MSG_SegFlag_Continue);
-    set_word(message, 2, (word(message, 2) & 0x3FFF) | bits << 14);
-    return CFE_SUCCESS;
-}
-
 // -- Software Bus ------------------------------------------------------------------------------------------------------
 
 CFE_Status_t CFE_SB_CreatePipe(CFE_SB_PipeId_t *pipe, uint16 depth, const char *)
@@ -462,7 +397,7 @@ CFE_Status_t CFE_SB_TransmitBuffer(CFE_SB_Buffer_t *buffer, bool)
         return CFE_SB_MSG_TOO_BIG;
     }
     static std::uint16_t counts[0x2000];
-    const std::uint8_t * bytes = bytes_of(buffer);
+    const std::uint8_t * bytes = reinterpret_cast<const std::uint8_t *>(buffer);
     const unsigned       id    = word(bytes, 0);
     set_word(buffer, 2, (word(bytes, 2) & 0xC000) | (counts[id & 0x1FFF]++ & 0x3FFF));
     const Packet packet(bytes, bytes + word(bytes, 4) + 7);

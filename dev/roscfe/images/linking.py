@@ -31,6 +31,8 @@ from rospy_shim.types.msgs import shipped
 FOLDER = Path(__file__).parent
 TOPICS = {"/chatter": (0x0A00, False)}
 STAND_IN = ("start.cpp", "tasks.cpp", "stand_in.cpp", "apps.cpp")
+MESSAGES = FOLDER.parent / "cfe_messages.cpp"
+"""The part of the stand-in that nodes that fly alone have, too."""
 SIZE_FLAGS = (
     "-Os",
     "-g0",
@@ -142,7 +144,7 @@ class Linker:
 
     def image(self, nodes: Sequence[Path]) -> Path:
         """Return an image of a bare computer: nodes, the applications in apps.cpp, and the stand-in for cFE."""
-        objects = [*nodes, *(self.compiled(FOLDER / name) for name in STAND_IN)]
+        objects = [*nodes, *(self.compiled(FOLDER / name) for name in STAND_IN), self.compiled(MESSAGES)]
         formats = [self.compiled(each) for each in self.sources if each.name in ("formats.cpp", "floats.cpp")]
         made = self._folder / "image.elf"
         self._link_image(made, [*objects, *formats], f"-Wl,-T,{FOLDER / 'image.ld'}")

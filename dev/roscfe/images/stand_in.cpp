@@ -10,6 +10,7 @@ extern "C" {
 #include "cfe_sb_msg.h"
 }
 
+#include "../cfe_messages.h"
 #include "roscfe/format.h"
 #include "tasks.h"
 
@@ -47,27 +48,6 @@ bool          g_reports  = false;
 std::uint32_t g_sent     = 0;
 std::uint32_t g_received = 0;
 std::uint32_t g_lost     = 0;
-
-std::uint32_t word(const std::uint8_t *bytes, int at)
-{
-    return static_cast<std::uint32_t>(bytes[at] << 8 | bytes[at + 1]);
-}
-
-void set_word(std::uint8_t *bytes, int at, std::uint32_t value)
-{
-    bytes[at]     = static_cast<std::uint8_t>(value >> 8);
-    bytes[at + 1] = static_cast<std::uint8_t>(value);
-}
-
-std::uint8_t *bytes_of(CFE_MSG_Message_t *message)
-{
-    return reinterpret_cast<std::uint8_t *>(message);
-}
-
-const std::uint8_t *bytes_of(const CFE_MSG_Message_t *message)
-{
-    return reinterpret_cast<const std::uint8_t *>(message);
-}
 
 CFE_SB_PipeId_t id_of(int pipe)
 {
@@ -241,52 +221,6 @@ CFE_Status_t CFE_EVS_SendEvent(uint16 id, CFE_EVS_EventType_Enum_t, const char *
     print(form, values);
     write("\n");
     va_end(values);
-    return CFE_SUCCESS;
-}
-
-// -- messages ----------------------------------------------------------------------------------------------------------
-
-CFE_Status_t CFE_MSG_Init(CFE_MSG_Message_t *message, CFE_SB_MsgId_t id, CFE_MSG_Size_t size)
-{
-    std::uint8_t *bytes = bytes_of(message);
-    std::memset(bytes, 0, size < 8 ? size : 8);
-    set_word(bytes, 0, CFE_SB_MsgIdToValue(id));
-    set_word(bytes, 2, 0xC000);
-    set_word(bytes, 4, static_cast<std::uint32_t>(size - 7));
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_GetMsgId(const CFE_MSG_Message_t *message, CFE_SB_MsgId_t *id)
-{
-    *id = CFE_SB_ValueToMsgId(word(bytes_of(message), 0));
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_GetSize(const CFE_MSG_Message_t *message, CFE_MSG_Size_t *size)
-{
-    *size = word(bytes_of(message), 4) + 7;
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_SetFcnCode(CFE_MSG_Message_t *message, CFE_MSG_FcnCode_t code)
-{
-    bytes_of(message)[6] = static_cast<std::uint8_t>(code);
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_GetSegmentationFlag(const CFE_MSG_Message_t *message, CFE_MSG_SegmentationFlag_t *flag)
-{
-    static const CFE_MSG_SegmentationFlag_t kFlags[] = {CFE_MSG_SegFlag_Continue, CFE_MSG_SegFlag_First,
-                                                        CFE_MSG_SegFlag_Last, CFE_MSG_SegFlag_Unsegmented};
-    *flag = kFlags[word(bytes_of(message), 2) >> 14];
-    return CFE_SUCCESS;
-}
-
-CFE_Status_t CFE_MSG_SetSegmentationFlag(CFE_MSG_Message_t *message, CFE_MSG_SegmentationFlag_t flag)
-{
-    std::uint8_t *      bytes = bytes_of(message);
-    const std::uint32_t bits  = static_cast<std::uint32_t>(flag - CFE_MSG_SegFlag_Continue);
-    set_word(bytes, 2, (word(bytes, 2) & 0x3FFF) | bits << 14);
     return CFE_SUCCESS;
 }
 
