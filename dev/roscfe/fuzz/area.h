@@ -48,6 +48,9 @@ void count(const std::uint8_t *bytes, std::size_t size); // one that does not co
 // Each repeats a lead.
 void give_in_pieces(std::uint16_t msg_id, const Bytes &bytes, const std::uint8_t *lead = nullptr, std::size_t lead_size = 0);
 
+// Twenty samples, varied.
+void give_samples();
+
 extern std::size_t g_left;   // packets to come
 extern bool        g_flying; // until then the area makes no packets with faults
 extern std::size_t g_calls; // of the node's callbacks

@@ -143,6 +143,18 @@ void give_in_pieces(std::uint16_t msg_id, const Bytes &bytes, const std::uint8_t
     }
 }
 
+void give_samples()
+{
+    static Bytes bytes;
+    for (int i = 0; i < 20; ++i)
+    {
+        const Sample &sample = any_sample();
+        bytes.assign(sample.bytes, sample.size);
+        vary(bytes);
+        give_in_pieces(sample.msg_id, bytes);
+    }
+}
+
 } // namespace fuzz
 
 namespace stand_in

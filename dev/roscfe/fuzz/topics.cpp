@@ -57,17 +57,7 @@ class Topics final : public Area
         hear<std_msgs::String>(node, "string"); // a second one
     }
 
-    void fill() override
-    {
-        static Bytes bytes;
-        for (int i = 0; i < 20; ++i)
-        {
-            const Sample &sample = any_sample();
-            bytes.assign(sample.bytes, sample.size);
-            vary(bytes);
-            give_in_pieces(sample.msg_id, bytes);
-        }
-    }
+    void fill() override { give_samples(); }
 
     std::size_t accepted() const override { return roscfe::g_counters.received; }
 

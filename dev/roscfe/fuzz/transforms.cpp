@@ -35,17 +35,7 @@ class Transforms final : public Area
         g_calls += buffer_->canTransform(target, when, source, ros::Time(0), kFrames[g_random.below(5)]);
     }
 
-    void fill() override
-    {
-        static Bytes bytes;
-        for (int i = 0; i < 20; ++i)
-        {
-            const Sample &sample = any_sample();
-            bytes.assign(sample.bytes, sample.size);
-            vary(bytes);
-            give_in_pieces(sample.msg_id, bytes);
-        }
-    }
+    void fill() override { give_samples(); }
 
     std::size_t accepted() const override { return roscfe::g_counters.received; }
 
