@@ -34,18 +34,18 @@ def item_forms(keyword: str) -> set[str] | None:
     return {*forms} if last in _ITEMS and {*forms} <= _FORMS else None
 
 
-def next_word(rest: list[str], what: str) -> str:
+def next_word(rest: list[str], meaning: str) -> str:
     """Remove and return the first word.
 
     Args:
         rest: the words of a line that are not read yet.
-        what: what the word stands for, such as "a name".
+        meaning: the missing thing in the error, such as "a name".
 
     Raises:
         UsageError: there is no word left.
     """
     if not rest:
-        raise UsageError(f"{what} is missing; add it")
+        raise UsageError(f"{meaning} is missing; add it")
     return rest.pop(0)
 
 

@@ -13,7 +13,7 @@ from cfepy.interpreter.faces import face
 if TYPE_CHECKING:
     from cfepy.schedules.exploring import CallObserver, CallPointKernel, ExploringKernel
     from cfepy.schedules.kernels import make_kernel
-    from cfepy.schedules.moves import Move, MoveNumbers, MovePolicy, MovesToMake, plain_name
+    from cfepy.schedules.moves import Move, MoveNumbers, MovePolicy, MovesToMake, place_at, plain_name
     from cfepy.schedules.preemption_points import ATTRIBUTES, CALLS, LINES, Points, source_names
     from cfepy.schedules.schedule import DEPTH, ORDER, STEPS, Schedule
     from cfepy.schedules.side_by_side import Abreast
@@ -40,6 +40,7 @@ __all__ = [
     "Schedule",
     "VectorClocks",
     "make_kernel",
+    "place_at",
     "plain_name",
     "source_names",
 ]
@@ -51,7 +52,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".side_by_side": ("Abreast",),
             ".exploring": ("CallObserver", "CallPointKernel", "ExploringKernel"),
             ".kernels": ("make_kernel",),
-            ".moves": ("Move", "MoveNumbers", "MovePolicy", "MovesToMake", "plain_name"),
+            ".moves": ("Move", "MoveNumbers", "MovePolicy", "MovesToMake", "place_at", "plain_name"),
             ".preemption_points": ("ATTRIBUTES", "CALLS", "LINES", "Points", "source_names"),
             ".vector_clocks": ("Race", "RaceSide", "VectorClocks"),
             ".schedule": ("DEPTH", "ORDER", "STEPS", "Schedule"),

@@ -161,7 +161,7 @@ class MoveNumbers:
     def moves(self, decision: Decision) -> tuple[Move, ...]:
         """Return a move for each answer other than fifo's; call it for decisions in order."""
         subject, others = decision.alias, decision.alias_answers[1:]
-        place = _place(decision, sys._getframe(1))
+        place = place_at(decision, sys._getframe(1))
         now_ms = 0 if decision.question is not None else decision.now // NS_PER_MS
         from_ms, counts = self._counted.get((subject, place), (-1, Counter[str]()))
         if from_ms != now_ms:
@@ -249,7 +249,7 @@ class MovePolicy(Policy):
             return 0
         frame = sys._getframe(1)
         others = decision.alias_answers[1:]
-        return self._moves.answer(subject, decision.now, others, lambda: _place(decision, frame))
+        return self._moves.answer(subject, decision.now, others, lambda: place_at(decision, frame))
 
     @property
     def missed(self) -> tuple[str, ...]:
@@ -260,7 +260,13 @@ class MovePolicy(Policy):
         return missed_notes("moves", self._moves.count, self.missed)
 
 
-def _place(decision: Decision, frame: FrameType | None) -> str:
+def place_at(decision: Decision, frame: FrameType | None) -> str:
+    """Return the place of the task that fifo would run, as in a move: NEXT if it is not running, empty for a question.
+
+    Args:
+        decision: the decision.
+        frame: the frame in which the policy decides.
+    """
     if decision.question is not None:
         return ""
     return place_of(frame) if decision.running else NEXT

@@ -87,7 +87,8 @@ MORE = {
 }
 """Sentences with links that the help of a shared option cannot have."""
 OF_EXPLORE = {
-    "--seeds": "With `--budget` and without `--seeds` the number is not limited.",
+    "--seeds": "`auto`: until schedules bring nothing new. With `--budget` and without `--seeds` the number is not "
+    "limited.",
     "--policy": "`random` chooses at each decision, `pct` preempts at a few places, `abreast` runs tasks side by side, "
     "and `all` takes these in turn. `dfs` runs every schedule with few preemptions, `orders` every order of dependent "
     "steps once.",

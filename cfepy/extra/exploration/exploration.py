@@ -26,7 +26,7 @@ from cfepy.extra.exploration.mission_transfer import files_read, identity_of, sh
 from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.progress import make_progress
 from cfepy.extra.exploration.results_file import ResultsFile, keep_failure
-from cfepy.extra.exploration.search import SeededSearch, make_search
+from cfepy.extra.exploration.search import SEEDED_POLICIES, NewSwitchSearch, SeededSearch, make_search
 from cfepy.extra.exploration.shrink import SHRINK_S, NotedFlight, Shrinker, Shrunk, budget_of
 from cfepy.extra.exploration.step_accesses import check_visible
 from cfepy.extra.exploration.timeline import Story, story_of
@@ -162,7 +162,8 @@ class Expedition:
 
     Attributes:
         plan: the run; its own schedule does not matter.
-        seeds: number of schedules; None for any number within the budget.
+        seeds: number of schedules; None for any number, which the budget or `until_known` ends.
+        until_known: end when schedules bring no switch of a new kind (`switch_kinds`).
         budget_s: wall time after which no further schedule begins; None for no limit.
         policy: source of the schedules: "random", "pct", "abreast" (tasks side by side), "dfs" (every one with few
             preemptions), "orders" (all orders that differ, each once), or "all".
@@ -193,6 +194,7 @@ class Expedition:
 
     plan: RunPlan
     seeds: int | None = DEFAULT_SEEDS
+    until_known: bool = False
     budget_s: float | None = None
     policy: str = "all"
     depth: int | None = None
@@ -248,6 +250,8 @@ class Expedition:
         search = self._search(first, options)
         if self.policy == "orders":
             trial = replace(trial, steps_from_ns=options.from_ns)
+        if isinstance(search, NewSwitchSearch):
+            breadth.switches, trial = search.switches, replace(trial, keep_switches=True)
         distribution = None if measure is None else Distribution.of(measure, reference)
 
         def see(number: int, verdict: Verdict) -> None:
@@ -261,6 +265,7 @@ class Expedition:
         if isinstance(search, OrderSearch):
             breadth.seen = search.seen
             trial = replace(trial, steps_from_ns=None)
+        trial = replace(trial, keep_switches=False)
         report = Report(trial, reference, tally, findings.troubles, notes=notes, breadth=breadth)
         for finding in findings.all():
             report.findings.append(self._told(trial, finding, tally))
@@ -279,7 +284,13 @@ class Expedition:
         """Return the search of `make_search`; with a measure, the search for the longest value that begins with it."""
         holds = self.worst is None  # a delayed task is late by the delay, not by the mission
         steps, tick_ns = first.verdict.decisions, first.tick_ns
-        found = make_search(self.policy, self.depth, steps, options, self.first_seed, tick_ns, holds=holds)
+        is_open = self.seeds is None and holds and self.policy in SEEDED_POLICIES
+        if self.until_known and not is_open:
+            other = "without --worst" if self.worst is not None else f"with --policy {' or '.join(SEEDED_POLICIES)}"
+            raise UsageError(f"auto is possible only {other}", field="--seeds")
+        found = make_search(
+            self.policy, self.depth, steps, options, self.first_seed, tick_ns, holds=holds, new_switches=is_open
+        )
         return found if holds or not isinstance(found, SeededSearch) else WorstSearch(found, self.first_seed)
 
     @property
@@ -337,6 +348,7 @@ class Expedition:
         def take(number: int, verdict: Verdict) -> bool:
             see(number, verdict)
             is_over = self.budget_s is not None and watch.elapsed_ns() > self.budget_s * NS_PER_S
+            is_over |= self.until_known and isinstance(search, NewSwitchSearch) and search.switches.are_all_known
             return (findings.take(number, verdict) and self.until_failure) or is_over
 
         return Campaign(trial, search, most, crew, file, progress).run(take)
@@ -382,6 +394,7 @@ class Expedition:
         search |= {"worst": self.worst} if self.worst is not None else {}
         search |= {"liveness": list(self._liveness)} if any(self._liveness) else {}
         search |= {"fair": self.fair} if self.fair is not None else {}
+        search |= {"until": "budget" if self.until_known is False else "auto"} if self.seeds is None else {}
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:

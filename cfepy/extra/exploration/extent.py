@@ -9,6 +9,7 @@ from math import expm1, log1p
 from types import FrameType
 
 from cfepy.extra.exploration.partial_orders import OrdersSeen
+from cfepy.extra.exploration.switch_kinds import SwitchKinds
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.rtos import AskingPolicy, Decision, Policy
 
@@ -95,6 +96,7 @@ class Breadth:
         files: files that two tasks used, one of them to change it; a line each.
         seen: the extent of a search of orders.
         steps: the most decisions that a PCT run had, or was drawn for.
+        switches: the kinds of switches of a search without a fixed number of schedules.
     """
 
     points: dict[str, int] = field(default_factory=dict)
@@ -105,6 +107,7 @@ class Breadth:
     gaps: list[str] = field(default_factory=list)
     files: list[str] = field(default_factory=list)
     seen: OrdersSeen | None = None
+    switches: SwitchKinds | None = None
 
     def take(self, verdict: Verdict) -> None:
         """Count another flown schedule."""
@@ -129,6 +132,8 @@ class Breadth:
             found = ["1 order" if len(self.orders) == 1 else f"{len(self.orders)} different orders"]
         else:
             found = self.seen.lines(len(self.orders))
+        if self.switches is not None:
+            found.append(self.switches.line())
         kinds = sorted(self.points.items(), key=lambda each: -each[1])
         if kinds:
             listed = ", ".join(f"{count} at {kind}" for kind, count in kinds)
@@ -154,6 +159,7 @@ class Breadth:
             "classes": None if self.seen is None else self.seen.orders,
             "complete": self.seen is not None and self.seen.is_complete,
             "astray": 0 if self.seen is None else self.seen.astray,
+            "switches": None if self.switches is None else self.switches.to_dict(),
             "points": self.points,
             "tasks": self.tasks,
             "steps": self.steps,

@@ -9,16 +9,18 @@ next schedules are made from each run. The search bounds preemptions and not ste
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from cfepy.extra.exploration.partial_orders import OrderSearch
+from cfepy.extra.exploration.switch_kinds import SwitchKinds
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.mission import CORE_APPS
 from cfepy.schedules import Schedule
 
-POLICIES = ("all", "random", "pct", "abreast", "dfs", "orders")
+SEEDED_POLICIES = ("all", "random", "pct", "abreast")
+POLICIES = (*SEEDED_POLICIES, "dfs", "orders")
 PCT_DEPTH, DFS_DEPTH = 3, 2
 PORTFOLIO_DEPTHS = (2, 3, 1)
 """Depths of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
@@ -26,6 +28,9 @@ PORTFOLIO_HOLD_NS = 1_000_000
 """Delay in the policy `all`, for one schedule in six (with points: for two), unless the board's tick is longer.
 A race with a timer, or with a more urgent task that waits for one, shows only when code takes time. A longer delay
 would break a mission's justified assumptions about its own sleeps; less than a tick would reach no timer."""
+
+
+TURNS = 5  # turns of each policy in a generation of a search for new switches
 
 
 class SeededSearch:
@@ -48,11 +53,15 @@ class SeededSearch:
     def next(self) -> Schedule | None:
         """Return the next schedule; see `cfepy.extra.exploration.campaign.Search`. It never ends."""
         number = self._number
-        kind = self._kinds[number % len(self._kinds)]
-        if number and kind.kind == "pct" and not self._is_measured:
+        turn = self._turn(number)
+        if turn is None or (number and self._kinds[turn].kind == "pct" and not self._is_measured):
             return None
         self._number += 1
-        return kind.with_seed(self._first_seed + number)
+        return self._kinds[turn].with_seed(self._first_seed + number)
+
+    def _turn(self, number: int) -> int | None:
+        """Return which kind a schedule has, by its number; None if earlier verdicts must come first."""
+        return number % len(self._kinds)
 
     def tell(self, number: int, verdict: Verdict) -> None:
         """Learn the length of a run from the first verdict; see `cfepy.extra.exploration.campaign.Search`."""
@@ -65,6 +74,74 @@ class SeededSearch:
         self._kinds = tuple(
             replace(each, steps=max(each.steps, decisions)) if each.kind == "pct" else each for each in self._kinds
         )
+
+
+class NewSwitchSearch(SeededSearch):
+    """Schedules from seeds, more of the kinds that have lately brought new switches.
+
+    The shares of a generation follow from the verdicts up to the generation before the last one. So processes need not
+    wait for each other, and their number does not change the schedules.
+
+    Args:
+        kinds: schedules whose seed is replaced.
+        first_seed: of the first one.
+
+    Attributes:
+        switches: the kinds so far.
+    """
+
+    def __init__(self, kinds: tuple[Schedule, ...], first_seed: int = 0) -> None:
+        super().__init__(kinds, first_seed)
+        self.switches = SwitchKinds()
+        self._size = TURNS * len(kinds)
+        self._turns = list(range(len(kinds))) * TURNS * 2
+        self._lately: list[tuple[Counter[int], Counter[int]]] = [(Counter(), Counter())]  # by generation: new, flown
+
+    def _turn(self, number: int) -> int | None:
+        generation = number // self._size
+        if number == len(self._turns):
+            if self.switches.done < (generation - 1) * self._size:
+                return None
+            self._turns += shares(*self._lately[generation - 2], len(self._kinds), self._size)
+        return self._turns[number]
+
+    def tell(self, number: int, verdict: Verdict) -> None:
+        super().tell(number, verdict)
+        new, flown = self._lately[-1]
+        new[self._turns[number]] += self.switches.take(verdict)
+        flown[self._turns[number]] += 1
+        if self.switches.done % self._size == 0:
+            self._lately.append((Counter(), Counter()))
+
+
+def shares(new: Counter[int], flown: Counter[int], kinds: int, size: int) -> list[int]:
+    """Return the turns of a generation: one for each kind, and the others by the new switches of its schedules.
+
+    Args:
+        new: new kinds of switches, by kind of schedule.
+        flown: schedules, by kind.
+        kinds: number of kinds.
+        size: number of turns, at least one for each kind.
+    """
+    worth = [(new[kind] + 1) / (flown[kind] + 1) for kind in range(kinds)]
+    left = [(size - kinds) * each / sum(worth) for each in worth]
+    counts = [1 + int(each) for each in left]
+    by_rest = sorted(range(kinds), key=lambda kind: (int(left[kind]) - left[kind], kind))
+    for kind in by_rest[: size - sum(counts)]:
+        counts[kind] += 1
+    return _in_turn(counts)
+
+
+def _in_turn(counts: Sequence[int]) -> list[int]:
+    """Return each kind in the number of its count, evenly mixed."""
+    size = sum(counts)
+    given = [0] * len(counts)
+    turns = []
+    for place in range(1, size + 1):
+        kind = max(range(len(counts)), key=lambda each: (counts[each] * place - given[each] * size, -each))
+        given[kind] += 1
+        turns.append(kind)
+    return turns
 
 
 class SystematicSearch:
@@ -98,6 +175,7 @@ def make_search(
     tick_ns: int = 0,
     *,
     holds: bool = True,
+    new_switches: bool = False,
 ) -> AnySearch:
     """Return the search for the options of a command.
 
@@ -111,12 +189,14 @@ def make_search(
         first_seed: of the first schedule.
         tick_ns: of the board's clock; 0 for none.
         holds: in `all`, running tasks may also be delayed in some schedules if `options` do not set a delay.
+        new_switches: prefer the policies that bring new kinds of switches.
     """
     if policy == "dfs":
         return SystematicSearch(DFS_DEPTH if depth is None else depth, options)
     if policy == "orders":
         return OrderSearch(options, CORE_APPS, depth)
-    return SeededSearch(seeded_kinds(policy, depth, steps, options, tick_ns, holds=holds), first_seed)
+    kinds = seeded_kinds(policy, depth, steps, options, tick_ns, holds=holds)
+    return NewSwitchSearch(kinds, first_seed) if new_switches else SeededSearch(kinds, first_seed)
 
 
 def seeded_kinds(

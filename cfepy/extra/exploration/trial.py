@@ -16,6 +16,7 @@ from cfepy.extra.exploration.deadlock import Waits, WaitWatch, stuck_for_good
 from cfepy.extra.exploration.failure_kinds import FailureWatch
 from cfepy.extra.exploration.result_watch import Result, ResultWatch, differences, digest_of
 from cfepy.extra.exploration.step_accesses import Footprints
+from cfepy.extra.exploration.switch_kinds import SwitchNotingPolicy
 from cfepy.extra.exploration.verdict import Failure, Verdict
 from cfepy.monitors import InversionWatch, Lack, Limits, LivenessWatch
 from cfepy.pilot import LEAVES_OTHERS_WAITING, BootError, RunPlan, fly
@@ -70,6 +71,7 @@ class Trial:
         waits: of the default schedule (`cfepy.extra.exploration.deadlock`), against which tasks that wait forever are
             found; None lets them wait.
         liveness: limits for a ready task without running, and for an application without a message.
+        keep_switches: verdicts have the kinds of their switches, which a search for new ones needs.
     """
 
     plan: RunPlan
@@ -79,6 +81,7 @@ class Trial:
     steps_from_ns: int | None = None
     waits: Waits | None = None
     liveness: Limits = FOR_EVER
+    keep_switches: bool = False
 
     def run(self, schedule: Schedule, attachments: Sequence[Attachment] = ()) -> Verdict:
         """Fly the mission in this process.
@@ -104,7 +107,8 @@ class Trial:
             attachments: other observers of the run.
             policy: decides in place of the schedule's own, whose options still apply.
         """
-        recorded = NotingPolicy(schedule.policy() if policy is None else policy)
+        noting = SwitchNotingPolicy if self.keep_switches else NotingPolicy
+        recorded = noting(schedule.policy() if policy is None else policy)
         watch = FailureWatch(self.events)
         spec = self.plan.spec()
         results = ResultWatch(spec)
@@ -192,6 +196,7 @@ class Trial:
             preemptions=policy.preemptions,
             missed=policy.missed,
             widths=tuple(-width if running else width for width, running in pairs) if self.keep_widths else (),
+            switches=tuple(sorted(policy.switches)) if isinstance(policy, SwitchNotingPolicy) else (),
         )
 
     def _differences(self, found: tuple[Result, ...]) -> tuple[Failure, ...]:

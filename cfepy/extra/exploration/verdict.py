@@ -83,6 +83,7 @@ class Verdict:
             then; empty if there is none.
         trouble: traceback of an error of cfepy itself, which is not an error of the mission; empty otherwise.
         missed: the moves of the schedule that were not possible, as text.
+        switches: numbers of the kinds of its switches, rising; kept only for a search that ends when none is new.
     """
 
     schedule: Schedule
@@ -98,6 +99,7 @@ class Verdict:
     longest: tuple[int, ...] = ()
     trouble: str = ""
     missed: tuple[str, ...] = ()
+    switches: tuple[int, ...] = ()
 
     @property
     def failed(self) -> bool:
@@ -140,6 +142,7 @@ class Verdict:
         missed = tuple(plain.get("missed", ()))
         steps = tuple(TaskStep.of(each) for each in plain.get("steps", ()))
         own = {"schedule": schedule, "failures": failures, "deviations": deviations, "missed": missed, "steps": steps}
+        own["switches"] = tuple(map(int, plain.get("switches", ())))
         longest = tuple(map(int, plain.get("longest", ())))
         found = cls(**{**plain, **own, "widths": tuple(map(int, plain["widths"])), "longest": longest})
         texts = [found.results, found.trace, found.trouble, *found.missed]

@@ -137,6 +137,24 @@ def test_begin_at_operational_is_refused_when_the_mission_never_is() -> None:
 
 
 @pytest.mark.slow
+def test_search_ends_when_schedules_bring_nothing_new(tmp_path: Path) -> None:
+    stock = missions.write(tmp_path, {"STOCK": missions.CHECK_THEN_ACT})
+    plan = RunPlan((str(stock),), seconds=0.6, tasks="greenlet")
+    report = Expedition(plan, seeds=None, until_known=True, jobs=1, shrink=0).run()
+    kinds = report.breadth.switches
+    assert kinds is not None
+    assert kinds.are_all_known
+    assert report.tally.done == kinds.done < 500
+    assert f"no new one in the last {kinds.done - kinds.last_new} schedules" in "\n".join(report.breadth.lines())
+    assert report.trial.keep_switches is False
+
+
+@pytest.mark.parametrize("other", [{"policy": "dfs"}, {"worst": "response:STOCK"}])
+def test_only_schedules_from_seeds_end_by_themselves(other: dict[str, str]) -> None:
+    with pytest.raises(UsageError, match="auto is possible only with"):
+        Expedition(PLAN, seeds=None, until_known=True, jobs=1, **other).run()  # type: ignore[arg-type]
+
+
 def test_time_budget_ends_the_exploration(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cfepy.rtos.Stopwatch.elapsed_ns", lambda self: 2_000_000_000)
     assert Expedition(PLAN, seeds=1000, budget_s=1.0, jobs=1, shrink=0).run().tally.done == 1

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from itertools import islice
 
 import pytest
 
-from cfepy.extra.exploration.search import SeededSearch, SystematicSearch, make_search
+from cfepy.extra.exploration.search import NewSwitchSearch, SeededSearch, SystematicSearch, make_search, shares
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.schedules.schedule import Schedule
 
@@ -112,3 +113,55 @@ def test_tasks_are_held_up_for_a_tick_at_least(tick_ns: int, hold: str) -> None:
     search.next()
     search.tell(0, Verdict(Schedule(), decisions=50))
     assert any(str(search.next()).endswith(f"hold={hold}") for _ in range(4))
+
+
+# -- searches for new switches ---------------------------------------------------------------------------------------
+
+
+def told(late: int, count: int = 180) -> list[str]:
+    """Return the schedules of a search in which PCT of depth 3 alone brings new switches.
+
+    Args:
+        late: verdicts that are still missing when a schedule is given out, at most; as with other processes.
+        count: number of schedules.
+    """
+    search = make_search("all", None, 50, Schedule.parse("at"), new_switches=True)
+    found: list[Schedule] = []
+    known = 0
+    while len(found) < count:
+        schedule = search.next() if len(found) - known <= late else None
+        if schedule is not None:
+            found.append(schedule)
+            continue
+        verdict = Verdict(
+            found[known],
+            switches=(known,) if found[known].text().startswith("pct") and found[known].depth == 3 else (),
+            decisions=50,
+        )
+        search.tell(known, verdict)
+        known += 1
+    return [each.text() for each in found]
+
+
+def test_search_for_new_switches_prefers_the_policy_that_brings_them() -> None:
+    deep = [text.startswith("pct") and text.endswith(":3:50") for text in told(0)]
+    first, last = sum(deep[:60]), sum(deep[120:])
+    assert first == 10
+    assert last > 20
+    assert {text.partition(":")[0] for text in told(0)[120:]} == {"random", "pct", "abreast"}
+
+
+def test_search_for_new_switches_does_not_depend_on_the_number_of_processes() -> None:
+    assert told(0) == told(7) == told(29)
+
+
+def test_each_kind_of_schedule_keeps_a_turn() -> None:
+    turns = shares(Counter({2: 1000}), Counter({0: 10, 1: 10, 2: 10}), 3, 15)
+    assert (turns.count(0), turns.count(1), turns.count(2)) == (1, 1, 13)
+    assert shares(Counter(), Counter(), 3, 6) == [0, 1, 2, 0, 1, 2]
+
+
+def test_search_for_new_switches_is_a_search_of_one_policy_as_well() -> None:
+    search = make_search("random", None, 50, Schedule.parse("at"), new_switches=True)
+    assert isinstance(search, NewSwitchSearch)
+    assert [next_of(search) for _ in range(3)] == ["random:0", "random:1", "random:2"]

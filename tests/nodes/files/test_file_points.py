@@ -1,4 +1,4 @@
-"""Scheduling points before calls of `os`: which paths they report, and as what."""
+"""Scheduling points before calls of `os`: the paths that they report, read or written."""
 
 from __future__ import annotations
 

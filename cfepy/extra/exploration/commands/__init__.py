@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 DEFAULT_SEEDS = 100
 MOST_SEEDS = 100_000_000
 STATUS_HELP = "exit status: 0 no failure, 1 a failure, 2 bad usage, 130 ended by Ctrl-C"
+AUTO = "auto"
 POLICIES = ("all", "random", "pct", "abreast", "dfs", "orders")
 EVENTS = ("error", "critical", "none")
 
@@ -54,7 +55,12 @@ def _add_explore(commands: argparse._SubParsersAction[argparse.ArgumentParser]) 
 
 def _add_search(explore: argparse.ArgumentParser) -> None:
     """Add the options that choose the schedules."""
-    explore.add_argument("--seeds", type=_count_of, metavar="N", help=f"number of schedules (default: {DEFAULT_SEEDS})")
+    explore.add_argument(
+        "--seeds",
+        type=_count_or_auto,
+        metavar="N|auto",
+        help=f"number of schedules (default: {DEFAULT_SEEDS})",
+    )
     explore.add_argument("--budget", type=seconds_of, metavar="SECONDS", help="start no schedule after this wall time")
     explore.add_argument(
         "--policy",
@@ -228,6 +234,10 @@ def _drawn_of(text: str) -> tuple[str, ParameterDistribution]:
         return name, ParameterDistribution.parse(distribution)
     except UsageError as error:
         raise argparse.ArgumentTypeError(f"{name}: {error.text}") from None
+
+
+def _count_or_auto(text: str) -> int | str:
+    return text if text == AUTO else _count_of(text)
 
 
 def _count_of(text: str) -> int:

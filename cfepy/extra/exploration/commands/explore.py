@@ -16,7 +16,7 @@ from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS, INTERRUPTED
 from cfepy.cli.options import plan_of_mission
 from cfepy.cli.user_notes import tell
 from cfepy.extra.exploration import WIDTH, Expedition, Finding, Report, Told, Worst, story_width
-from cfepy.extra.exploration.commands import DEFAULT_SEEDS
+from cfepy.extra.exploration.commands import AUTO, DEFAULT_SEEDS
 from cfepy.pilot import RunPlan
 from cfepy.schedules import Schedule
 from cfepy.status import UsageError
@@ -55,6 +55,8 @@ def show(report: Report, stream: TextIO, quiet: bool = False) -> None:
     if not quiet and report.is_steady and (not report.findings or report.breadth.seen is not None):
         for line in report.breadth.lines():
             print(f"  {line}", file=stream)
+    elif not quiet and report.breadth.switches is not None:
+        print(f"  {report.breadth.switches.line()}", file=stream)
 
 
 def summary(report: Report) -> str:
@@ -181,9 +183,12 @@ def _expedition(arguments: argparse.Namespace) -> Expedition:
     """Return the exploration that the command line requests."""
     names = ("policy", "depth", "first_seed", "any_priority", "fair", "until_failure", "events", "jobs", "cluster")
     more = ("worst", "results", "shrink", "points")
+    is_auto = arguments.seeds == AUTO
+    usual = DEFAULT_SEEDS if arguments.budget is None else None
     return Expedition(
         plan_of_mission(arguments),
-        seeds=arguments.seeds or (DEFAULT_SEEDS if arguments.budget is None else None),
+        seeds=None if is_auto else arguments.seeds or usual,
+        until_known=is_auto,
         budget_s=arguments.budget,
         **{name: getattr(arguments, name) for name in (*names, *more)},
         hold_s=arguments.hold,
