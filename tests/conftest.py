@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np  # noqa: F401  pytester forgets modules that its runs load first, and numpy cannot be loaded twice
 import pytest
 from hypothesis import settings
 

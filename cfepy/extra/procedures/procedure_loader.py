@@ -137,10 +137,8 @@ class Procedures:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         sys.path[:] = self._path
-        roots = tuple(f"{each}/" for each in self._folders)
         for name, module in list(sys.modules.items()):
-            file = getattr(module, "__file__", None) or ""
-            if name in (*_MODULES, _CONNECTION) or (name not in self._before and file.startswith(roots)):
+            if name in (*_MODULES, _CONNECTION) or (name not in self._before and self._is_own(module)):
                 sys.modules.pop(name, None)
         for name in (*_MODULES, _CONNECTION):
             if name in self._before:
@@ -150,12 +148,17 @@ class Procedures:
         """Import a module for a procedure, whose module `time` has the mission's clock."""
         known = set(sys.modules)
         found = builtins.__import__(name, *given, **options)
-        roots = tuple(f"{each}/" for each in self._folders)
         for new in set(sys.modules) - known:
-            module = sys.modules[new]
-            if (getattr(module, "__file__", None) or "").startswith(roots):
-                self._set_clock(module)
+            if self._is_own(sys.modules[new]):
+                self._set_clock(sys.modules[new])
         return self._clock if found is time else found
+
+    def _is_own(self, module: ModuleType) -> bool:
+        """Return whether a module is a file of the procedures, not one of a virtual environment in their folder."""
+        file = getattr(module, "__file__", None) or ""
+        roots = tuple(f"{each}/" for each in self._folders)
+        installed = tuple(f"{each}/" for each in self._path if f"{each}/".startswith(roots))
+        return file.startswith(roots) and not file.startswith(installed)
 
     def _set_clock(self, module: ModuleType) -> None:
         for name, value in list(vars(module).items()):
@@ -228,8 +231,7 @@ class Procedures:
 
     def trackers(self) -> list[Any]:
         """Return the objects of procedures and of their modules that track requirements, each once."""
-        roots = tuple(f"{each}/" for each in self._folders)
-        own = [vars(each) for each in sys.modules.values() if (getattr(each, "__file__", None) or "").startswith(roots)]
+        own = [vars(each) for each in list(sys.modules.values()) if self._is_own(each)]
         found = {id(value): value for names in [self._globals, *own] for value in names.values() if _is_tracker(value)}
         return list(found.values())
 

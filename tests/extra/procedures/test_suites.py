@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from cfepy.cli.main import main
 from cfepy.extra.procedures import CampaignResult, explore_procedures
 from cfepy.extra.procedures.procedures_command import place_of
 from cfepy.status import UsageError
-from tests.extra.procedures.demo import PLUGIN, SUITE, fly, settings, verdicts
+from tests.extra.procedures.demo import PLUGIN, SUITE, fly, fly_script, settings, verdicts
 
 
 @pytest.fixture(scope="module")
@@ -106,3 +107,17 @@ def test_computer_has_a_host_and_two_ports(text: str, place: tuple[str, int, int
 def test_wrong_computer_is_reported(text: str) -> None:
     with pytest.raises(UsageError, match="--computer: expected HOST"):
         place_of(text)
+
+
+def test_package_of_an_environment_below_the_procedures_stays_loaded(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    packages = tmp_path / "venv" / "site-packages"
+    packages.mkdir(parents=True)
+    (packages / "installed_once.py").write_text("", encoding="utf-8")
+    (tmp_path / "helper_of_procedures.py").write_text("", encoding="utf-8")
+    monkeypatch.syspath_prepend(packages)
+    result = fly_script(tmp_path, "import installed_once, helper_of_procedures\n")
+    assert result.verdict == "PASS", result.message
+    assert "installed_once" in sys.modules
+    assert "helper_of_procedures" not in sys.modules
