@@ -47,12 +47,12 @@ class Browser:
 
     Attributes:
         errors: errors that were logged or thrown.
-        requests: URLs that the page requested after its own.
     """
 
     def __init__(self, folder: Path) -> None:
         self.errors: list[str] = []
-        self.requests: list[str] = []
+        self._requests: list[tuple[str, str]] = []  # the loader of a page, and the URL
+        self._loader = ""
         self._numbers = itertools.count(1)
         self._session: str | None = None
         self._rest = b""
@@ -128,17 +128,21 @@ class Browser:
         elif method == "Log.entryAdded" and about["entry"]["level"] in ("error", "warning"):
             self.errors.append(about["entry"]["text"])
         elif method == "Network.requestWillBeSent":
-            self.requests.append(about["request"]["url"])
+            self._requests.append((about["loaderId"], about["request"]["url"]))
 
     def open(self, page: Path) -> float:
         """Load a file and wait until it has loaded. Returns the load time in s, as the page measures it."""
-        self.call("Page.navigate", url=page.as_uri())
+        self._loader = self.call("Page.navigate", url=page.as_uri())["loaderId"]
         wait = "new Promise(done => document.readyState === 'complete' ? done() : addEventListener('load', done))"
         self.evaluate(wait)
-        own = self.requests.pop(0)
-        assert own == page.as_uri()
+        assert (self._loader, page.as_uri()) in self._requests
         took_ms = self.evaluate("performance.getEntriesByType('navigation')[0].domComplete")
         return float(took_ms) / 1000
+
+    @property
+    def requests(self) -> list[str]:
+        """URLs that the page requested after its own, without late requests of the page before it."""
+        return [url for loader, url in self._requests if loader == self._loader][1:]
 
     def evaluate(self, expression: str) -> Any:
         """Return the value of a JavaScript expression, or of the promise that it returns."""

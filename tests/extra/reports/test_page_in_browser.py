@@ -43,7 +43,6 @@ def opened(browser: Browser, shown: Shown, tmp_path: Path) -> Browser:
     page = tmp_path / "report.html"
     page.write_text(shown.page, encoding="utf-8")
     browser.errors.clear()
-    browser.requests.clear()
     browser.resize(1280, 900)
     browser.open(page)
     return browser
@@ -66,7 +65,6 @@ def test_browser_reports_errors_and_requests_of_a_page(browser: Browser, tmp_pat
     page = tmp_path / "bad.html"
     page.write_text("<link rel=icon href='data:,'><img src='other.png'><script>nothing()</script>", encoding="utf-8")
     browser.errors.clear()
-    browser.requests.clear()
     browser.open(page)
     assert [url.rsplit("/", 1)[1] for url in browser.requests if not url.startswith("data:")] == ["other.png"]
     assert any("nothing is not defined" in error for error in browser.errors)
