@@ -5,7 +5,8 @@
 
 The wait is as long as the work of the third task, not of the lock's owner. Mutexes with priority inheritance, such as
 OSAL's, prevent this (Sha, Rajkumar, Lehoczky: IEEE Transactions on Computers 39, 1990). A semaphore has no owner. It
-counts as a lock of the task that took it last, if this task has given it back before.
+counts as a lock of the task that took it last, if it was made full, or if this task has given it back before. A
+semaphore that another task gives is a signal, not a lock.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from cfepy.units import NS_PER_MS
 SHORTEST_NS = NS_PER_MS  # minimum duration of reported inversions, by default
 _TAKES = ("bin_sem_take", "bin_sem_timed_wait", "count_sem_take", "count_sem_timed_wait")
 _GIVES = ("bin_sem_give", "count_sem_give")
+_CREATES = ("bin_sem_create", "count_sem_create")
 
 
 @dataclass(slots=True)
@@ -50,6 +52,7 @@ class InversionWatch(Observer):
         self._shortest_ns = shortest_ns
         self._holders: dict[int, Task] = {}  # the task that took a semaphore last, by its id
         self._locks: set[tuple[int, Task]] = set()  # semaphores, with tasks that took them and gave them back
+        self._full: set[int] = set()  # semaphores that were made full, and that only their takers have given
         self._waits: dict[Task, _Wait] = {}
         self._ran_from = 0
         self._held_up: list[_Wait] = []  # waits in which the running task is one of the others
@@ -69,8 +72,9 @@ class InversionWatch(Observer):
         super().power_up(processor)
         self._holders.clear()
         self._locks.clear()
+        self._full.clear()
         osal = processor.cfe.os
-        for names, wrapped in ((_TAKES, self._taking), (_GIVES, self._giving)):
+        for names, wrapped in ((_TAKES, self._taking), (_GIVES, self._giving), (_CREATES, self._creating)):
             for name in names:
                 # other attachments wrap methods too
                 setattr(osal, name, MethodType(wrapped(getattr(osal, name)), osal))
@@ -80,6 +84,15 @@ class InversionWatch(Observer):
         self._end_all()
 
     # -- semaphores as locks -----------------------------------------------------------------------------------------
+
+    def _creating(self, create: Callable[..., int]) -> Callable[..., int]:
+        def call(_: object, name: str, initial_value: int, options: int = 0) -> int:
+            made = create(name, initial_value, options)
+            if initial_value:
+                self._full.add(made)
+            return made
+
+        return call
 
     def _taking(self, take: Callable[..., Any]) -> Callable[..., Any]:
         def call(_: object, sem_id: int, *timeout: int) -> Any:
@@ -96,6 +109,8 @@ class InversionWatch(Observer):
             if self._holders.get(sem_id) is task:
                 self._locks.add((sem_id, task))
                 del self._holders[sem_id]
+            else:
+                self._full.discard(sem_id)
             give(sem_id)
 
         return call
@@ -109,8 +124,10 @@ class InversionWatch(Observer):
             return None
         holders = list(waits.holders())
         if isinstance(waits.subject, OsObject):
-            holder = self._holders.get(waits.subject.id)
-            holders += [holder] if holder is not None and (waits.subject.id, holder) in self._locks else []
+            semaphore = waits.subject.id
+            holder = self._holders.get(semaphore)
+            is_lock = semaphore in self._full or (semaphore, holder) in self._locks
+            holders += [holder] if holder is not None and is_lock else []
         return holders[0] if len(holders) == 1 and holders[0].base_priority > task.priority else None
 
     # -- waiting and running -------------------------------------------------------------------------------------------

@@ -91,8 +91,20 @@ def test_mutex_inherits_priority(tmp_path: Path) -> None:
     assert inversions(tmp_path, "mut_sem", "mut_sem_create(LOCK)") == []
 
 
-def test_semaphore_that_is_never_given_back_is_not_a_lock(tmp_path: Path) -> None:
-    assert inversions(tmp_path, is_lock=False) == []
+def test_semaphore_that_is_made_full_is_a_lock_from_its_first_take(tmp_path: Path) -> None:
+    (found,) = inversions(tmp_path, is_lock=False)
+    assert (found.victim, found.holder, found.waited_ns) == ("URGENT", "IDLE", 17_000_000)
+
+
+@pytest.mark.parametrize("create", ["bin_sem_create(LOCK, 0)", "bin_sem_create(LOCK, 1)"])
+def test_semaphore_that_another_task_gives_is_a_signal(tmp_path: Path, create: str) -> None:
+    create = f"{create}; cfe.os.bin_sem_give(cfe.os.bin_sem_get_id_by_name(LOCK))"
+    assert inversions(tmp_path, create=create, is_lock=False) == []
+
+
+def test_semaphore_that_is_made_empty_is_a_lock_when_its_taker_has_given_it_back(tmp_path: Path) -> None:
+    create = "bin_sem_create(LOCK, 0); cfe.os.bin_sem_give(cfe.os.bin_sem_get_id_by_name(LOCK))"
+    assert len(inversions(tmp_path, create=create)) == 1
 
 
 def test_shorter_inversions_are_not_kept(tmp_path: Path) -> None:
