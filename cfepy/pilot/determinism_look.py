@@ -67,6 +67,7 @@ class Look:
         lines: the last records before it and the record itself, as text.
         stack: the executed lines of node, application and libraries, the outermost first.
         files: the nodes' own source files.
+        contacts: accesses to the computer outside the simulation before it, as text.
     """
 
     record: bytes
@@ -74,6 +75,7 @@ class Look:
     lines: tuple[str, ...]
     stack: tuple[Line, ...]
     files: tuple[str, ...]
+    contacts: tuple[str, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """Return the observation as plain data."""
@@ -84,7 +86,9 @@ class Look:
         """Return an observation from the data of `to_dict`."""
         stack = tuple(Line(**line) for line in plain["stack"])
         record = bytes.fromhex(plain["record"])
-        return cls(record, plain["before"], tuple(plain["lines"]), stack, tuple(plain["files"]))
+        return cls(
+            record, plain["before"], tuple(plain["lines"]), stack, tuple(plain["files"]), tuple(plain["contacts"])
+        )
 
     def without_root(self, root: str) -> Look:
         """Return the same observation with source paths without this root folder."""
@@ -252,6 +256,9 @@ class _Reader:
         name = _name(node.func).rpartition(".")[2]
         if isinstance(node.func, ast.Name) and name in _OF_THE_PROCESS:
             yield node.lineno, f"uses {_OF_THE_PROCESS[name]}"
+        key = next((_name(each.value) for each in node.keywords if each.arg == "key"), "")
+        if key in _OF_THE_PROCESS:
+            yield node.lineno, f"sorts by {_OF_THE_PROCESS[key]}"
         if name in _IN_ORDER and any(map(self._is_set, node.args)):
             yield node.lineno, "goes through a set"
         if name == "pop" and isinstance(node.func, ast.Attribute) and self._is_set(node.func.value):

@@ -22,6 +22,14 @@ _CHANGES = frozenset({"os.link", "os.mkdir", "os.remove", "os.rename", "os.rmdir
 _ANSWERS = ("/proc/", "/sys/", "/dev/random", "/dev/urandom")  # different at each time
 _SAME = ("/dev/null", "/dev/zero", "/dev/full")
 _IMPORTS = "<frozen importlib"
+_OF_LIBC = {
+    **dict.fromkeys(("arc4random", "getentropy", "getrandom", "rand", "random"), "draws random numbers"),
+    **dict.fromkeys(("clock", "clock_gettime", "ftime", "gettimeofday", "time", "times"), "asks the clock"),
+    **dict.fromkeys(("getpid", "gettid", "getppid"), "asks for a number of the process"),
+    **dict.fromkeys(("nanosleep", "poll", "pselect", "select", "sleep", "usleep"), "waits in real time"),
+    **dict.fromkeys(("malloc", "sbrk"), "uses an address"),
+}
+"""Functions of libc with another result in each run, by name."""
 MOST = 100  # maximum number of accesses kept
 
 
@@ -60,6 +68,9 @@ class OpenWorld:
     def _contact(self, event: str, values: tuple[Any, ...]) -> str | None:
         if event == "ctypes.dlopen":
             return f"loads {values[0]}, whose code nothing holds" if values[0] else None
+        if event == "ctypes.dlsym":
+            action = _OF_LIBC.get(str(values[1]))
+            return None if action is None else f"{action} of this computer by {values[1]} of libc"
         if not values or not isinstance(values[0], (str, bytes, os.PathLike)):
             return None
         path = os.path.abspath(os.fsdecode(values[0]))
@@ -95,7 +106,7 @@ def _listeners() -> list[OpenWorld]:
     found: list[OpenWorld] = []
 
     def hook(event: str, values: tuple[Any, ...]) -> None:
-        if found and (event in _CHANGES or event in ("open", "ctypes.dlopen", MADE)):
+        if found and (event in _CHANGES or event in ("open", "ctypes.dlopen", "ctypes.dlsym", MADE)):
             for each in tuple(found):
                 each.told(event, values)
 

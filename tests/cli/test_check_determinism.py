@@ -122,6 +122,32 @@ def test_other_causes(tmp_path: Path, capsys: pytest.CaptureFixture[str], expres
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("statement", "contact"),
+    [
+        ("ctypes.CDLL(None).getrandom(drawn, 8, 0)", "draws random numbers of this computer by getrandom of libc"),
+        ("drawn = open('/proc/self/stat').read()", "reads /proc/self/stat, which is another each time"),
+    ],
+)
+def test_difference_is_told_with_the_accesses_past_the_simulation(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], statement: str, contact: str
+) -> None:
+    program = f"""
+    import ctypes
+    import time
+    drawn = ctypes.create_string_buffer(8)
+    time.sleep(0.1)
+    {statement}
+    print(getattr(drawn, "raw", drawn))
+    """
+    folder = write_mission(tmp_path, STARTUP, talker=program, listener=LISTENER)
+    assert check(folder, "2") == 1
+    shown = capsys.readouterr().out
+    assert f"  talker.py:6: {statement}: {contact}\n" in shown
+    assert "even two runs alike differ" in shown
+
+
+@pytest.mark.slow
 def test_an_application(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     program = """
     def Main(cfe):

@@ -210,6 +210,22 @@ def test_installed_packages_are_fresh_when_pure_and_shared_when_not(run):
     assert program.global_("module") is not sys.modules.get("markdown_it")
 
 
+def test_numpy_generator_without_a_seed_is_seeded_anew_by_the_node(start):
+    source = """
+        import numpy as np
+        np.random.seed(5)
+        np.random.seed()
+        own = np.random.RandomState(5)
+        own.seed()
+        drawn = [np.random.rand(), own.rand()]
+    """
+    runs = [start(source, name=name) for name in ("a", "a", "b")]
+    runs[0].kernel.run()
+    one, again, other = [run.global_("drawn") for run in runs]
+    assert one == again
+    assert len({*one, *other, 0.22199317108973948}) == 5  # the last one is the first number after seed(5)
+
+
 def test_numpy_random_is_the_nodes_own(start):
     import numpy
 

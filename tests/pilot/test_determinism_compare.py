@@ -101,7 +101,8 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         "import os.path\n"
         "kept = WeakSet()\n"
         "base = sqlite3.connect('x'); here = np.empty(3), date('now'), date('2026-01-01'), gc.get_count()\n"
-        "there = np.zeros(3), os.path.empty(3), kept.connect('x')\n",
+        "there = np.zeros(3), os.path.empty(3), kept.connect('x')\n"
+        "first, last = sorted(there, key=hash), max(there, key=id)\n",
         encoding="utf-8",
     )
     assert [(each.line, each.why) for each in suspects(str(file))] == [
@@ -110,6 +111,8 @@ def test_suspicious_lines(tmp_path: Path) -> None:
         (6, "calls a C library, which uses the clock and random numbers of this computer"),
         (6, "counts objects of the whole process"),
         (6, "returns uninitialized memory"),
+        (8, "sorts by an address"),
+        (8, "sorts by the hash of a text, which follows PYTHONHASHSEED"),
     ]
     file.write_text("this is = no program", encoding="utf-8")
     assert suspects(str(file)) == suspects(str(tmp_path / "none.py")) == []

@@ -17,7 +17,7 @@ from typing import Any
 from cfepy.cli import flight_add_ons
 from cfepy.cli.main import ENDED_WELL, FOUND_PROBLEMS
 from cfepy.cli.run.compared_run import ComparedRun
-from cfepy.cli.run.compared_runs import FirstDifference, RunInProcess, facts_of, failure, show, started
+from cfepy.cli.run.compared_runs import FirstDifference, RunInProcess, facts_of, failure, show, show_contacts, started
 from cfepy.cli.user_notes import tell
 from cfepy.pilot import RunPlan
 from cfepy.pilot.determinism import RunEndedError, first_parting
@@ -25,7 +25,6 @@ from cfepy.pilot.determinism_look import Look
 from cfepy.rtos import AUTO, GREENLET, THREAD, has_greenlets
 from cfepy.status import UsageError
 
-MOST_CONTACTS = 20
 ATTEMPTS = 3  # runs that depend on addresses or the host do not differ first at the same record twice
 _SETS = """with `ordered_sets: true` in the mission file these two agree: somewhere the order of a set decides;
 sort it in the code (for name in sorted(names)), or switch ordered sets on"""
@@ -93,7 +92,7 @@ def compare(plan: RunPlan, count: int) -> list[str] | None:
     for _ in range(ATTEMPTS):
         found, facts = runs.compare(variants)
         if found is None:
-            _tell_contacts(facts.get("contacts", []))
+            show_contacts(facts.get("contacts", []), sys.stdout)
             print(f"all made the same {facts['records']} records\ntrace: {facts['digest']}")
             return list(facts["problems"])
         one, other, index = found
@@ -104,16 +103,6 @@ def compare(plan: RunPlan, count: int) -> list[str] | None:
     print(f"not deterministic: record {index} differs, but never in the same way twice; something outside the runs")
     print("decides: a file that changes, an address (id()), a C library")
     return None
-
-
-def _tell_contacts(contacts: Sequence[str]) -> None:
-    """Report contacts outside the simulation, whose answers may differ in another run or on another computer."""
-    if contacts:
-        print("past the simulated computer, where cfepy cannot answer for it:")
-    for text in contacts[:MOST_CONTACTS]:
-        print(f"  {text}")
-    if len(contacts) > MOST_CONTACTS:
-        print(f"  and {len(contacts) - MOST_CONTACTS} more")
 
 
 def _variants(count: int, tasks: str) -> list[Variant]:

@@ -135,6 +135,7 @@ class Lookout(Recorder):
 
     Args:
         writer: receives the look.
+        world: has the accesses of the run to the computer outside the simulation.
         index: number of the record.
         lines: how many records before it are shown.
         decode: as in `ComparedRun`.
@@ -142,8 +143,15 @@ class Lookout(Recorder):
     """
 
     def __init__(
-        self, writer: RecordWriter, index: int, lines: int, decode: Sequence[str] = (), root: str = ""
+        self,
+        writer: RecordWriter,
+        world: OpenWorld,
+        index: int,
+        lines: int,
+        decode: Sequence[str] = (),
+        root: str = "",
     ) -> None:
+        self._world = world
         self._before = lines
         self._last = ""  # the line of the record before the one that is looked at
         self._decode = [bytes.fromhex(each) for each in decode]
@@ -174,7 +182,7 @@ class Lookout(Recorder):
         """Write the look and end the process. It is called deep inside the simulation, where a run cannot be ended
         properly.
         """
-        look = look.without_root(self._root)
+        look = replace(look.without_root(self._root), contacts=tuple(self._world.contacts))
         event = self._event(look).to_dict()
         decoded = [self._decoded(record) for record in self._decode]
         self._writer.end({**look.to_dict(), "last": self._last, "event": event, "decoded": decoded})
@@ -247,7 +255,7 @@ def _recorder(asked: ComparedRun, world: OpenWorld, root: str = "") -> RecordPip
     return (
         RecordPipe(writer, world)
         if asked.look_at is None
-        else Lookout(writer, asked.look_at, asked.lines, asked.decode, root)
+        else Lookout(writer, world, asked.look_at, asked.lines, asked.decode, root)
     )
 
 

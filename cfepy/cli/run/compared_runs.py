@@ -21,6 +21,7 @@ from cfepy.reading.resources import import_path, python_command
 from cfepy.status import UsageError
 
 MOST_SUSPECTS = 8
+MOST_CONTACTS = 20
 MOST_BYTES = 16
 _ADDRESS = re.compile(rb"[\w.<]* [\w. ]*at 0x[0-9a-f]{6,16}>?")
 """The default text of an object, which ends with its address."""
@@ -106,8 +107,26 @@ def show(found: FirstDifference, cause: str, stream: TextIO) -> None:
     """
     print(f"\nnot deterministic: record {found.index} is the first that differs", file=stream)
     show_sides(found, stream)
+    if found.looks[0].contacts:
+        print(file=stream)
+        show_contacts(found.looks[0].contacts, stream)
     print(f"\n{cause}", file=stream)
     _suspects(found, stream)
+
+
+def show_contacts(contacts: Sequence[str], stream: TextIO) -> None:
+    """Write accesses to the computer outside the simulation, which may answer otherwise in another run.
+
+    Args:
+        contacts: the accesses, as text.
+        stream: the output.
+    """
+    if contacts:
+        print("past the simulated computer, where cfepy cannot answer for it:", file=stream)
+    for text in contacts[:MOST_CONTACTS]:
+        print(f"  {text}", file=stream)
+    if len(contacts) > MOST_CONTACTS:
+        print(f"  and {len(contacts) - MOST_CONTACTS} more", file=stream)
 
 
 def show_sides(found: FirstDifference, stream: TextIO) -> None:

@@ -8,7 +8,7 @@ before file calls while schedules are explored. The files of OSAL are in `cfepy.
 
 from __future__ import annotations
 
-from cfepy.nodes.files.file_calls import Entries, FileCalls
+from cfepy.nodes.files.file_calls import Entries, FileCalls, same_sizes
 from cfepy.nodes.files.file_points import READS_FILE, WRITES_FILE, FilePoints, file_points
 from cfepy.nodes.files.opened import OpenFiles
 from cfepy.nodes.files.overlay import PREFIX, Overlay
@@ -32,4 +32,5 @@ __all__ = [
     "Overlay",
     "below_root",
     "file_points",
+    "same_sizes",
 ]

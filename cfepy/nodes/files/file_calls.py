@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from cfepy.nodes.files.overlay import Overlay
     from cfepy.nodes.universe import Universe
 
-_LOOKS = ("getxattr", "listxattr", "pathconf", "statvfs")
+_LOOKS = ("getxattr", "listxattr", "pathconf")
+BLOCK_BYTES = 4096
+DISK_BYTES = 1 << 30  # of each disk, all of it free: a node must not see how full this computer's is
 _CHANGES = ("chflags", "removexattr", "setxattr")
 _LINK_CHANGES = ("lchflags",)
 _WRITES = ("copy_file_range", "ftruncate", "posix_fallocate", "pwrite", "pwritev", "sendfile", "writev")
@@ -164,6 +166,7 @@ class FileCalls:
         }
         found |= {name: function for name, function in owners.items() if hasattr(os, name)}
         found |= {name: self._look_at(getattr(os, name)) for name in _LOOKS if hasattr(os, name)}
+        found |= {name: self._look_at(same_sizes(getattr(os, name))) for name in ("statvfs",) if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name)) for name in _CHANGES if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name), follow=False) for name in _LINK_CHANGES if hasattr(os, name)}
         found |= {name: self._writing(name, getattr(os, name)) for name in _WRITES if hasattr(os, name)}
@@ -393,3 +396,14 @@ class _told:
             error.filename = self._path
             if self._second is not None:
                 error.filename2 = self._second
+
+
+def same_sizes(look: Callable[..., os.statvfs_result]) -> Callable[..., os.statvfs_result]:
+    """Return `os.statvfs` with sizes that are the same on each computer; its errors stay."""
+
+    def call(path: Any) -> os.statvfs_result:
+        names = look(path).f_namemax
+        blocks = DISK_BYTES // BLOCK_BYTES
+        return os.statvfs_result((BLOCK_BYTES, BLOCK_BYTES, *[blocks] * 6, 0, names, 0))
+
+    return call

@@ -12,7 +12,7 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-from cfepy.nodes.files import LISTED, Entries, FileCalls
+from cfepy.nodes.files import LISTED, Entries, FileCalls, same_sizes
 from cfepy.nodes.files.stamps import UMASK
 from cfepy.nodes.made_modules import rebind
 from cfepy.nodes.refused_modules import PROCESS, RefusedError, refusal
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 _ONE_PATH = (
     "access", "chflags", "chmod", "chown", "getxattr", "lchmod", "lchown", "listxattr", "lstat", "mkdir",
     "mkfifo", "mknod", "open", "pathconf", "readlink", "remove", "removexattr", "rmdir", "setxattr",
-    "stat", "statvfs", "truncate", "unlink", "utime",
+    "stat", "truncate", "unlink", "utime",
 )
 _TWO_PATHS = ("link", "rename", "replace")
 _PROCESSES = (
@@ -112,6 +112,8 @@ def _host_paths(universe: Universe) -> dict[str, Any]:
     names = {name: one(getattr(os, name)) for name in _ONE_PATH if hasattr(os, name)}
     names.update({name: two(getattr(os, name)) for name in _TWO_PATHS})
     names.update(symlink=symlink, listdir=listdir, scandir=scandir)
+    if hasattr(os, "statvfs"):
+        names["statvfs"] = one(same_sizes(os.statvfs))
     return names
 
 

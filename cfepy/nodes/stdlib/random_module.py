@@ -61,6 +61,11 @@ def numpy_random_module(universe: Universe) -> ModuleType:
     own.update(dict.fromkeys(("ranf", "sample"), state.random_sample))
     own.update({name: _seeded_class(universe, getattr(host, name)) for name in _GENERATORS})
 
+    def seed(seed: Any = None) -> None:
+        state.seed(universe.rng.getrandbits(32) if seed is None else seed)
+
+    own["seed"] = seed
+
     def default_rng(seed: Any = None) -> Any:
         return host.default_rng(universe.rng.getrandbits(128) if seed is None else seed)
 
@@ -73,4 +78,8 @@ def _seeded_class(universe: Universe, generator: Any) -> type:
     def start(self: Any, seed: Any = None, *args: Any, **options: Any) -> None:
         generator.__init__(self, universe.rng.getrandbits(32) if seed is None else seed, *args, **options)
 
-    return type(generator.__name__, (generator,), {"__init__": start})
+    def seed_again(self: Any, seed: Any = None) -> None:
+        generator.seed(self, universe.rng.getrandbits(32) if seed is None else seed)
+
+    again = {"seed": seed_again} if hasattr(generator, "seed") else {}
+    return type(generator.__name__, (generator,), {"__init__": start, **again})

@@ -37,3 +37,19 @@ def test_memory_shows_an_idle_computer(run):
 def test_process_has_no_connections(run):
     program = run("import psutil\nprint(psutil.Process().net_connections(), psutil.Process().connections('tcp'))")
     assert program.lines == ["[] []"]
+
+
+def test_disk_is_empty_for_every_function(run):
+    program = run(
+        """
+        import os, psutil, shutil
+        found = os.statvfs(".")
+        sizes = {shutil.disk_usage("/").free, psutil.disk_usage("/").free, found.f_bavail * found.f_frsize}
+        print(sizes == {psutil.virtual_memory().total}, shutil.disk_usage("/").used, found.f_fsid)
+        try:
+            shutil.disk_usage("/none")
+        except FileNotFoundError as error:
+            print(error)
+        """
+    )
+    assert program.lines == ["True 0 0", "[Errno 2] No such file or directory: '/none'"]
