@@ -91,3 +91,9 @@ def test_commands_of_a_file_count_for_all_its_subfolders(tmp_path: Path, monkeyp
 def test_a_file_without_end_is_refused(text: str, said: str, tmp_path: Path) -> None:
     with pytest.raises(UsageError, match=said):
         values(tmp_path, text)
+
+
+def test_long_list_can_grow_by_one_word_at_a_time(tmp_path: Path) -> None:
+    word = "/" + 80 * "a"
+    text = f"foreach(i RANGE 1 700)\nlist(APPEND r {word})\nendforeach()"
+    assert len(values(tmp_path, text)) == 700

@@ -59,6 +59,13 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
 
 def _add_tree(options: argparse._ArgumentGroup) -> None:
     options.add_argument("--cpu", metavar="NAME", help="the processor (default: the first one)")
+    options.add_argument(
+        "--modules",
+        metavar="DIR",
+        action="append",
+        default=[],
+        help="find modules here first, as CFS_APP_PATH of a cFS build; repeatable",
+    )
     options.add_argument("--startup", metavar="FILE", help="use this startup script, not the tree's")
     options.add_argument(
         "--only", metavar="APP", action="append", default=[], help="build only this application; repeatable"

@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.headers or arguments.gdb_symbols:
             return ENDED_WELL
         raise UsageError("missing folder: cfepy build FOLDER", field="FOLDER")
-    if is_tree(Path(arguments.folder)):
+    if is_tree(Path(arguments.folder), arguments.defs):
         return _build_tree(arguments)
     _refuse_tree_options(arguments)
     try:
@@ -74,6 +74,7 @@ def _tree_options(arguments: argparse.Namespace) -> TreeOptions:
     options = TreeOptions(
         cpu=arguments.cpu,
         definitions=arguments.defs,
+        modules=tuple(arguments.modules),
         startup=None if arguments.startup is None else Path(arguments.startup),
         only=tuple(arguments.only),
         stand_ins=tuple(arguments.stand_ins),
@@ -83,10 +84,12 @@ def _tree_options(arguments: argparse.Namespace) -> TreeOptions:
 
 
 def _refuse_tree_options(arguments: argparse.Namespace) -> None:
-    given = {name: getattr(arguments, name) for name in ("cpu", "startup", "only", "stand_ins", "cmake", "json")}
+    given = {
+        name: getattr(arguments, name) for name in ("cpu", "startup", "only", "stand_ins", "modules", "cmake", "json")
+    }
     for name, value in given.items():
         if value:
-            option = f"--{name.replace('_', '-').removesuffix('s')}"
+            option = "--stand-in" if name == "stand_ins" else f"--{name}"
             raise UsageError("only valid for a mission tree, a folder with NAME_defs/targets.cmake", field=option)
 
 

@@ -55,7 +55,8 @@ def list_command(script: Variables, words: Sequence[str]) -> None:
             items = _items(script, name)
             changed = _changed(script, kind, items, rest)
             if changed is not None:
-                script.spend(sum(map(len, changed)) + len(changed))
+                texts = sum(map(len, changed)) if kind == "TRANSFORM" else 0  # others keep the texts of the items
+                script.spend(texts + len(changed))
                 script.variables[name] = changed
 
 

@@ -72,6 +72,7 @@ def _configure(
         "CFEPY_TREE": str(layout.tree),
         "CFEPY_DEFS": str(layout.definitions),
         "CFEPY_CPU": cpu or "",
+        "CFEPY_SEARCHED": ";".join(layout.searched),
         "CFEPY_MORE": ";".join(more),
         "CFEPY_IGNORED": ";".join(ignored),
         "CMAKE_INSTALL_PREFIX": str(scratch / "prefix"),
@@ -116,8 +117,9 @@ class _Reply:
         cpu = choose_cpu(self._cpu, self._variables.get("MISSION_CPUNAMES", []), self._layout.definitions / TARGETS)
         for kind, folder, place, *words in told:
             self._tell(kind, folder, place, words)
-        folders = module_folders(self._layout.tree)
-        made_by = {name: self._made_by.get(name, []) for name in self._variables.get(f"{cpu}_APPLIST", [])}
+        wanted = self._variables.get(f"{cpu}_APPLIST", [])
+        folders = module_folders(self._layout, wanted)
+        made_by = {name: self._made_by.get(name, []) for name in wanted}
         for name, targets in made_by.items():
             if not targets and name in folders:  # a folder that adds its libraries itself
                 made_by[name] = [each for each in self._modules() if Path(each.folder).is_relative_to(folders[name])]
@@ -139,7 +141,7 @@ class _Reply:
                 project.targets.all[name].is_application = True
                 self._made_by.setdefault(self._module, []).append(project.targets.all[name])
             case "convention", [name]:
-                target = convention_target(name, module_folders(self._layout.tree)[name], project)
+                target = convention_target(name, module_folders(self._layout, [name])[name], project)
                 self._made_by.setdefault(name, []).append(target)
             case "tables", [name, target_name, *sources]:
                 target = self._table_targets.get(target_name, Target(target_name, "OBJECT", folder))

@@ -60,6 +60,7 @@ class TreeOptions:
     Attributes:
         cpu: the processor; the first one of the tree when None.
         definitions: the tree's folder of definitions; the only one when None.
+        modules: more folders with modules, searched before the tree's own.
         startup: a startup script in place of the tree's.
         only: names of the modules to build; all when empty.
         stand_ins: names of modules for which cfepy's own applications stand in, even if the tree's could be built.
@@ -69,6 +70,7 @@ class TreeOptions:
 
     cpu: str | None = None
     definitions: str | None = None
+    modules: tuple[str, ...] = ()
     startup: Path | None = None
     only: tuple[str, ...] = ()
     stand_ins: tuple[str, ...] = ()
@@ -97,7 +99,7 @@ def build_tree(tree: Path, folder: Path | None = None, options: TreeOptions | No
             known = [each.name for each in shipped("apps").iterdir() if (each / "app.py").is_file()]
             text = f"cfepy has no application {name!r} that could stand in{expected(name, sorted(known))}"
             raise UsageError(text, field="--stand-in")
-    layout = find_layout(tree, options.definitions)
+    layout = find_layout(tree, options.definitions, options.modules)
     model = options.reader(layout, options.cpu, ())
     startup = find_startup(model, options.startup)
     more = _named_modules(model, startup)
@@ -111,7 +113,7 @@ def build_tree(tree: Path, folder: Path | None = None, options: TreeOptions | No
 def _named_modules(model: TreeModel, startup: StartupScript | None) -> tuple[str, ...]:
     """Return modules of the tree that the startup script names and targets.cmake does not."""
     known = {each.name for each in model.modules} | {each.folder.name for each in model.modules if each.folder}
-    folders = module_folders(model.layout.tree)
+    folders = module_folders(model.layout)
     names = [_file_name(each.file) for each in (startup.lines if startup is not None else ())]
     return tuple(each for each in dict.fromkeys(names) if each not in known and each in folders)
 

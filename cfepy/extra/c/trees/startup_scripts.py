@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -54,7 +55,7 @@ def find_startup(model: TreeModel, chosen: Path | None = None) -> StartupScript 
         return StartupScript(_read(chosen), str(chosen))
     file = model.files.get(NAME) or locate_installed(model.layout.definitions, model.cpu, NAME)
     if file is not None:
-        return StartupScript(_read(file), str(file.relative_to(model.layout.tree)))
+        return StartupScript(_read(file), os.path.relpath(file, model.layout.tree))
     for path, text in model.written.items():
         if path.endswith(".scr") and f"/{model.cpu}/" in path:
             return StartupScript(text.encode(), "written by the tree's CMake files")

@@ -41,7 +41,7 @@ def check_tree(folder: Path) -> list[MissionProblem] | None:
             found.append(MissionProblem(targets, 0, text, is_warning=stands_in))
     for each in model.modules:
         found += [] if each.sources is None else _old_names(each.name, each.sources)
-    known = {*module_folders(layout.tree), *(each.name for each in model.modules)}
+    known = {*module_folders(layout), *(each.name for each in model.modules)}
     startup = find_startup(model)
     if startup is None:
         text = "has no startup script for this processor; cfepy build makes one, or give a file with --startup"

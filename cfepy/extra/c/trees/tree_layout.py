@@ -8,6 +8,7 @@ are git submodules in most trees, and a submodule that was never fetched is an e
 from __future__ import annotations
 
 import os
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -30,10 +31,12 @@ class TreeLayout:
     Attributes:
         tree: its folder.
         definitions: its folder of definitions.
+        searched: the folders that have its modules, first those of the user.
     """
 
     tree: Path
     definitions: Path
+    searched: tuple[str, ...] = SEARCHED
 
     @property
     def config_name(self) -> str:
@@ -45,21 +48,33 @@ class TreeLayout:
         return absent_submodule(self.tree, folder)
 
 
-def is_tree(folder: Path) -> bool:
-    """Return True if a folder is a mission tree."""
-    return bool(_definitions_in(folder))
+def is_tree(folder: Path, definitions: str | Path | None = None) -> bool:
+    """Return True if a folder is a mission tree.
+
+    Args:
+        folder: the folder.
+        definitions: a folder of definitions that may be elsewhere. With a targets.cmake, it makes a folder with
+            `apps` a tree.
+    """
+    if _definitions_in(folder):
+        return True
+    return definitions is not None and (Path(definitions) / TARGETS).is_file() and (folder / SEARCHED[0]).is_dir()
 
 
-def find_layout(tree: Path, definitions: str | Path | None = None) -> TreeLayout:
+def find_layout(tree: Path, definitions: str | Path | None = None, modules: Sequence[str] = ()) -> TreeLayout:
     """Find the places of a tree.
 
     Args:
         tree: its folder.
         definitions: its folder of definitions, as a path or as a name in the tree; None for the only one.
+        modules: more folders with modules, searched before the tree's own, as cFS does with CFS_APP_PATH.
 
     Raises:
         UsageError: it has no such folder, or several and none was chosen.
     """
+    for each in modules:
+        if not Path(each).is_dir():
+            raise UsageError("folder not found", file=each, field="--modules")
     found = _definitions_in(tree)
     if definitions is not None:
         chosen = next((each for each in (Path(definitions), tree / definitions) if (each / TARGETS).is_file()), None)
@@ -74,7 +89,8 @@ def find_layout(tree: Path, definitions: str | Path | None = None) -> TreeLayout
         raise UsageError(f"has several folders of definitions: {several}; choose one with --defs", file=tree)
     else:
         chosen = found[0]
-    return TreeLayout(Path(os.path.abspath(tree)), Path(os.path.abspath(chosen)))
+    searched = (*(os.path.abspath(each) for each in modules), *SEARCHED)
+    return TreeLayout(Path(os.path.abspath(tree)), Path(os.path.abspath(chosen)), searched)
 
 
 def tree_above(folder: Path) -> Path | None:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -112,13 +112,20 @@ def choose_cpu(wanted: str | None, cpus: Sequence[str], file: Path) -> str:
     return cpu
 
 
-def module_folders(tree: Path) -> dict[str, Path]:
-    """Return the folders of all modules of a tree by name, those that come first in `SEARCHED`."""
+def module_folders(layout: TreeLayout, names: Iterable[str] = ()) -> dict[str, Path]:
+    """Return the folders of all modules of a tree by name, those that come first in `TreeLayout.searched`.
+
+    Args:
+        layout: the places of the tree.
+        names: names of wanted modules. One can be a path in a searched folder, such as `imu/fsw/cfs`.
+    """
     found: dict[str, Path] = {}
-    for place in SEARCHED:
-        for folder in sorted(tree.glob(f"{place}/*")):
+    for place in (layout.tree / each for each in layout.searched):
+        folders = {each.name: each for each in sorted(place.glob("*"))}
+        folders |= {each: place / each for each in names if "/" in each}
+        for name, folder in folders.items():
             if folder.is_dir():
-                found.setdefault(folder.name, folder)
+                found.setdefault(name, folder)
     return found
 
 
@@ -132,7 +139,7 @@ class _Maker:
         variables: Variables,
     ) -> None:
         self._layout = layout
-        self._folders = module_folders(layout.tree)
+        self._folders = module_folders(layout, made_by)
         self._project = project
         self._made_by = made_by
         self._variables = variables

@@ -7,6 +7,7 @@ result has the sources of each application and library, ready for `cfepy.extra.c
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,9 +16,10 @@ from cfepy.extra.c.toolchain.cmake_project import Directory, Project, ProjectScr
 from cfepy.extra.c.toolchain.cmake_script import FILE
 from cfepy.extra.c.toolchain.cmake_targets import INTERFACE, MODULE, SHARED, Target
 from cfepy.extra.c.toolchain.source_files import CORE_TARGETS, sources_by_convention
-from cfepy.extra.c.trees.tree_layout import SEARCHED, TARGETS, TreeLayout
+from cfepy.extra.c.trees.tree_layout import TARGETS, TreeLayout
 from cfepy.extra.c.trees.tree_model import TreeModel, choose_cpu, make_model, module_folders
 
+PLATFORM_FOLDERS = "APPLICATION_PLATFORM_INC_LIST"
 PARTS = ("PROCESSORID", "APPLIST", "STATIC_APPLIST", "FILELIST", "EMBED_FILELIST", "SYSTEM", "PLATFORM")
 
 
@@ -53,7 +55,7 @@ def convention_target(name: str, folder: Path, project: Project) -> Target:
 class _TreeReader:
     def __init__(self, layout: TreeLayout, cpu: str | None, more: Sequence[str]) -> None:
         self._layout = layout
-        self._folders = module_folders(layout.tree)
+        self._folders = module_folders(layout)
         targets_in = {**self._folders, **dict.fromkeys(("ut_assert", "ut_assert_pic"), layout.tree / "osal/ut_assert")}
         self._project = Project(layout.definitions / TARGETS, targets_in)
         for name in CORE_TARGETS:
@@ -73,7 +75,9 @@ class _TreeReader:
         for name in ("arch_build_custom", "arch_build_custom_native"):
             self._include(definitions / f"{name}.cmake")
         wanted = self._apps(cpu)
+        self._folders = module_folders(self._layout, wanted)
         root.variables |= {f"{name}_MISSION_DIR": [str(folder)] for name, folder in self._folders.items()}
+        self._include_platform_folders()
         folders = {name: self._folders[name] for name in wanted if name in self._folders}
         root.follows_subfolders = False
         for folder in folders.values():
@@ -92,6 +96,22 @@ class _TreeReader:
     def _include(self, file: Path) -> None:
         if file.is_file():
             self._root.include(file)
+
+    def _include_platform_folders(self) -> None:
+        """Evaluate the include folders of all applications that targets.cmake lists, now that their places are known.
+
+        A cFS build reads targets.cmake a second time for this, for each kind of processor.
+        """
+        root = self._root
+        if PLATFORM_FOLDERS not in root.variables:
+            return
+        before = dict(root.variables)
+        root.variables[PLATFORM_FOLDERS] = []
+        self._include(self._layout.definitions / TARGETS)
+        folders = map(os.path.normpath, root.variables[PLATFORM_FOLDERS])
+        root.variables.clear()
+        root.variables |= before
+        root.settings.includes += [each for each in dict.fromkeys(folders) if Path(each).is_dir()]
 
     # -- processors ----------------------------------------------------------------------------------------------------
 
@@ -161,7 +181,7 @@ def build_variables(layout: TreeLayout) -> dict[str, list[str]]:
         "UT_ASSERT_SOURCE_DIR": [f"{tree}/osal/ut_assert"],
         "MISSION_DEFS": [str(layout.definitions)],
         "MISSIONCONFIG": [layout.config_name],
-        "MISSION_MODULE_SEARCH_PATH": list(SEARCHED),
+        "MISSION_MODULE_SEARCH_PATH": list(layout.searched),
         "SIMULATION": ["native"],
         "CFE_SYSTEM_PSPNAME": ["pc-linux"],
         "OSAL_SYSTEM_OSTYPE": ["posix"],

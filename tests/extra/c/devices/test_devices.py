@@ -188,3 +188,10 @@ def test_class_that_is_not_a_device_is_an_error_at_start(source: str, text: str,
     (tmp_path / "thing.py").write_text(source)
     with pytest.raises(UsageError, match=text), Mission(folder, console=Console(quiet=True)) as mission:
         mission.run_for(1)
+
+
+def test_headers_of_hwlibs_can_compile_without_the_hosts_library(tmp_path: Path) -> None:
+    source = tmp_path / "can/fsw/src/can.c"
+    source.parent.mkdir(parents=True)
+    source.write_text('#include <libsocketcan.h>\nint up(void) { return can_set_bitrate("can0", 500000); }\n')
+    assert build(tmp_path / "can", tmp_path / "can.so").warnings == []

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.c.trees.cmake_reader import read_with_cmake
+from cfepy.extra.c.trees.mission_folder import Reader
 from cfepy.extra.c.trees.startup_scripts import find_startup
 from cfepy.extra.c.trees.tree_layout import find_layout, is_tree
 from cfepy.extra.c.trees.tree_model import TreeModel, TreeModule
@@ -234,6 +235,51 @@ def test_folder_without_targets_is_not_a_tree(tmp_path: Path) -> None:
     assert not is_tree(tmp_path)
     with pytest.raises(UsageError, match=r"is not a cFS mission tree: \*_defs/targets\.cmake is missing"):
         find_layout(tmp_path)
+
+
+APART = {
+    "cfg/apart_defs/targets.cmake": """
+        SET(MISSION_NAME "Apart")
+        list(APPEND MISSION_GLOBAL_APPLIST imu/fsw/cfs two)
+        foreach(X ${MISSION_GLOBAL_APPLIST})
+            list(APPEND APPLICATION_PLATFORM_INC_LIST ${${X}_MISSION_DIR}/inc ${${X}_MISSION_DIR}/../shared)
+        endforeach()
+        SET(MISSION_CPUNAMES cpu1)
+    """,
+    "cfg/apart_defs/cpu1_cfe_es_startup.scr": "CFE_APP, imu, IMU_Main, IMU, 50, 16384, 0x0, 0;\n!\n",
+    "components/imu/fsw/cfs/CMakeLists.txt": "add_cfe_app(imu imu.c)\n",
+    "components/imu/fsw/cfs/imu.c": "",
+    "components/imu/fsw/cfs/inc/imu.h": "",
+    "components/imu/fsw/shared/imu_device.h": "",
+    "components/two/CMakeLists.txt": "add_cfe_app(two two.c)\n",
+    "components/two/two.c": "",
+    "fsw/apps/two/CMakeLists.txt": "add_cfe_app(two other.c)\n",
+}
+"""A mission whose definitions and components are beside the tree, with a module in a subfolder."""
+
+
+@pytest.mark.parametrize("reader", [read_tree, pytest.param(read_with_cmake, marks=[needs_cmake, pytest.mark.slow])])
+def test_modules_of_other_folders_go_before_the_trees(reader: Reader, tmp_path: Path) -> None:
+    write_tree(tmp_path, files=APART)
+    tree, definitions = tmp_path / "fsw", tmp_path / "cfg/apart_defs"
+    assert is_tree(tree, definitions)
+    assert not is_tree(tree)
+    model = reader(find_layout(tree, definitions, [str(tmp_path / "components")]), None, ())
+    assert [each.name for each in model.modules] == ["imu", "two"]
+    imu, two = (each.sources for each in model.modules)
+    assert imu is not None
+    assert two is not None
+    assert imu.code == [tmp_path / "components/imu/fsw/cfs/imu.c"]
+    assert two.code == [tmp_path / "components/two/two.c"]
+    for each in (imu, two):
+        assert {tmp_path / "components/imu/fsw/cfs/inc", tmp_path / "components/imu/fsw/shared"} <= set(each.includes)
+    assert find_startup(model).origin == "../cfg/apart_defs/cpu1_cfe_es_startup.scr"
+
+
+def test_folder_of_modules_must_exist(tmp_path: Path) -> None:
+    with pytest.raises(UsageError, match="folder not found") as caught:
+        find_layout(write_tree(tmp_path), None, ["gone"])
+    assert caught.value.field == "--modules"
 
 
 # -- CMake -------------------------------------------------------------------------------------------------------------
