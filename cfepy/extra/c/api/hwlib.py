@@ -1,4 +1,4 @@
-"""uart_*, i2c_*, spi_*, gpio_* and can_*: the calls of NOS3's hwlib, on the devices of the mission.
+"""uart_*, i2c_*, spi_*, gpio_* and can_*: the calls of NOS3's hwlib and of libsocketcan, on the mission's devices.
 
 A mission that brings hwlib itself as a library uses that one, on device files (`device_files`). Without a device,
 before it is initialized and after it is closed, the functions fail as on Linux with a descriptor that is not open.
@@ -30,6 +30,7 @@ CAN_SOCK_OPEN_ERR, CAN_WRITE_ERR, CAN_READ_TIMEOUT_ERR = -6, -9, -11
 CAN_FRAME = Struct("<IB3x8s")
 """struct can_frame: identifier, length, data."""
 CAN_BYTES = 8
+CAN_STATE_ERROR_ACTIVE = 0
 
 
 class Hwlib:
@@ -228,6 +229,16 @@ class Hwlib:
         self._put(info + CAN_UP, 0)
         return SUCCESS
 
+    def interface(self, name: int) -> int:
+        """Return the result of a function of libsocketcan that starts, stops or sets a CAN interface."""
+        return FAILED if self._c.devices.find(self._c.memory.text(name)) is None else SUCCESS
+
+    def interface_state(self, name: int, state: int) -> int:
+        found = self.interface(name)
+        if found == SUCCESS:
+            self._c.memory.put_u32(state, CAN_STATE_ERROR_ACTIVE)
+        return found
+
     def _frame(self, info: int, wait_ns: int | None) -> bytes | None:
         device = self._named(info, CAN_UP)
         data = b"" if device is None else awaited(self._c, device, CAN_FRAME.size, wait_ns)
@@ -290,3 +301,12 @@ def declare(api: Declarations, c: CRuntime) -> None:
         FAILED,
     )
     api.add("can_close_device", "P", hwlib.can_close, FAILED)
+    for name in ("can_do_start", "can_do_stop", "can_do_restart"):
+        api.add(name, "P", hwlib.interface, FAILED)
+    for name in ("can_set_bitrate", "can_set_restart_ms"):
+        api.add(name, "PI", lambda name, value: hwlib.interface(name), FAILED)
+    for name in ("can_set_bittiming", "can_set_ctrlmode"):
+        api.add(name, "PP", lambda name, value: hwlib.interface(name), FAILED)
+    for name in ("can_get_bittiming", "can_get_ctrlmode", "can_get_restart_ms"):
+        api.add(name, "PP", lambda name, value: FAILED, FAILED)  # as of an interface whose driver does not tell
+    api.add("can_get_state", "PP", hwlib.interface_state, FAILED)

@@ -1,6 +1,7 @@
 /* An application with a device of each kind, through hwlib's calls. */
 #include "cfe.h"
 #include "hwlib.h"
+#include <libsocketcan.h>
 
 static void Say(const char *What, int32 Status, const uint8 *Data, int Count)
 {
@@ -47,6 +48,9 @@ static void Buses(void)
     Say("gpio init", gpio_init(&Pin), NULL, 0);
     Say("gpio write", gpio_write(&Pin, 1), NULL, 0);
     Say("gpio read", gpio_read(&Pin, Data), Data, 1);
+    Say("can bitrate", can_set_bitrate("can0", 500000), NULL, 0);
+    Say("can start", can_do_start("can0"), NULL, 0);
+    Say("can absent", can_do_start("can7"), NULL, 0);
     Say("can init", can_init_dev(&Can), NULL, 0);
     Say("can write", can_write(&Can, 0x123, Data, 2), NULL, 0);
     Status = can_nonblocking_read(&Can, &Frame, sizeof(Frame), 0, 100000);
