@@ -126,6 +126,28 @@ def test_folder_without_cmake_builds_all_sources_except_eds_files(app: Path) -> 
     assert symbols(built)["CFE_ES_ExitApp"] is False
 
 
+def test_headers_of_the_first_processor_have_names_without_it(tmp_path: Path) -> None:
+    (tmp_path / "app/fsw/src").mkdir(parents=True)
+    (tmp_path / "app/fsw/src/app.c").write_text('#include "device_cfg.h"\nint rate(void) { return RATE; }\n')
+    (tmp_path / "defs").mkdir()
+    (tmp_path / "defs/cpu1_device_cfg.h").write_text("#define RATE 9600\n")
+    (tmp_path / "defs/cpu2_device_cfg.h").write_text("#define RATE no\n")
+    assert build(tmp_path / "app", None, Options(definitions=tmp_path / "defs")).warnings == []
+
+
+def test_tables_that_cmake_does_not_name_find_the_headers_beside_the_code(tmp_path: Path) -> None:
+    for name in ("src", "tables"):
+        (tmp_path / "app/fsw" / name).mkdir(parents=True)
+    (tmp_path / "app/CMakeLists.txt").write_text("aux_source_directory(fsw/src FILES)\nadd_cfe_app(app ${FILES})\n")
+    (tmp_path / "app/fsw/src/app.c").write_text("int one;\n")
+    (tmp_path / "app/fsw/src/rows.h").write_text("typedef int Row_t;\n")
+    (tmp_path / "app/fsw/tables/rows.c").write_text(
+        '#include "cfe_tbl_filedef.h"\n#include "rows.h"\nRow_t Rows = 7;\n'
+        "CFE_TBL_FILEDEF(Rows, APP.Rows, Rows, rows.tbl)\n"
+    )
+    assert [each.name for each in build(tmp_path / "app").tables] == ["rows.tbl"]
+
+
 def test_cmake_lists_define_name_sources_and_tables(tmp_path: Path) -> None:
     text = """
         project(CFS_PROBE C)  # a comment (with brackets

@@ -31,6 +31,7 @@ from cfepy.status import UsageError
 INCLUDES = ("fsw/inc", "fsw/public_inc", "fsw/mission_inc", "fsw/platform_inc", "inc", "include")
 CODE = ("fsw/src", "src", ".")
 TABLES = ("fsw/tables", "tables")
+FIRST_CPU = "cpu1_"
 DEFINITIONS = (".", "inc", "mission_inc", "platform_inc", "fsw/mission_inc", "fsw/platform_inc")
 DEFAULT = "default_"
 NEIGHBOURS = (".", "apps", "libs")
@@ -102,6 +103,10 @@ def find_sources(folder: Path, definitions: Path | None = None) -> Sources:
         found = _sources_of_cmake(folder, headers)
     if not found.code:
         raise UsageError("missing C sources: add them to fsw/src, or name them in CMakeLists.txt", file=folder)
+    for each in [] if definitions is None else sorted(definitions.glob(f"{FIRST_CPU}*.h")):
+        name = each.name.removeprefix(FIRST_CPU)  # a build of cFS 6 gives the processor's header this name
+        if not any(os.path.isfile(one / name) for one in (*headers, *found.includes)):
+            found.chosen.setdefault(name, each.resolve())
     found.includes = list(dict.fromkeys(found.includes))
     return found
 
@@ -130,7 +135,9 @@ def _sources_of_cmake(folder: Path, headers: list[Path]) -> Sources:
             shown = os.path.relpath(each, here)
             raise UsageError(f"{FILE} names a missing file: {shown}{_made_by(project, each)}", file=folder / FILE)
     found = Sources(name, folder, _given(code, here, folder) or _code_in(folder), _given(tables, here, folder))
-    found.tables = found.tables or _all_in(folder, TABLES)
+    if not found.tables:  # the Makefiles of cFS 6 build them, with the headers beside the code
+        found.tables = _all_in(folder, TABLES)
+        found.table_includes = _folders(folder, CODE[:-1])
     named = _given(_folders_of(project, target), here, folder)
     found.includes = [*headers, *named, *_folders(folder, INCLUDES)]
     found.definitions = [] if target is None else definitions_of(project, target)

@@ -168,7 +168,8 @@ class _Maker:
         folder = self._folders.get(name)
         url = self._layout.absent_submodule(folder or self._layout.tree / "apps" / name)
         if folder is None or url:
-            reason = f"is not in {' or '.join(SEARCHED[:2])}"
+            more = [os.path.relpath(each, self._layout.tree) for each in self._layout.searched if os.path.isabs(each)]
+            reason = f"is not in {' or '.join((*more, *SEARCHED[:2]))}"
             if url:
                 reason = f"is a git submodule that was not fetched; its URL is {url}"
             yield TreeModule(name, folder, reason=reason)
