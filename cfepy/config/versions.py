@@ -23,6 +23,8 @@ DEFAULT_RELEASE = "7.0.1"
 MODULES = ("CORE_API", "ES", "EVS", "FS", "SB", "TBL", "TIME", "OSAL", "PSP", "MSG", "SBR", "RESOURCEID", "CONFIG")
 """The parts of the flight software, in the order of ES's version messages."""
 
+DEVELOPMENT = 255
+"""The mission revision of a build between two releases."""
 _APPS = "v7.0.0"  # the version of NASA's lab and sample applications, with every release
 
 Numbers = tuple[int, ...]
@@ -34,7 +36,7 @@ class Version(NamedTuple):
     Attributes:
         number: major, minor, revision, mission revision.
         codename: of the release.
-        build_number: 0 for a release.
+        build_number: commits since the release; 0 for a release.
     """
 
     number: Numbers
@@ -51,6 +53,14 @@ class Version(NamedTuple):
         """The version of its source, "v7.0.1+dev0" (CFE_SRC_VERSION, OS_VERSION, CFE_PSP_IMPL_VERSION)."""
         return f"{self.official}+dev{self.build_number}"
 
+    @property
+    def status(self) -> str:
+        """The text of its mission revision, such as "v7.0.1 Official Release" (CFE_Config_GetMissionRevString)."""
+        revision = self.number[3]
+        if revision == 0:
+            return f"{self.official} Official Release"
+        return f"{'DEV BUILD' if revision == DEVELOPMENT else f'M{revision}'}, based on {self.official}"
+
 
 class Release:
     """A release of cFE, with the OSAL and the PSP of its bundle; docs/reference/differences.md has the facts in words.
@@ -60,7 +70,7 @@ class Release:
 
     Attributes:
         codename: its code name.
-        build_number: 0 for a release.
+        build_number: commits since the release, of the components that are development builds; 0 for a release.
         cfe, osal, psp: major, minor, revision, mission revision of each.
         longest_entry: number of characters of a startup script entry, without blanks, that ES reads.
         early_inits: the calls before the core applications, as the system log names them; each has CFE_MODULE.
@@ -136,17 +146,20 @@ class Release:
     @property
     def cfe_version(self) -> Version:
         """The version of cFE."""
-        return Version(self.cfe, self.codename, self.build_number)
+        return self._version(self.cfe)
 
     @property
     def osal_version(self) -> Version:
         """The version of OSAL."""
-        return Version(self.osal, self.codename, self.build_number)
+        return self._version(self.osal)
 
     @property
     def psp_version(self) -> Version:
         """The version of the PSP."""
-        return Version(self.psp, self.codename, self.build_number)
+        return self._version(self.psp)
+
+    def _version(self, number: Numbers) -> Version:
+        return Version(number, self.codename, self.build_number if number[3] == DEVELOPMENT else 0)
 
     @property
     def bundle(self) -> str:
@@ -161,7 +174,7 @@ class Release:
     def text(self, component: str) -> str:
         """Return the long version text of a component of cFE."""
         version = self.cfe_version
-        return version_string(component, version.source, self.codename, version.official)
+        return f"{component} {version.source} ({self.codename}) {version.status}, EDS disabled"
 
 
 class Releases(Mapping[str, Release]):

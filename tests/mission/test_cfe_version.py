@@ -53,6 +53,25 @@ def test_boot(tmp_path: Path, version: str) -> None:
         assert (values["CFERevision"], values["OSALRevision"]) == (int(version[-1]), 0)
 
 
+@pytest.mark.parametrize(
+    ("revision", "text"),
+    [(0, "v7.0.1 Official Release"), (255, "DEV BUILD, based on v7.0.1"), (12, "M12, based on v7.0.1")],
+)
+def test_mission_revision_decides_the_text_of_a_version(revision: int, text: str) -> None:
+    assert versions.Version((7, 0, 1, revision), "Draco", 0).status == text
+
+
+def test_development_branch_is_a_build_behind_7_0_1(tmp_path: Path) -> None:
+    folder = write_mission(tmp_path, "!", mission_yaml='cfe_version: "dev"')
+    with Mission(folder, console=Console(quiet=True)) as mission:
+        mission.run_for(1)
+        log = "\n".join(mission.console.lines)
+        assert "cfe v7.0.1+dev1, osal v7.0.0+dev0, psp v7.0.0+dev0." in log
+        assert "CFE_ES v7.0.1+dev1 (Draco) DEV BUILD, based on v7.0.1, EDS disabled" in log
+        config = mission.cfe.config
+        assert config.get_value(config.get_id_by_name("CORE_VERSION_MISSION_REV")) == 255
+
+
 def test_default_release_is_7_0_1(tmp_path: Path) -> None:
     assert read_mission(write_mission(tmp_path, "!")).cfe_version == "7.0.1"
 
@@ -61,8 +80,8 @@ def test_third_release_is_only_another_file(tmp_path: Path, monkeypatch: pytest.
     """The made-up release 7.2.9 flies and reports its numbers without a change of code."""
     text = (versions.FOLDER / "7.0.1.toml").read_text(encoding="utf-8")
     for old, new in (
-        ("cfe = [7, 0, 1, 0]", "cfe = [7, 2, 9, 1]"),
-        ("osal = [7, 0, 0, 0]", "osal = [7, 1, 3, 0]"),
+        ("cfe = [7, 0, 1, 0]", "cfe = [7, 2, 9, 255]"),
+        ("osal = [7, 0, 0, 0]", "osal = [7, 1, 3, 255]"),
         ("psp = [7, 0, 0, 0]", "psp = [7, 1, 4, 0]"),
         ('"Draco"', '"Equuleus"'),
         ("build_number = 0", "build_number = 17"),
@@ -81,18 +100,18 @@ def test_third_release_is_only_another_file(tmp_path: Path, monkeypatch: pytest.
     with Mission(folder, console=Console(quiet=True), attachments=[watch]) as mission:
         mission.run_for(1)
         log = "\n".join(mission.console.lines)
-        assert "cfe v7.2.9+dev17, osal v7.1.3+dev17, psp v7.1.4+dev17." in log
-        assert "CFE_ES v7.2.9+dev17 (Equuleus) v7.2.9 Official Release" in log
+        assert "cfe v7.2.9+dev17, osal v7.1.3+dev17, psp v7.1.4+dev0." in log
+        assert "CFE_ES v7.2.9+dev17 (Equuleus) DEV BUILD, based on v7.2.9, EDS disabled" in log
         assert "Module OSAL, version git:v7.1.3" in log
         assert [app.name for app in mission.cfe.es.apps] == ["CFE_EVS", "CFE_TIME", "CFE_TBL", "CFE_SB", "CFE_ES"]
-        assert mission.cfe.os.get_version_number() == (7, 1, 3, 0)
+        assert mission.cfe.os.get_version_number() == (7, 1, 3, 255)
         config = mission.cfe.config
         assert config.get_value(config.get_id_by_name("PLATFORM_EVS_LOG_MAX")) == 7
         assert mission.cfe.psp.get_version_code_name() == "Equuleus"
         mission.cfe.sb.transmit_msg(es.SEND_HK.packet())
         mission.run_for(0.1)
         values = es.HK_TLM.read(packets[0].packet)
-    assert [values[f"CFE{part}"] for part in ("MinorVersion", "Revision", "MissionRevision")] == [2, 9, 1]
+    assert [values[f"CFE{part}"] for part in ("MinorVersion", "Revision", "MissionRevision")] == [2, 9, 255]
     assert [values["OSALRevision"], values["PSPRevision"]] == [3, 4]
 
 
@@ -133,6 +152,6 @@ def test_value_that_the_file_of_a_release_lacks_is_reported(tmp_path: Path) -> N
 @pytest.mark.parametrize("said", ['"6.7.0"', "7.0", "[7]"])
 def test_another_release_is_refused(tmp_path: Path, said: str) -> None:
     folder = write_mission(tmp_path, "!", mission_yaml=f"name: m\ncfe_version: {said}")
-    with pytest.raises(UsageError, match=r'unknown release of cFE .*; expected "7.0.0" or "7.0.1"') as caught:
+    with pytest.raises(UsageError, match=r'unknown release of cFE .*; expected "7.0.0" or "7.0.1" or "dev"') as caught:
         read_mission(folder)
     assert (caught.value.field, caught.value.line) == ("cfe_version", 2)
