@@ -3,7 +3,7 @@ the layouts of its ground names."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from cfepy.es import CFE_LIB, NODE_SYMBOL, StartupEntry
@@ -14,6 +14,7 @@ from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.ground_check import ground_differences
 from cfepy.extra.c.linking import refused_names, undefined_on_linux, wanted_names
 from cfepy.extra.c.refused import BY_REASON, REASONS
+from cfepy.extra.c.source_places import CodePlace, first_calls
 from cfepy.extra.c.toolchain.cfe6 import is_name_of_cfe_6
 from cfepy.mission import MissionSections, find_compiled
 from cfepy.pilot import MissionProblem
@@ -80,8 +81,10 @@ def _check_needs(
             yield MissionProblem(script, entry.line, text + "; move that line up", is_warning=True)
         wanted = wanted - exported
     unknown = {name for name in wanted if name not in REASONS}
+    places = first_calls(source, wanted)
     if unknown:
-        text = f"{entry.name} needs {_listed(unknown)}, but cfepy and the libraries of the mission do not define them"
+        listed = _listed(unknown, places)
+        text = f"{entry.name} needs {listed}, but cfepy and the libraries of the mission do not define them"
         if any(map(is_name_of_cfe_6, unknown)):
             text += ", because it was built for cFE 6; build its sources with cfepy build --cfe 6.5 or --cfe 6.7"
         nowhere = undefined_on_linux(source, sorted(unknown))
@@ -90,7 +93,7 @@ def _check_needs(
     for reason, names in BY_REASON.items():
         refused = wanted.intersection(names)
         if refused:
-            text = f"{entry.name} needs {_listed(refused)}, but {reason}; calling it is a fault"
+            text = f"{entry.name} needs {_listed(refused, places)}, but {reason}; calling it is a fault"
             yield MissionProblem(script, entry.line, text, is_warning=True)
 
 
@@ -158,5 +161,9 @@ def _says_profile(said: MissionSections) -> bool:
     return section is not None and PROFILE in Mistakes().mapping(section)
 
 
-def _listed(names: set[str]) -> str:
-    return ", ".join(sorted(names))
+def _listed(names: set[str], places: Mapping[str, CodePlace] | None = None) -> str:
+    """Return names, each with the file and line of its first call where that is known."""
+    known = places or {}
+    return ", ".join(
+        f"{each} ({known[each].name}:{known[each].line})" if each in known else each for each in sorted(names)
+    )

@@ -7,17 +7,27 @@ through frames that look like these places.
 from __future__ import annotations
 
 import ast
+import re
 import sys
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import lru_cache, partial
 from io import BytesIO
 from pathlib import PurePath
+from struct import Struct
 from types import CodeType, FunctionType
 from typing import Any, NamedTuple, NoReturn
 
-from cfepy.extra.c.elf import elf_file, symbols_in
+from cfepy.extra.c.elf import SharedObject, elf_file, symbols_in
 from cfepy.interpreter.cached import CachedProperty
+
+SEARCHED_MACHINE = "x86_64"
+SLOTS = (".plt", ".plt.sec", ".plt.got")
+SLOT_BYTES = 16
+_OFFSET = Struct("<i")
+_JUMP = re.compile(rb"\xff\x25....", re.DOTALL)
+_DIRECT = re.compile(rb"(?=([\xe8\xe9]....))", re.DOTALL)
+_INDIRECT = re.compile(rb"(?=\xff([\x15\x25]....))", re.DOTALL)
 
 
 class CodePlace(NamedTuple):
@@ -154,6 +164,65 @@ def _files_of(program: Any, unit: Any) -> dict[int, str]:
 
 def _text(raw: bytes | str) -> str:
     return raw if isinstance(raw, str) else raw.decode(errors="replace")
+
+
+# -- calls of other objects --------------------------------------------------------------------------------------------
+#
+# A call of a function of another object goes to a slot of the procedure linkage table. The slot jumps to the address in
+# a word that the loader fills in. So a call with the address of the slot, or through the word, calls that function.
+
+
+def first_calls(source: SharedObject, names: Collection[str]) -> dict[str, CodePlace]:
+    """Return the first place in a shared object that calls each function.
+
+    Args:
+        source: the shared object.
+        names: the functions; those without a place in the debug data are left out. Only code for x86-64 is searched.
+    """
+    found: dict[str, CodePlace] = {}
+    if not names or source.machine != SEARCHED_MACHINE:
+        return found
+    words = {
+        each.address: source.symbols[each.symbol].name
+        for each in source.relocations
+        if each.symbol and source.symbols[each.symbol].name in names
+    }
+    places = places_of(source.data, source.name)
+    for address, name in _calls(source, words):
+        place = places.at(address)
+        if name not in found and place.file:
+            found[name] = place
+    return found
+
+
+def _calls(source: SharedObject, words: dict[int, str]) -> Iterator[tuple[int, str]]:
+    """Yield the address of each call, and the function.
+
+    Args:
+        source: the shared object.
+        words: the functions by the addresses of the words that the loader fills in.
+    """
+    sections = {each.name: each for each in elf_file(BytesIO(source.data)).iter_sections()}
+    slots = {}
+    for name in SLOTS:
+        if name in sections:
+            start, code = sections[name]["sh_addr"], sections[name].data()
+            for jump in _JUMP.finditer(code):
+                (offset,) = _OFFSET.unpack_from(code, jump.start() + 2)
+                function = words.get(start + jump.end() + offset)
+                if function is not None:
+                    slots[start + jump.start() // SLOT_BYTES * SLOT_BYTES] = function
+    for name, section in sections.items():
+        if name.startswith(".text"):
+            start, code = section["sh_addr"], section.data()
+            found = []
+            for pattern, targets in ((_DIRECT, slots), (_INDIRECT, words)):
+                for call in pattern.finditer(code):
+                    (offset,) = _OFFSET.unpack_from(code, call.start(1) + 1)
+                    function = targets.get(start + call.end(1) + offset)
+                    if function is not None:
+                        found.append((start + call.start(), function))
+            yield from sorted(found)
 
 
 # -- frames ------------------------------------------------------------------------------------------------------------

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import platform
+import re
 from pathlib import Path
 
 import pytest
@@ -11,6 +13,7 @@ from tests.extra.c.building import compile_c, console_of, fly, needs_compiler, w
 
 pytestmark = needs_compiler
 
+needs_x86 = pytest.mark.skipif(platform.machine() != "x86_64", reason="machine code of x86-64 is searched")
 GOOD = "void TEST_Main(void) { OS_TaskDelay(1); }"
 
 
@@ -35,8 +38,36 @@ def test_undefined_functions_are_reported(tmp_path: Path) -> None:
     calls = "".join(f"extern int {name}(void); {name}();" for name in (*names, "fork"))
     compile_c(tmp_path, "TEST", f"void TEST_Main(void) {{ {calls} }}")
     text, refused = problems(write_mission(tmp_path, "TEST"))
-    assert f"TEST needs {', '.join(names)}, but cfepy and the libraries of the mission do not define them" in text
-    assert "TEST needs fork, but a flight computer has no processes" in refused
+    listed = ", ".join(f"{each} (TEST.c:1)" for each in names)
+    assert f"TEST needs {listed}, but cfepy and the libraries of the mission do not define them" in text
+    assert "TEST needs fork (TEST.c:1), but a flight computer has no processes" in refused
+
+
+@needs_x86
+@pytest.mark.parametrize("flags", [["-O0"], ["-O2"], ["-O2", "-fno-plt"], ["-fcf-protection=none"]])
+def test_first_call_of_each_refused_function_has_its_line(flags: list[str], tmp_path: Path) -> None:
+    source = """\
+        int fork(void);
+        int system(const char *text);
+        int pause(void);
+        static int kept(void) { return fork(); }
+        int (*later)(void) = pause;
+        int TEST_Tail(void)
+        {
+            return system("one");
+        }
+        void TEST_Main(void) { if (kept() == 7) TEST_Tail(); system("two"); }
+    """
+    compile_c(tmp_path, "TEST", source, *flags)
+    text = "\n".join(problems(write_mission(tmp_path, "TEST")))
+    assert re.search(r"needs fork \(TEST\.c:4\), but", text)
+    assert re.search(r"needs system \(TEST\.c:8\), but", text)
+    assert "needs pause, but" in text  # its address alone is taken
+
+
+def test_calls_without_debug_data_have_no_line(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", "int fork(void); void TEST_Main(void) { fork(); }", "-g0")
+    assert "TEST needs fork, but" in problems(write_mission(tmp_path, "TEST"))[0]
 
 
 def test_library_loaded_too_late_is_reported(tmp_path: Path) -> None:
