@@ -16,7 +16,7 @@ NAME = "cfe_es_startup.scr"
 FIRST_PRIORITY, PRIORITY_STEP, LAST_PRIORITY = 50, 5, 200
 STACK_BYTES = 16384
 LONGEST_NAME = 19
-_APP_ENDS, _LIBRARY_ENDS = ("_appmain", "_main", "_app_main"), ("_init", "_libinit", "_lib_init")
+_APP_ENDS, _LIBRARY_ENDS = ("_appmain", "_main", "_app_main", "appmain"), ("_init", "_libinit", "_lib_init")
 
 
 class StartupScript(NamedTuple):

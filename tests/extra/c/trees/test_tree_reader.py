@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.extra.c.trees.cmake_reader import read_with_cmake
 from cfepy.extra.c.trees.mission_folder import Reader
-from cfepy.extra.c.trees.startup_scripts import find_startup
+from cfepy.extra.c.trees.startup_scripts import find_startup, made_startup
 from cfepy.extra.c.trees.tree_layout import find_layout, is_tree
 from cfepy.extra.c.trees.tree_model import TreeModel, TreeModule
 from cfepy.extra.c.trees.tree_reader import read_tree
@@ -235,6 +235,13 @@ def test_folder_without_targets_is_not_a_tree(tmp_path: Path) -> None:
     assert not is_tree(tmp_path)
     with pytest.raises(UsageError, match=r"is not a cFS mission tree: \*_defs/targets\.cmake is missing"):
         find_layout(tmp_path)
+
+
+@pytest.mark.parametrize("entry", ["ONE_AppMain", "ONE_Main", "OneAppMain", "one_app_main"])
+def test_made_startup_script_finds_the_entry_point(entry: str) -> None:
+    script = made_startup([("one", ["ONE_Init", "ONE_HelperOfMainLoop", entry], ["ONE_APP.Rows"])])
+    [line] = script.lines
+    assert (line.symbol, line.name) == (entry, "ONE_APP")
 
 
 APART = {
