@@ -1,0 +1,78 @@
+"""`python -m dev.c.public_apps`: fetch public missions, build and fly their applications, and report the results."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from cfepy.status import UsageError
+from dev.c.public_apps.flight import flown
+from dev.c.public_apps.missions import PublicMissions, read_missions
+from dev.c.public_apps.results import PAGE, read_results, write_page, write_results
+from dev.c.public_apps.trial import try_mission
+from dev.corpus.sources import Sources
+
+
+def main() -> int:
+    """Execute the command line. Returns the exit status."""
+    arguments = _parser().parse_args()
+    try:
+        status: int = arguments.action(arguments, read_missions())
+    except UsageError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return status
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m dev.c.public_apps", description=__doc__)
+    actions = parser.add_subparsers(required=True)
+    fetch = actions.add_parser("fetch", help="get the sources from GitHub, each repository at its commit")
+    fetch.add_argument("folder", type=Path)
+    fetch.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
+    fetch.set_defaults(action=_fetch)
+    run = actions.add_parser("run", help="build and fly missions, and write results.tsv")
+    run.add_argument("names", nargs="*", metavar="NAME", help="missions; all when none is given")
+    run.add_argument("--sources", type=Path, required=True, help="the folder with the sources")
+    run.set_defaults(action=_run)
+    fly = actions.add_parser("fly", help="fly the last application of a mission folder, and print the result as JSON")
+    fly.add_argument("folder", type=Path)
+    fly.set_defaults(action=_fly)
+    report = actions.add_parser("report", help="write the page of results.tsv")
+    report.set_defaults(action=_report)
+    return parser
+
+
+def _fetch(arguments: argparse.Namespace, missions: PublicMissions) -> int:
+    commits = {name: each.commit for name, each in missions.repositories.items()}
+    for repo in Sources(arguments.folder).fetch_all(commits, arguments.mirrors):
+        print(repo)
+    return 0
+
+
+def _run(arguments: argparse.Namespace, missions: PublicMissions) -> int:
+    order = list(missions.missions)
+    for mission in missions.chosen(arguments.names):
+        results = [each for each in read_results() if each.mission != mission.name]
+        for result in try_mission(mission, Sources(arguments.sources)):
+            print(*result, sep=" | ", flush=True)
+            results.append(result)
+        write_results(sorted(results, key=lambda each: (order.index(each.mission), each.app)))
+    return 0
+
+
+def _fly(arguments: argparse.Namespace, missions: PublicMissions) -> int:
+    print(json.dumps(flown(arguments.folder)._asdict()))
+    return 0
+
+
+def _report(arguments: argparse.Namespace, missions: PublicMissions) -> int:
+    write_page(missions, read_results())
+    print(PAGE)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
