@@ -1,6 +1,6 @@
 """docs/reference/generated/releases.md: the facts that differ between the releases of cFE that a mission can select.
 
-The facts are the simulator's own data, `cfepy/config/releases/*.toml`, and their meanings are those of
+The facts are the simulator's own data, `cfepy/config/releases/*.toml`. Their meanings come from the docstring of
 `cfepy.config.versions.Release`. `python -m dev.pages.releases` writes the page.
 """
 

@@ -31,7 +31,7 @@ class TreeLayout:
     Attributes:
         tree: its folder.
         definitions: its folder of definitions.
-        searched: the folders that have its modules, first those of the user.
+        searched: the folders that have its modules; the folders of the user come first.
     """
 
     tree: Path
