@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from cfepy.extra.procedures.erb import Template
 from cfepy.extra.procedures.packet_items import Item, PacketDefinition
 from cfepy.reading.cosmos_lines import DERIVED, item_forms, kind_of_item, next_word, whole_number, words_of
 from cfepy.reading.input_files import read_limited
@@ -18,7 +20,7 @@ from cfepy.status import UsageError
 
 _LIMIT = re.compile(r"(MIN|MAX)(?:_(U?INT|FLOAT)(\d+))?")
 _MID, _CODE = 0, 48
-_ASSIGNED = re.compile(r"^\s*(\$\w+)\s*=\s*(true|false|-?\d+|0x[0-9A-Fa-f]+|\"[^\"\n]*\"|'[^'\n]*')\s*(?:#.*)?$", re.M)
+_ASSIGNED = re.compile(r"^(\$\w+)[ \t]*=(?!=)[ \t]*(\"[^\"\n]*\"|'[^'\n]*'|[^#\n]+?)[ \t]*(?:#.*)?$", re.M)
 _VARIABLE = re.compile(r"^\s*VARIABLE\s+(\w+)\s+(\S+)", re.M)
 _STREAM = re.compile(r"base_stream_id:\s*(0x[0-9A-Fa-f]+)\s*,\s*packet_names:\s*\[([^\]]*)\]")
 _IGNORED_BLOCKS = ("GENERIC_READ_CONVERSION", "GENERIC_WRITE_CONVERSION")
@@ -198,9 +200,10 @@ def _detail(item: Item, keyword: str, words: list[str]) -> None:
 
 
 def ruby_variables(folders: Iterable[Path]) -> dict[str, Any]:
-    """Return the constants that Ruby files assign to global variables, and the variables of a plugin.txt.
+    """Return the values that Ruby files assign to global variables, and the variables of a plugin.txt.
 
-    Only lines such as `$size = 64` and `VARIABLE name value` count; nothing is executed.
+    Lines such as `$size = 64`, `$fields = ($rows + 7) / 8` and `VARIABLE name value` count. Indented assignments are in
+    functions and conditions of Ruby, which are not executed.
 
     Args:
         folders: folders with `lib/*.rb` and `plugin.txt`.
@@ -209,7 +212,7 @@ def ruby_variables(folders: Iterable[Path]) -> dict[str, Any]:
     for folder in folders:
         for file in sorted((folder / "lib").glob("*.rb")):
             text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
-            found.update({name: _constant(value) for name, value in _ASSIGNED.findall(text)})
+            _assign(found, text, file)
         plugin = folder / "plugin.txt"
         if plugin.is_file():
             text = read_limited(plugin, LINE_FILE_BYTES).decode("utf-8", "replace")
@@ -230,6 +233,19 @@ def msg_ids_in(folders: Iterable[Path]) -> dict[str, int]:
             for stream, names in _STREAM.findall(text):
                 found.update({name: int(stream, 16) for name in re.findall(r'"(\w+)"', names)})
     return found
+
+
+def _assign(found: dict[str, Any], text: str, file: Path) -> None:
+    """Add the values that a Ruby file assigns; values that need Ruby are left out.
+
+    Args:
+        found: values by name, of the files before, too.
+        text: the file's text.
+        file: the file.
+    """
+    for name, value in _ASSIGNED.findall(text):
+        with suppress(UsageError):
+            found[name] = Template(found).value(value, file)
 
 
 def _constant(text: str) -> Any:

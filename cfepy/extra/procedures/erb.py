@@ -27,7 +27,7 @@ _OPERATORS = {"&&": " and ", "||": " or ", "/": "//"}  # whole numbers are divid
 _LITERALS: Mapping[str, Any] = {"true": True, "false": False, "nil": None}
 _UNBOUND = re.compile(r"name '(?P<name>\w+)' is not defined")
 
-Helper = Callable[..., str]
+Helper = Callable[..., Any]
 
 
 class _Tag(NamedTuple):
@@ -43,7 +43,7 @@ class Template:
 
     Args:
         variables: values by name, such as `target_name`; names of Ruby's global variables begin with "$".
-        helper: returns the helper with a name, or None; helpers print the headers of packets.
+        helper: returns the helper with a name, or None, such as the one that prints the headers of packets.
     """
 
     def __init__(self, variables: Mapping[str, Any], helper: Callable[[str], Helper | None] = lambda name: None):
@@ -68,6 +68,19 @@ class Template:
         if end < len(tags):
             raise UsageError(f"unexpected <% {tags[end].text} %>", file=file, line=tags[end].line)
         return "".join(output)
+
+    def value(self, ruby: str, file: Path, line: int = 1) -> Any:
+        """Return the value of an expression.
+
+        Args:
+            ruby: the expression.
+            file: its file, for errors.
+            line: its line.
+
+        Raises:
+            UsageError: for Ruby that is not supported, and for unknown variables.
+        """
+        return self._value(ruby, self._variables, file, line)
 
     def _block(self, tags: list[_Tag], at: int, names: dict[str, Any], output: list[str] | None, file: Path) -> int:
         """Evaluate tags until the end of a block; without an output, only find that end."""

@@ -16,6 +16,7 @@ from typing import Any
 from cfepy.extra.procedures.connection import CfepyConnection, CfsTest_Connection
 from cfepy.extra.procedures.erb import Template
 from cfepy.extra.procedures.limit_functions import functions_of
+from cfepy.extra.procedures.nested_quotes import older
 from cfepy.extra.procedures.procedure_errors import (
     REFUSED,
     CheckError,
@@ -99,7 +100,7 @@ class Procedures:
         self, api: ScriptApi, folders: list[Path], variables: Mapping[str, Any], requirements: Requirements
     ) -> None:
         self.files: set[str] = set()
-        self._template = Template(variables)
+        self._template = Template(variables, api._targets.helper)
         self._folders = folders
         self._names: dict[str, Any] = {
             **{name: refusing(name) for name in REFUSED},
@@ -210,7 +211,7 @@ class Procedures:
         text = read_limited(file, LINE_FILE_BYTES).decode("utf-8", "replace")
         rendered = self._template.render(text, file)
         try:
-            code = compile(with_pauses(ast.parse(rendered, str(file))), str(file), "exec")
+            code = compile(with_pauses(_parsed(rendered, file)), str(file), "exec")
         except SyntaxError as error:
             remedy = "; it looks like Ruby" if _is_ruby(rendered) else ""
             raise UsageError(f"{error.msg}{remedy}", file=file, line=error.lineno) from None
@@ -238,6 +239,16 @@ class Procedures:
     def place(self, error: BaseException) -> str:
         """Return the line of a procedure that raised an exception."""
         return place_in(error.__traceback__, self.files)
+
+
+def _parsed(text: str, file: Path) -> ast.Module:
+    try:
+        return ast.parse(text, str(file))
+    except SyntaxError:
+        changed = older(text)
+        if changed == text:
+            raise
+    return ast.parse(changed, str(file))
 
 
 def _is_tracker(value: Any) -> bool:

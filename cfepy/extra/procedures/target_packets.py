@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from itertools import groupby
 from pathlib import Path
@@ -110,6 +111,24 @@ class TargetPackets:
             'APPEND_ITEM SUBSECS 16 UINT "Time, in 1/65536 s" BIG_ENDIAN\n'
             'APPEND_ITEM SPARE_FOR_64_ALIGN 32 UINT "Alignment"\n'
         )
+
+    def helper(self, name: str) -> Helper | None:
+        """Return the helper of ERB in procedures with a name, or None.
+
+        `get_..._msg_id('PACKET', ...)` is the MsgId of a packet, `..._from_target_name(target)` the number in a target's
+        name, such as 2 of CFS-2, or None.
+        """
+        if name.startswith("get_") and name.endswith("msg_id"):
+            return lambda packet, *rest: self._packet(packet).msg_id
+        if name.endswith("num_from_target_name"):
+            return _number_in
+        return None
+
+    def _packet(self, name: str) -> PacketDefinition:
+        try:
+            return self.command(self.name, name)
+        except UsageError:
+            return self.telemetry(self.name, name)
 
     # -- lookup --------------------------------------------------------------------------------------------------------
 
@@ -287,6 +306,11 @@ def _msg_id_of(name: str, code: int | None, dictionary: Dictionary) -> int | Non
         if common >= 1 and common + same_end > most:
             best, most = command.msg_id, common + same_end
     return best
+
+
+def _number_in(target: str) -> int | None:
+    match = re.search(r"\d+", target)
+    return None if match is None else int(match[0])
 
 
 def _plain(name: str) -> list[str]:

@@ -8,10 +8,13 @@ from typing import Any
 
 import pytest
 
-from cfepy.extra.procedures.definition_reader import read_definitions
+from cfepy.extra.procedures.definition_reader import read_definitions, ruby_variables
 from cfepy.extra.procedures.erb import Template
+from cfepy.extra.procedures.packet_items import PacketDefinition
 from cfepy.extra.procedures.requirements import Requirements, next_state
 from cfepy.extra.procedures.script_words import command_words, holds
+from cfepy.extra.procedures.target_packets import TargetPackets
+from cfepy.ground import Dictionary
 from cfepy.status import UsageError
 
 FILE = Path("a.txt")
@@ -179,3 +182,23 @@ def test_requirements_take_the_states_of_a_tracker() -> None:
     found = Requirements()
     found.read_tracker(tracker)
     assert [(each.name, each.state) for each in found.rows()] == [("R1", "P")]
+
+
+def test_variables_of_ruby_files_are_computed_and_functions_are_not_executed(tmp_path: Path) -> None:
+    (tmp_path / "lib").mkdir()
+    text = "$rows = 9 # of them\n$fields = (($rows + 7) / 8)\n$size = 64\n$name = File.read('x')\n$big = $size == 64\n"
+    function = "def set(size)\n  $size = 32\nend\n"
+    (tmp_path / "lib" / "globals.rb").write_text(text + function, encoding="utf-8")
+    assert ruby_variables([tmp_path]) == {"$rows": 9, "$fields": 2, "$size": 64, "$big": True}
+
+
+def test_procedure_may_have_the_msg_id_of_a_packet_and_the_number_of_its_target() -> None:
+    targets = TargetPackets(Dictionary({}, {}), "CFS-2")
+    targets.add([PacketDefinition("CFS-2", "GO", True, 0x1890), PacketDefinition("CFS-2", "HK", False, 0x890)])
+    template = Template({"target_name": "CFS-2"}, targets.helper)
+    text = "<%= get_cfs_pkt_msg_id('GO', cpu_num_from_target_name(target_name)) %> <%= get_msg_id('HK') %>"
+    assert template.render(text, FILE) == f"{0x1890} {0x890}"
+    assert template.render("<%= cpu_num_from_target_name(target_name) %>", FILE) == "2"
+    assert template.render("<%= cpu_num_from_target_name('CFS') %>", FILE) == ""
+    with pytest.raises(UsageError, match="has no telemetry packet STOP"):
+        template.render("<%= get_msg_id('STOP') %>", FILE)
