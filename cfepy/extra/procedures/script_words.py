@@ -7,10 +7,13 @@ import re
 from typing import Any, NamedTuple
 
 from cfepy.status import UsageError
+from rospy_shim.types import expression
 
 _WITH = re.compile(r"\s+with\s+", re.IGNORECASE)
 _PIECE = re.compile(r"""[^\s"',\[]+|"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|\[[^\]]*\]|,""")
 _COMPARED = re.compile(r"\s*(\S+)\s+(\S+)\s+(\S+)(?:\s+(.*\S))?\s*", re.DOTALL)
+_VALUE = "telemetry_value"
+_OPERATOR = re.compile(r"[&|^%+*/-]|<<|>>")
 _COMPARISON = re.compile(r"(==|!=|>=|<=|>|<|in\b|not\s+in\b)\s*(.*)", re.DOTALL)
 
 
@@ -115,12 +118,26 @@ def comparison_words(text: str) -> Compared:
 
 
 def holds(value: Any, comparison: str) -> bool:
-    """Return whether a comparison such as "== 5" or "> 1 and < 4" is true for a value.
+    """Return whether a comparison such as "== 5", "> 1 and < 4" or "& 0x3 == 2" is true for a value.
 
     Raises:
         UsageError: if it is not a comparison with a literal, a word, or a list of them.
     """
+    if _OPERATOR.match(comparison.strip()) is not None:
+        return _computed(value, comparison.strip())
     return all(_holds(value, part.strip()) for part in re.split(r"\band\b", comparison))
+
+
+def _computed(value: Any, comparison: str) -> bool:
+    """Return whether a comparison is true that first computes with the value, as Python does."""
+    try:
+        return bool(expression.value_of(f"{_VALUE} {comparison}", {_VALUE: value}))
+    except TypeError:
+        if value is None:
+            return False
+        raise UsageError(f"{value!r} cannot be compared: {comparison}") from None
+    except (SyntaxError, expression.ExpressionError, NameError, ValueError, ArithmeticError) as error:
+        raise UsageError(f"invalid comparison {comparison!r}: {error}") from None
 
 
 def _holds(value: Any, comparison: str) -> bool:

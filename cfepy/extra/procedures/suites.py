@@ -30,7 +30,7 @@ class ProcedureGroup:
     @classmethod
     def scripts(cls) -> list[str]:
         """Return the names of the tests, in alphabetical order."""
-        return sorted(each for each in dir(cls) if each.startswith(BEGINNINGS))
+        return scripts_of(cls)
 
     @classmethod
     def screens(cls) -> list[str]:
@@ -51,8 +51,7 @@ class ProcedureSuite:
     def add_group(self, group: type | str) -> None:
         """Add setup, all tests and teardown of a group."""
         found = self._class(group)
-        scripts = sorted(each for each in dir(found) if each.startswith(BEGINNINGS))
-        self._plan += [(found, each) for each in (SETUP, *scripts, TEARDOWN)]
+        self._plan += [(found, each) for each in (SETUP, *scripts_of(found), TEARDOWN)]
 
     def add_script(self, group: type | str, script: str) -> None:
         """Add one test of a group."""
@@ -106,6 +105,11 @@ class ProcedureStep(NamedTuple):
     def name(self) -> str:
         """Its name in reports."""
         return f"{self.group}::{self.script}" if self.group else f"{self.suite}::{self.script}"
+
+
+def scripts_of(group: type) -> list[str]:
+    """Return the names of the tests of a group, in alphabetical order; values such as `test_file = "a"` are none."""
+    return sorted(each for each in dir(group) if each.startswith(BEGINNINGS) and callable(getattr(group, each)))
 
 
 def steps_of(kind: type) -> Iterator[ProcedureStep]:

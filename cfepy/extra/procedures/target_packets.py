@@ -115,8 +115,8 @@ class TargetPackets:
     def helper(self, name: str) -> Helper | None:
         """Return the helper of ERB in procedures with a name, or None.
 
-        `get_..._msg_id('PACKET', ...)` is the MsgId of a packet, `..._from_target_name(target)` the number in a target's
-        name, such as 2 of CFS-2, or None.
+        `get_..._msg_id('PACKET', ...)` is the MsgId of a packet. `..._num_from_target_name(target)` is the number in the
+        name of a target, such as 2 of CFS-2, or None.
         """
         if name.startswith("get_") and name.endswith("msg_id"):
             return lambda packet, *rest: self._packet(packet).msg_id

@@ -13,6 +13,7 @@ from cfepy.extra.procedures.erb import Template
 from cfepy.extra.procedures.packet_items import PacketDefinition
 from cfepy.extra.procedures.requirements import Requirements, next_state
 from cfepy.extra.procedures.script_words import command_words, holds
+from cfepy.extra.procedures.suites import ProcedureGroup, ProcedureSuite, steps_of
 from cfepy.extra.procedures.target_packets import TargetPackets
 from cfepy.ground import Dictionary
 from cfepy.status import UsageError
@@ -154,10 +155,30 @@ def test_command_words_have_numbers_texts_and_lists() -> None:
         (None, "> 1", False),
         (3, "in [1, 3]", True),
         (3, "> 1 and < 3", False),
+        (7, "& 0x6 == 6", True),
+        (1, "& 1 == 0", False),
+        (9, "% 4 == 1 and telemetry_value > 8", True),
+        (5, "+ 1 in [6, 7]", True),
+        (None, "& 1 == 0", False),
+        (8, ">> 3 == 1", True),
     ],
 )
 def test_comparison_holds_for_a_value(value: Any, comparison: str, result: bool) -> None:
     assert holds(value, comparison) is result
+
+
+@pytest.mark.parametrize(
+    ("value", "comparison", "text"),
+    [
+        (1, "& ", "invalid comparison"),
+        (1, "/ 0 == 1", "division"),
+        (1, "+ x == 2", "'x'"),
+        ("a", "- 1 == 0", "cannot be compared"),
+    ],
+)
+def test_comparison_that_cannot_be_computed_is_refused(value: Any, comparison: str, text: str) -> None:
+    with pytest.raises(UsageError, match=text):
+        holds(value, comparison)
 
 
 @pytest.mark.parametrize(
@@ -202,3 +223,21 @@ def test_procedure_may_have_the_msg_id_of_a_packet_and_the_number_of_its_target(
     assert template.render("<%= cpu_num_from_target_name('CFS') %>", FILE) == ""
     with pytest.raises(UsageError, match="has no telemetry packet STOP"):
         template.render("<%= get_msg_id('STOP') %>", FILE)
+
+
+def test_values_of_a_group_are_no_tests() -> None:
+    class WithValues(ProcedureGroup):
+        test_file = "/ram/a"
+
+        def test_b(self) -> None:
+            """Do nothing."""
+
+        def script_a(self) -> None:
+            """Do nothing."""
+
+    class All(ProcedureSuite):
+        def __init__(self) -> None:
+            self.add_group(WithValues)
+
+    assert WithValues.scripts() == ["script_a", "test_b"]
+    assert [each.script for each in steps_of(All)] == ["script_a", "test_b"]
