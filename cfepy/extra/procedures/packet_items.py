@@ -171,16 +171,19 @@ class Item:
         return int(value)
 
     def check_range(self, value: Any) -> None:
-        """Check that a parameter is in its valid range.
+        """Check that a parameter is in its valid range and, as COSMOS 6 does, one of its states.
 
         Raises:
             UsageError: if it is not.
         """
         number = self.states.get(value.upper()) if isinstance(value, str) else value
-        if self.low is None or self.high is None or not isinstance(number, int | float):
+        if not isinstance(number, int | float):
             return
-        if not self.low <= number <= self.high:
+        if self.low is not None and self.high is not None and not self.low <= number <= self.high:
             raise UsageError(f"{self.name} = {number} is not in the valid range of {self.low:g} to {self.high:g}")
+        if self.states and number not in self.states.values():
+            known = ", ".join(f"{name} {each}" for name, each in self.states.items())
+            raise UsageError(f"{self.name} = {number} is not one of the states {known}")
 
 
 @dataclass(slots=True)
@@ -236,12 +239,13 @@ class PacketDefinition:
             raise UsageError(f"{self.full_name} has no item {name.upper()}; {hint}")
         return found
 
-    def built(self, values: Mapping[str, Any], check_range: bool = True) -> bytes:
+    def built(self, values: Mapping[str, Any], check_range: bool = True, is_raw: bool = False) -> bytes:
         """Return the bytes of a command, without its checksum.
 
         Args:
             values: values by names of parameters; the others have their defaults.
-            check_range: whether parameters must be in their valid ranges.
+            check_range: whether parameters must be in their valid ranges, and one of their states.
+            is_raw: whether the values are not converted, so names of states are refused.
 
         Raises:
             UsageError: for an unknown parameter, a missing one, or a value that does not fit.
@@ -253,6 +257,8 @@ class PacketDefinition:
                 raise UsageError(f"{self.full_name} requires the parameter {item.name}")
             value = given.get(item.name, item.default)
             try:
+                if is_raw and item.name in given and isinstance(value, str) and item.kind not in ("char", "block"):
+                    raise UsageError(f"a raw {item.name} must be a number, not {value!r}; use cmd for names of states")
                 if check_range and item.name in given:
                     item.check_range(value)
                 item.write(data, value)

@@ -91,8 +91,21 @@ class ScriptApi:
         """Send a command without a check of ranges and hazards."""
         return self._command(given, check_range=False, check_hazard=False)
 
-    cmd_raw, cmd_raw_no_range_check = cmd, cmd_no_range_check
-    cmd_raw_no_hazardous_check, cmd_raw_no_checks = cmd_no_hazardous_check, cmd_no_checks
+    def cmd_raw(self, *given: Any, **options: Any) -> list[Any]:
+        """Send a command whose values are not converted: numbers instead of names of states."""
+        return self._command(given, is_raw=True)
+
+    def cmd_raw_no_range_check(self, *given: Any, **options: Any) -> list[Any]:
+        """Send a command with raw values and without a check of ranges."""
+        return self._command(given, check_range=False, is_raw=True)
+
+    def cmd_raw_no_hazardous_check(self, *given: Any, **options: Any) -> list[Any]:
+        """Send a command with raw values that may be hazardous."""
+        return self._command(given, check_hazard=False, is_raw=True)
+
+    def cmd_raw_no_checks(self, *given: Any, **options: Any) -> list[Any]:
+        """Send a command with raw values and without a check of ranges and hazards."""
+        return self._command(given, check_range=False, check_hazard=False, is_raw=True)
 
     def build_cmd(self, *given: Any, **options: Any) -> dict[str, Any]:
         """Return a command without sending it."""
@@ -102,13 +115,15 @@ class ScriptApi:
 
     build_command = build_cmd
 
-    def _command(self, given: tuple[Any, ...], check_range: bool = True, check_hazard: bool = True) -> list[Any]:
+    def _command(
+        self, given: tuple[Any, ...], check_range: bool = True, check_hazard: bool = True, is_raw: bool = False
+    ) -> list[Any]:
         target, name, values = command_words(given)
         packet = self._targets.command(target, name)
         hazard = packet.hazard(values) if check_hazard else None
         if hazard is not None and str(self._answers.answer(f"{packet.full_name} is hazardous: {hazard}")) != "Yes":
             raise UnsupportedError(f"{packet.full_name} is hazardous, and its answer is not Yes")
-        self._station.send(packet.built(values, check_range))
+        self._station.send(packet.built(values, check_range, is_raw))
         shown = ", ".join(f"{key} {value!r}" for key, value in values.items())
         self._write(f'cmd("{packet.full_name}{" with " if shown else ""}{shown}")')
         return [packet.target, packet.name, values]

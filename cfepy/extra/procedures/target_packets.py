@@ -41,18 +41,18 @@ class TargetPackets:
         self._squeezed: dict[tuple[bool, str, str], PacketDefinition] = {}
         self._learn_mission()
 
-    def _learn_mission(self) -> None:
-        for packet in _mission_packets(self.name, self._dictionary):
+    def _learn_mission(self, only_topics: bool = False) -> None:
+        for packet in _mission_packets(self.name, self._dictionary, only_topics):
             known = self._commands if packet.is_command else self._telemetry
             known.setdefault((packet.target, packet.name), packet)
             self._squeezed.setdefault((packet.is_command, packet.target, _short(packet.name)), packet)
 
     def learn(self) -> None:
-        """Add packets that the mission's dictionary has learned since, such as topics of running nodes."""
+        """Add the topics of running nodes, which the mission's dictionary has learned since."""
         for key in [key for key, each in self._telemetry.items() if each.read_all is not None]:
             del self._telemetry[key]
         self._squeezed = {key: each for key, each in self._squeezed.items() if each.read_all is None}
-        self._learn_mission()
+        self._learn_mission(only_topics=True)
 
     def add(self, packets: Iterable[PacketDefinition]) -> None:
         """Add packets of definitions, which come before the mission's own names."""
@@ -115,8 +115,8 @@ class TargetPackets:
     def helper(self, name: str) -> Helper | None:
         """Return the helper of ERB in procedures with a name, or None.
 
-        `get_..._msg_id('PACKET', ...)` is the MsgId of a packet. `..._num_from_target_name(target)` is the number in the
-        name of a target, such as 2 of CFS-2, or None.
+        `get_..._msg_id('PACKET', ...)` is the MsgId of a packet. `..._num_from_target_name(target)` is the number in
+        the name of a target, such as 2 of CFS-2, or None.
         """
         if name.startswith("get_") and name.endswith("msg_id"):
             return lambda packet, *rest: self._packet(packet).msg_id
@@ -175,19 +175,20 @@ def _short(name: str) -> str:
     return squeezed("_".join(each for each in name.upper().split("_") if each not in _FILLERS))
 
 
-def _mission_packets(target: str, dictionary: Dictionary) -> list[PacketDefinition]:
+def _mission_packets(target: str, dictionary: Dictionary, only_topics: bool = False) -> list[PacketDefinition]:
     """Return the packets of a mission's dictionary, and its ROS topics.
 
     Args:
         target: the name of the target.
         dictionary: the mission's packets.
+        only_topics: leave out the packets, which take long if there are many.
     """
+    topics = [_topic(target, each, dictionary) for each in dictionary.telemetry.values() if isinstance(each, Topic)]
+    if only_topics:
+        return topics
     commands = [_command(target, each) for each in dictionary.commands.values()]
-    telemetry = [
-        _topic(target, each, dictionary) if isinstance(each, Topic) else _telemetry(target, each)
-        for each in dictionary.telemetry.values()
-    ]
-    return [*commands, *telemetry]
+    telemetry = [_telemetry(target, each) for each in dictionary.telemetry.values() if not isinstance(each, Topic)]
+    return [*commands, *telemetry, *topics]
 
 
 def _command_header_items(target: str, msg_id: int, code: int | None) -> list[Item]:

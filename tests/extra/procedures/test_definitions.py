@@ -241,3 +241,24 @@ def test_values_of_a_group_are_no_tests() -> None:
 
     assert WithValues.scripts() == ["script_a", "test_b"]
     assert [each.script for each in steps_of(All)] == ["script_a", "test_b"]
+
+
+def _mode_of(command: PacketDefinition, value: Any, **options: bool) -> int:
+    return int.from_bytes(command.built({"MODE": value, "RATE": 1.0}, **options)[8:10], "little", signed=True)
+
+
+def test_raw_command_takes_numbers_of_states_and_no_names() -> None:
+    command = next(each for each in read_definitions(DEFINITIONS, FILE, print) if each.name == "GO")
+    assert _mode_of(command, "ON") == 1
+    assert _mode_of(command, 1, is_raw=True) == 1
+    for check_range in (True, False):
+        with pytest.raises(UsageError, match="a raw MODE must be a number, not 'ON'"):
+            command.built({"MODE": "ON", "RATE": 1.0}, check_range, is_raw=True)
+
+
+@pytest.mark.parametrize("is_raw", [False, True])
+def test_value_that_is_no_state_requires_a_command_without_check_of_ranges(is_raw: bool) -> None:
+    command = next(each for each in read_definitions(DEFINITIONS, FILE, print) if each.name == "GO")
+    with pytest.raises(UsageError, match="MODE = 2 is not one of the states OFF 0, ON 1"):
+        command.built({"MODE": 2, "RATE": 1.0}, is_raw=is_raw)
+    assert _mode_of(command, 2, check_range=False, is_raw=is_raw) == 2
