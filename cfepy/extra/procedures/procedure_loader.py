@@ -16,7 +16,6 @@ from typing import Any
 from cfepy.extra.procedures.connection import CfepyConnection, CfsTest_Connection
 from cfepy.extra.procedures.erb import Template
 from cfepy.extra.procedures.limit_functions import functions_of
-from cfepy.extra.procedures.nested_quotes import older
 from cfepy.extra.procedures.procedure_errors import (
     REFUSED,
     CheckError,
@@ -40,6 +39,7 @@ _SUITE = re.compile(r"^\s*class\s+\w+\s*\(\s*(?:\w+\.)*(?:Test)?Suite\s*\)", re.
 _SECOND_DOOR = re.compile(r"^\s*DEFAULT_APP_NAME\s*=", re.M)
 _MODULES = ("openc3", "openc3.script", "openc3.script.suite", "openc3.script.exceptions", "cfepy_procedures")
 _CONNECTION = "cfs_test_connection"
+_STRING = re.compile(r"([rRbBuUfF]{0,2})(\"\"\"|'''|\"|')")
 
 
 def find_procedures(path: Path) -> list[Path]:
@@ -311,3 +311,87 @@ def procedure_clock(api: ScriptApi) -> ModuleType:
     for name in ("time", "monotonic", "perf_counter"):
         module.__dict__[name] = api._time
     return module
+
+
+# -- f-strings -------------------------------------------------------------------------------------------------------
+
+
+class _TooNewError(Exception):
+    """A text that has no form in Python 3.11."""
+
+
+def older(source: str) -> str:
+    """Return source code of Python 3.12 for 3.11: a text inside of an f-string gets other quotes than the f-string's.
+
+    Args:
+        source: source code; it is returned unchanged if it has a text that needs both kinds of quotes.
+    """
+    try:
+        return _code(source, 0, "", "")[0]
+    except _TooNewError:
+        return source
+
+
+def _code(source: str, at: int, end: str, outer: str) -> tuple[str, int]:
+    """Return code and where it ends.
+
+    Args:
+        source: all of the source.
+        at: where the code begins.
+        end: the bracket that ends it; empty for all of the source.
+        outer: the quotes of the f-string around the code; empty outside of one.
+    """
+    parts: list[str] = []
+    depth = 0
+    while at < len(source):
+        char = source[at]
+        match = _STRING.match(source, at)
+        if match is not None and not _is_name(source[at - 1 : at]):
+            text, at = _string(source, match, outer)
+            parts.append(text)
+            continue
+        if char == "#" and not end:
+            last = source.find("\n", at)
+            last = len(source) if last < 0 else last
+            parts.append(source[at:last])
+            at = last
+            continue
+        if end and depth == 0 and char == end:
+            return "".join(parts), at
+        depth += (char in "([{") - (char in ")]}")
+        parts.append(char)
+        at += 1
+    if end:
+        raise _TooNewError
+    return "".join(parts), at
+
+
+def _is_name(before: str) -> bool:
+    return before.isidentifier() or before.isdigit()
+
+
+def _string(source: str, match: re.Match[str], outer: str) -> tuple[str, int]:
+    """Return a text with its prefix and quotes, and where it ends."""
+    prefix, quotes = match[1], match[2]
+    at = match.end()
+    parts: list[str] = []
+    while not source.startswith(quotes, at):
+        if at >= len(source) or (len(quotes) == 1 and source[at] == "\n"):
+            raise _TooNewError
+        if source[at] == "\\":
+            parts.append(source[at : at + 2])
+            at += 2
+        elif source[at] == "{" and "f" in prefix.lower() and source[at : at + 2] != "{{":
+            code, at = _code(source, at + 1, "}", quotes)
+            parts.append("{" + code + "}")
+            at += 1
+        else:
+            width = 2 if source[at : at + 2] == "{{" else 1
+            parts.append(source[at : at + width])
+            at += width
+    body = "".join(parts)
+    if outer and quotes[0] == outer[0]:
+        quotes = "'" if outer[0] == '"' else '"'
+        if quotes in body or "\\" in body:
+            raise _TooNewError
+    return f"{prefix}{quotes}{body}{quotes}", at + len(match[2])

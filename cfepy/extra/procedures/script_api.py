@@ -509,11 +509,7 @@ class ScriptApi:
         return self._line_delay
 
     def step_mode(self) -> None:
-        """Refuse to stop at each line, because there is no user.
-
-        Raises:
-            UnsupportedError: always.
-        """
+        """Raise an UnsupportedError, because there is no user who could continue."""
         raise UnsupportedError("step_mode requires a user; use run_mode")
 
     def run_mode(self) -> None:

@@ -6,7 +6,7 @@ import ast
 
 import pytest
 
-from cfepy.extra.procedures.nested_quotes import older
+from cfepy.extra.procedures.procedure_loader import older
 
 NAMES = {"a": "x y", "values": {"k": 3}, "b": 2}
 
