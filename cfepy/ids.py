@@ -236,8 +236,11 @@ class IdTable(Generic[Record]):
         return self.records.get(self._slots[index]) if 0 <= index < self.capacity else None
 
     def items(self) -> list[tuple[int, Record]]:
-        """Return a copy of the table as a list of (id, record) in slot order."""
-        return [(used, self.records[used]) for used in self._slots if used]
+        """Return a copy of the table as a list of (id, record) in slot order.
+
+        A record that is being deleted keeps its slot, but it is not in the list (OS_ObjectIdIsValid).
+        """
+        return [(used, self.records[used]) for used in self._slots if used in self.records]
 
     def __iter__(self) -> Iterator[Record]:
         return iter([record for _, record in self.items()])

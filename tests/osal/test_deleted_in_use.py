@@ -143,6 +143,18 @@ def test_delete_of_a_semaphore_waits_for_the_tasks_that_wait_for_it(calls: Calls
     assert "semaphore S, which STUCK is deleting" in calls.bench.kernel.waiting()
 
 
+def test_object_that_is_being_deleted_is_not_listed(calls: Calls) -> None:
+    os = calls.bench.os
+    kept, deleted = os.bin_sem_create("KEPT", 0), os.bin_sem_create("DELETED", 0)
+    calls.start("TAKER", os.bin_sem_take, deleted)
+    calls.start("DELETER", os.bin_sem_delete, deleted)
+    assert calls.results["DELETER"] == FOREVER
+    found: list[int] = []
+    os.for_each_object(0, lambda object_id, argument: found.append(object_id))
+    assert kept in found
+    assert deleted not in found
+
+
 def test_delete_of_a_condition_variable_waits_for_the_tasks_that_wait_for_it(calls: Calls) -> None:
     os = calls.bench.os
     variable = os.cond_var_create("V")
