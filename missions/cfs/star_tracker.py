@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from cfepy.app import Cfe
 from cfepy.msg import Command
+from cfepy.sb import PEND_FOREVER
 
 CMD_MID = 0x18D2
 PERIOD_MS = 1000
@@ -18,10 +19,10 @@ def STAR_TRACKER_Main(cfe: Cfe) -> None:
     cfe.evs.register()
     pipe = cfe.sb.create_pipe(10, "TRACKER_PIPE")
     cfe.sb.subscribe(CMD_MID, pipe)
-    never = cfe.os.bin_sem_create("TRACKER_NEVER", 0, 0)
+    never = cfe.sb.create_pipe(1, "TRACKER_NEVER")
     cfe.evs.send_info(INIT_EID, "STAR_TRACKER: looking at stars")
     while cfe.es.run_loop():
         cfe.os.task_delay(PERIOD_MS)
         if cfe.sb.receive_buffer(pipe, 0) is not None:
-            cfe.os.bin_sem_take(never)
+            cfe.sb.receive_buffer(never, PEND_FOREVER)
     cfe.es.exit_app()
