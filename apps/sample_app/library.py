@@ -18,4 +18,7 @@ def call_library(cfe: Cfe) -> None:
     except OsalError:
         cfe.es.write_to_sys_log(f"Sample App: no library has {FUNCTION}")
         return
+    if not callable(function):
+        cfe.es.write_to_sys_log(f"Sample App: {FUNCTION} is compiled, and only compiled applications can call it")
+        return
     function(cfe)

@@ -74,6 +74,13 @@ def test_missing_library_is_logged(sample: AppBench) -> None:
     assert sample.events[-1][0] == 3
 
 
+def test_compiled_library_is_not_called(sample: AppBench) -> None:
+    sample.symbols["SAMPLE_LIB_Function"] = 0x10001000  # its address
+    sample.run(SAMPLE_APP_Main, packets.PROCESS.packet(), packets.NOOP.packet())
+    assert sample.log[-1] == "Sample App: SAMPLE_LIB_Function is compiled, and only compiled applications can call it"
+    assert sample.events[-1][0] == 3
+
+
 def test_table_out_of_range_is_refused_at_start(sample: AppBench) -> None:
     image = TableImage("SAMPLE_APP.ExampleTable", packets.EXAMPLE_TABLE.pack(Int1=11))
     sample.files["/cf/sample_app_tbl.tbl"] = build(image)
