@@ -161,7 +161,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="a new folder that keeps the objects")
     given = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as scratch:
-        folder = given.keep or Path(scratch)
+        folder = (given.keep or Path(scratch)).resolve()
         folder.mkdir(exist_ok=True)
         status, found = measure(folder, list(given.tests))
     if given.files:

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
+#include <map>
 #include <new>
 #include <string>
 #include <vector>
@@ -13,7 +15,21 @@
 extern "C" {
 void *memalign(std::size_t alignment, std::size_t size);
 void *reallocarray(void *at, std::size_t count, std::size_t size);
+void  __cxa_pure_virtual();
+void  __cxa_deleted_virtual();
+void *__cxa_allocate_exception(std::size_t size) noexcept;
+void *__cxa_allocate_dependent_exception() noexcept;
+void  __cxa_free_exception(void *) noexcept;
+void  __cxa_free_dependent_exception(void *) noexcept;
+__attribute__((weak)) void __gcov_dump(); // writes which lines were reached, where that is measured
 }
+
+namespace std
+{
+void __throw_bad_exception();
+} // namespace std
+
+static void *g_spare[32]; // blocks of all small sizes: __gcov_dump allocates, and the arena may be full
 
 namespace roscfe
 {
@@ -22,6 +38,14 @@ namespace roscfe
 {
     std::printf("refused: %s: %s\n", what, detail);
     std::fflush(stdout);
+    if (__gcov_dump != nullptr)
+    {
+        for (void *const each : g_spare)
+        {
+            std::free(each);
+        }
+        __gcov_dump();
+    }
     std::_Exit(0);
 }
 
@@ -113,7 +137,9 @@ void of_c()
     copy = strndup("abcdef", 3);
     say("strndup", std::strcmp(copy, "abc") == 0);
     std::free(copy);
-    std::free(nullptr);
+    void *volatile none = nullptr;
+    std::free(none);
+    ::operator delete(none);
     std::free(std::realloc(nullptr, 10));
     say("realloc of 0", std::realloc(std::malloc(10), 0) == nullptr);
     char *      line = nullptr; // libc's own memory goes back to libc
@@ -122,6 +148,60 @@ void of_c()
     line = static_cast<char *>(std::realloc(line, 500));
     say("kept", std::strcmp(line, "line\n") == 0);
     std::free(line);
+}
+
+// Each form of operator delete gives a block back: the next block of that size is the same.
+void given_back()
+{
+    using std::align_val_t;
+    const align_val_t far    = align_val_t(64);
+    const std::size_t before = roscfe::heap::used();
+    const auto        place  = [](void *at) { return reinterpret_cast<std::uintptr_t>(at); };
+    void *            block  = ::operator new(3000);
+    const auto        plain  = place(block);
+    ::operator delete(block);
+    block            = ::operator new(6000, far);
+    const auto apart = place(block);
+    ::operator delete(block, far);
+    const auto same = [&place](void *at, std::uintptr_t wanted) {
+        say("same", place(at) == wanted);
+        return at;
+    };
+    ::operator delete[](same(::operator new[](3000), plain));
+    ::operator delete(same(::operator new(3000), plain), std::size_t(3000));
+    ::operator delete[](same(::operator new[](3000), plain), std::size_t(3000));
+    ::operator delete(same(::operator new(3000, std::nothrow), plain), std::nothrow);
+    ::operator delete[](same(::operator new[](3000, std::nothrow), plain), std::nothrow);
+    ::operator delete[](same(::operator new[](6000, far), apart), far);
+    ::operator delete(same(::operator new(6000, far), apart), std::size_t(6000), far);
+    ::operator delete[](same(::operator new[](6000, far), apart), std::size_t(6000), far);
+    ::operator delete(same(::operator new(6000, far, std::nothrow), apart), far, std::nothrow);
+    ::operator delete[](same(::operator new[](6000, far, std::nothrow), apart), far, std::nothrow);
+    say("used", roscfe::heap::used() - before == 4096 + 8192);
+    say("capacity", roscfe::heap::capacity() == 262144);
+}
+
+void resized()
+{
+    char *text = static_cast<char *>(std::malloc(100));
+    const auto place = reinterpret_cast<std::uintptr_t>(text);
+    for (const std::size_t size : {10, 100})
+    {
+        text = static_cast<char *>(std::realloc(text, size));
+        say("same", reinterpret_cast<std::uintptr_t>(text) == place);
+    }
+    std::strcpy(text, "kept");
+    text = static_cast<char *>(reallocarray(text, 500, 4));
+    say("reallocarray", text != nullptr && std::strcmp(text, "kept") == 0);
+    std::free(text);
+    say("none", std::calloc(5, 0) != nullptr && reallocarray(nullptr, 5, 0) != nullptr);
+    errno = 0;
+    say("odd", memalign(48, 16) == nullptr && errno == EINVAL);
+    void *at = nullptr;
+    say("odd", posix_memalign(&at, 4, 16) == EINVAL && posix_memalign(&at, 0, 16) == EINVAL);
+    g_size = SIZE_MAX;
+    say("full", posix_memalign(&at, 64, g_size) == ENOMEM && at == nullptr);
+    say("end of the text", std::strcmp(strndup("ab", 100), "ab") == 0);
 }
 
 void too_large()
@@ -147,7 +227,8 @@ void too_large()
 
 void full()
 {
-    int blocks = 0;
+    const std::string text(1000, 'x');
+    int               blocks = 0;
     while (new (std::nothrow) char[1000] != nullptr)
     {
         ++blocks;
@@ -155,6 +236,10 @@ void full()
     say("some", blocks > 200 && blocks <= 256);
     say("malloc", std::malloc(1000) == nullptr);
     say("aligned", new (std::nothrow) Wide[8] == nullptr);
+    void *volatile at = std::calloc(10, 100); // kept, or the compiler leaves the call out
+    say("calloc", at == nullptr);
+    at = strdup(text.c_str());
+    say("strdup", at == nullptr);
     std::printf("%p\n", static_cast<void *>(new char[1000]));
 }
 
@@ -185,11 +270,40 @@ void wide()
     std::printf("block %p\n", ::operator new(16, std::align_val_t(g_size)));
 }
 
-void thrown()
+void at_index()
 {
     std::vector<int> numbers(3);
     g_size = 5;
     std::printf("%d\n", numbers.at(g_size));
+}
+
+// The functions that the C++ library and the compiler call in place of an exception, by name.
+void thrown(const std::string &name)
+{
+    const std::map<std::string, std::function<void()>> all = {
+        {"vector::at", at_index},
+        {"bad_alloc", [] { std::__throw_bad_alloc(); }},
+        {"bad_array_new_length", [] { std::__throw_bad_array_new_length(); }},
+        {"bad_cast", [] { std::__throw_bad_cast(); }},
+        {"bad_exception", [] { std::__throw_bad_exception(); }},
+        {"bad_function_call", [] { std::function<void()>()(); }},
+        {"bad_typeid", [] { std::__throw_bad_typeid(); }},
+        {"logic_error", [] { std::__throw_logic_error(""); }},
+        {"domain_error", [] { std::__throw_domain_error(""); }},
+        {"invalid_argument", [] { std::__throw_invalid_argument(""); }},
+        {"length_error", [] { std::vector<int>().reserve(SIZE_MAX); }},
+        {"out_of_range", [] { std::__throw_out_of_range(""); }},
+        {"runtime_error", [] { std::__throw_runtime_error(""); }},
+        {"range_error", [] { std::__throw_range_error(""); }},
+        {"overflow_error", [] { std::__throw_overflow_error(""); }},
+        {"underflow_error", [] { std::__throw_underflow_error(""); }},
+        {"allocate", [] { __cxa_allocate_exception(8); }},
+        {"allocate dependent", [] { __cxa_allocate_dependent_exception(); }},
+        {"free", [] { __cxa_free_exception(nullptr), __cxa_free_dependent_exception(nullptr); }},
+        {"pure", [] { __cxa_pure_virtual(); }},
+        {"deleted", [] { __cxa_deleted_virtual(); }},
+    };
+    all.at(name)();
 }
 
 } // namespace
@@ -199,14 +313,20 @@ int main(int, char **arguments)
     std::setvbuf(stdout, nullptr, _IONBF, 0);
     const std::string what = arguments[1];
     say("nothing taken", roscfe::heap::used() < 4096);
+    for (int i = 0; __gcov_dump != nullptr && i < 32; ++i)
+    {
+        g_spare[i] = std::malloc(std::size_t(8) << i / 4);
+    }
     what == "aligned"     ? aligned()
     : what == "c"         ? of_c()
+    : what == "given back" ? given_back()
+    : what == "resized"   ? resized()
     : what == "too large" ? too_large()
     : what == "full"      ? full()
     : what == "sealed"    ? sealed()
     : what == "negative"  ? negative()
     : what == "half"      ? half()
     : what == "wide"      ? wide()
-                          : thrown();
+                          : thrown(what);
     std::puts("done");
 }

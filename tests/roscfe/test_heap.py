@@ -15,6 +15,11 @@ from dev.roscfe.building import ROSCFE, STRICT_FLAGS, compile_objects, link_prog
 pytestmark = [pytest.mark.slow, needs_cpp]
 PROGRAM = Path(__file__).parent / "heap.cpp"
 NO_WARNINGS = ("-Wno-alloc-size-larger-than", "-Wno-unused-result")
+THROWN = (
+    *("vector::at", "bad_alloc", "bad_array_new_length", "bad_cast", "bad_exception", "bad_function_call", "bad_typeid"),
+    *("logic_error", "domain_error", "invalid_argument", "length_error", "out_of_range"),
+    *("runtime_error", "range_error", "overflow_error", "underflow_error", "allocate", "allocate dependent"),
+)
 Run = Callable[[str], list[str]]
 
 
@@ -48,7 +53,7 @@ def failures(lines: list[str]) -> list[str]:
     return [line for line in lines if line.endswith(" 0")]
 
 
-@pytest.mark.parametrize("case", ["aligned", "c", "too large"])
+@pytest.mark.parametrize("case", ["aligned", "c", "given back", "resized", "too large"])
 def test_heap_returns_aligned_memory_or_null(run: Run, case: str) -> None:
     lines = run(case)
     assert failures(lines) == []
@@ -58,6 +63,7 @@ def test_heap_returns_aligned_memory_or_null(run: Run, case: str) -> None:
 def test_full_arena_returns_null_and_then_ends_the_node(run: Run) -> None:
     *before, last = run("full")
     assert failures(before) == []
+    assert len(before) == 6
     assert last == "refused: the node's arena is full: build it with a larger ROSCFE_ARENA_BYTES"
 
 
@@ -66,8 +72,18 @@ def test_impossible_size_ends_the_node(run: Run, case: str) -> None:
     assert run(case)[-1] == "refused: the arena has no room: a block is larger than any arena"
 
 
-def test_exception_of_the_cpp_library_ends_the_node(run: Run) -> None:
-    assert run("thrown")[-1] == "refused: exception: a function of the C++ library has thrown one"
+@pytest.mark.parametrize("case", THROWN)
+def test_exception_of_the_cpp_library_ends_the_node(run: Run, case: str) -> None:
+    assert run(case)[-1] == "refused: exception: a function of the C++ library has thrown one"
+
+
+@pytest.mark.parametrize("case", ["pure", "deleted"])
+def test_virtual_function_without_a_body_ends_the_node(run: Run, case: str) -> None:
+    assert run(case)[-1] == f"refused: exception: a {case} virtual function was called"
+
+
+def test_memory_of_an_exception_is_never_given_back(run: Run) -> None:
+    assert run("free")[-1] == "done"
 
 
 def test_strict_node_cannot_allocate_after_its_start(run: Run, profile: Profile) -> None:
