@@ -5,8 +5,8 @@
     python -m dev.roscfe.coverage tests/roscfe/test_heap.py
 
 The tests compile with a wrapper around g++ that adds `--coverage` and `-O0`, whatever program or shared object they
-make. Counted are the sources and headers of `roscfe/`, whatever program they are compiled into. A branch is an edge of
-gcov (gcc), without those that the compiler adds for exceptions.
+make. Counted are the sources and headers of `roscfe/`, whatever program they are compiled into. A branch is a way out
+of a condition, as gcov (gcc) finds it; see `decisions`.
 """
 
 from __future__ import annotations
@@ -44,14 +44,14 @@ LEAST = 90.0
 """Percent of lines, and of branches."""
 WRAPPER = """#!{python}
 import hashlib, os, shutil, subprocess, sys
-given = sys.argv[1:]
-more = ["--coverage", "-O0", "-Wl,-u,__gcov_dump"]
+given = [each for each in sys.argv[1:] if not each.startswith("-ffile-prefix-map=")]  # names of sources stay whole
+more = ["--coverage", "-O0", "-fprofile-update=atomic", "-Wl,-u,__gcov_dump"]
 if "-c" in given and "-o" in given:
     at = given.index("-o") + 1
     wanted = given[at]
     name = hashlib.blake2b("\\0".join([os.getcwd(), *given]).encode(), digest_size=8).hexdigest()
     given[at] = os.path.join({objects!r}, f"{{os.path.splitext(os.path.basename(wanted))[0][:60]}}-{{name}}.o")
-    done = subprocess.run(["g++", *given, *more[:2]])
+    done = subprocess.run(["g++", *given, *more[:3]])
     if done.returncode == 0:
         shutil.copyfile(given[at], wanted)
     sys.exit(done.returncode)
@@ -99,14 +99,20 @@ def measure(folder: Path, tests: list[str]) -> tuple[int, Coverage]:
     Returns:
         The exit status of pytest, and the coverage.
     """
-    (objects := folder / "objects").mkdir()
-    wrapper = folder / "g++-with-coverage"
-    wrapper.write_text(WRAPPER.format(python=sys.executable, objects=str(objects)), encoding="utf-8")
-    wrapper.chmod(0o755)
+    wrapper = compiler(folder)
     environ = {**os.environ, "CXX": str(wrapper), "XDG_CACHE_HOME": str(folder / "cache")}
     given = ["-m", "slow or not slow", "-q", "-n0", "-p", "no:randomly", f"--basetemp={folder / 'tests'}", *tests]
     done = subprocess.run([sys.executable, "-m", "pytest", *given], cwd=CHECKOUT, env=environ, check=False)
     return done.returncode, read(folder)
+
+
+def compiler(folder: Path) -> Path:
+    """Write a compiler into an empty folder, which makes objects that count, and keeps them there. Returns its path."""
+    (objects := folder / "objects").mkdir()
+    wrapper = folder / "g++-with-coverage"
+    wrapper.write_text(WRAPPER.format(python=sys.executable, objects=str(objects)), encoding="utf-8")
+    wrapper.chmod(0o755)
+    return wrapper
 
 
 def read(folder: Path) -> Coverage:
@@ -140,11 +146,24 @@ def reached(counts: Iterable[int]) -> int:
     return sum(count > 0 for count in counts)
 
 
+def decisions(branches: list[dict[str, Any]]) -> list[int]:
+    """Return how often each way out of the conditions of a line was taken.
+
+    gcov has two more for each call that may throw: to the next statement, and behind it the exception's.
+
+    Args:
+        branches: the branches of a line in gcov's JSON, in their order.
+    """
+    throws = [each["throw"] for each in branches]
+    of_calls = [is_throw or follows for is_throw, follows in zip(throws, [*throws[1:], False], strict=False)]
+    return [each["count"] for each, is_of_call in zip(branches, of_calls, strict=True) if not is_of_call]
+
+
 def _add(lines: Counter[tuple[str, int]], branches: dict[tuple[str, int], list[int]], name: str, found: Any) -> None:
     for line in found:
         place = name, line["line_number"]
         lines[place] += line["count"]
-        taken = [each["count"] for each in line["branches"] if not each["throw"]]
+        taken = decisions(line["branches"])
         known = branches.setdefault(place, [])
         for at, count in enumerate(taken):
             if at < len(known):
