@@ -268,31 +268,12 @@ void Sink::repeat(char c, long count)
     }
 }
 
-void put_filled(Sink &sink, const Style &style, const char *lead, std::size_t lead_size, const char *text,
-                std::size_t size)
-{
-    const long pad = style.width - static_cast<long>(lead_size + size);
-    if (!style.left && !style.zero)
-    {
-        sink.repeat(style.fill, pad);
-    }
-    sink.put(lead, lead_size);
-    if (!style.left && style.zero)
-    {
-        sink.repeat(style.inner, pad);
-    }
-    sink.put(text, size);
-    if (style.left)
-    {
-        sink.repeat(style.fill, pad);
-    }
-}
-
 void put_text(Sink &sink, const Style &style, const char *text, std::size_t size)
 {
-    Style plain = style;
-    plain.zero  = false;
-    put_filled(sink, plain, "", 0, text, size);
+    const long pad = style.width - static_cast<long>(size);
+    sink.repeat(style.fill, style.left ? 0 : pad);
+    sink.put(text, size);
+    sink.repeat(style.fill, style.left ? pad : 0);
 }
 
 void put_integer(Sink &sink, const Style &style, unsigned long long magnitude, bool negative, unsigned base)

@@ -103,7 +103,12 @@ int main(int, char **arguments)
         {
             const std::string small = form_of("di", "-+ 0", size);
             compare(small, by_us(small.c_str(), static_cast<int>(bits)), by_libc(small.c_str(), static_cast<int>(bits)));
+            const std::string least = form_of("uoxX", "-#0", size);
+            compare(least, by_us(least.c_str(), static_cast<int>(bits)), by_libc(least.c_str(), static_cast<int>(bits)));
         }
+        const std::string longer = form_of("eEfF", "-+ #0", "L");
+        const auto        longest = static_cast<long double>(value);
+        compare(longer, by_us(longer.c_str(), longest), by_libc(longer.c_str(), longest));
         for (const char *size : {"l", "z", "j", "t"})
         {
             const std::string word = form_of("dux", "-", size);
@@ -117,6 +122,12 @@ int main(int, char **arguments)
     }
     compare("%c%%%p", by_us("%c%%%5c|%-4c|%p|%20p", 'a', 'b', 'c', nullptr, reinterpret_cast<void *>(0x1234)),
             by_libc("%c%%%5c|%-4c|%p|%20p", 'a', 'b', 'c', nullptr, reinterpret_cast<void *>(0x1234)));
+    for (const char *form : {"%s", "%9s|%-9s", "%.5s", "%.6s"})
+    {
+        compare(form, by_us(form, nullptr, nullptr), by_libc(form, nullptr, nullptr));
+    }
+    compare("%y", by_us("%y %-5w|%d", 7), by_libc("%y %-5w|%d", 7));
+    compare("length", by_us("%.0d%.0o%#.0o%#o", 0, 0, 0, 8), by_libc("%.0d%.0o%#.0o%#o", 0, 0, 0, 8));
     char cut[8], other[8];
     const int ours   = [](char *to, ...) {
         va_list none;

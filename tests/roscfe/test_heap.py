@@ -16,7 +16,15 @@ pytestmark = [pytest.mark.slow, needs_cpp]
 PROGRAM = Path(__file__).parent / "heap.cpp"
 NO_WARNINGS = ("-Wno-alloc-size-larger-than", "-Wno-unused-result")
 THROWN = (
-    *("vector::at", "bad_alloc", "bad_array_new_length", "bad_cast", "bad_exception", "bad_function_call", "bad_typeid"),
+    *(
+        "vector::at",
+        "bad_alloc",
+        "bad_array_new_length",
+        "bad_cast",
+        "bad_exception",
+        "bad_function_call",
+        "bad_typeid",
+    ),
     *("logic_error", "domain_error", "invalid_argument", "length_error", "out_of_range"),
     *("runtime_error", "range_error", "overflow_error", "underflow_error", "allocate", "allocate dependent"),
 )

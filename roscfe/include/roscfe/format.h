@@ -50,9 +50,7 @@ struct Style
     char inner     = '0'; // what `zero` puts between a sign and the digits
 };
 
-// Text in front of digits, such as a sign, then the digits: both filled up to the width.
-void put_filled(Sink &sink, const Style &style, const char *lead, std::size_t lead_size, const char *text,
-                std::size_t size);
+// Text that is filled up to the width.
 void put_text(Sink &sink, const Style &style, const char *text, std::size_t size);
 void put_integer(Sink &sink, const Style &style, unsigned long long magnitude, bool negative, unsigned base);
 
