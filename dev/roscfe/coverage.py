@@ -44,7 +44,8 @@ LEAST = 90.0
 """Percent of lines, and of branches."""
 WRAPPER = """#!{python}
 import hashlib, os, shutil, subprocess, sys
-given = [each for each in sys.argv[1:] if not each.startswith("-ffile-prefix-map=")]  # names of sources stay whole
+left_out = ("-ffile-prefix-map=", "-fsanitize=address")  # short names of sources, and branches that no source has
+given = [each for each in sys.argv[1:] if not each.startswith(left_out)]
 more = ["--coverage", "-O0", "-fprofile-update=atomic", "-Wl,-u,__gcov_dump"]
 if "-c" in given and "-o" in given:
     at = given.index("-o") + 1

@@ -322,6 +322,10 @@ bool Client::is_linked()
 
 bool Client::exists() const
 {
+    if (g_node.is_shut && !is_master_)
+    {
+        return false; // the node has left the graph, and asks it for nothing
+    }
     pump(0);
     if (!is_master_) // which was there at the start; a call looks if it is not answered
     {
@@ -341,19 +345,40 @@ bool Client::wait_for_existence(std::int64_t timeout_ns)
             return false;
         }
         pump(timeout_ns >= 0 ? std::min(until, now + kPoll) : now + kPoll);
+        if (run_async != nullptr)
+        {
+            run_async();
+        }
     }
     return true;
 }
 
 std::uint8_t *Client::begin(std::size_t size)
 {
-    if ((g_node.is_shut && !is_master_) || !exists())
+    if (!exists())
     {
+        return nullptr;
+    }
+    if (waits_for_answer())
+    {
+        CFE_EVS_SendEvent(kBusEid, CFE_EVS_EventType_ERROR, "%s: a callback calls %s with a client that waits for its answer",
+                          g_node.name.c_str(), name_.c_str());
         return nullptr;
     }
     size_ = size;
     long_request_.resize(std::max<std::size_t>(size, 1)); // an empty request has an address, too
     return long_request_.data();
+}
+
+// A callback that runs during a call may call other services, and this one with a client of its own.
+bool Client::waits_for_answer() const
+{
+    const Call *call = g_call;
+    while (call != nullptr && call->answer != &answer_)
+    {
+        call = call->outer;
+    }
+    return call != nullptr;
 }
 
 // Whether an answer may still come: whoever serves is there, and the node is not to end. The master answers until then.
@@ -379,6 +404,10 @@ bool Client::call()
     while (!this_call.is_over && (is_master_ || !g_node.shutting_down))
     {
         pump(look);
+        if (!is_master_ && !this_call.is_over && run_async != nullptr)
+        {
+            run_async(); // the answer may come from a service of this node
+        }
         if (!this_call.is_over && now_ns() >= look)
         {
             look = now_ns() + kLook;
@@ -500,6 +529,14 @@ ServiceClient::ServiceClient(const std::string &name, bool persistent, const cha
 bool ServiceClient::isValid() const
 {
     return client_ != nullptr && (!persistent_ || client_->is_linked());
+}
+
+void ServiceClient::shutdown()
+{
+    if (client_)
+    {
+        client_->unlink();
+    }
 }
 
 bool ServiceClient::waitForExistence(Duration timeout)

@@ -73,7 +73,7 @@ class ServiceClient
     std::string getService() const { return client_ ? client_->name_ : std::string(); }
     bool        waitForExistence(Duration timeout = Duration(-1));
     bool        exists() const { return client_ && client_->exists(); }
-    void        shutdown() { client_.reset(); }
+    void        shutdown(); // ends the connection of a persistent one; any other has none
 
     explicit operator bool() const { return isValid(); }
     operator void *() const { return client_.get(); }

@@ -106,6 +106,7 @@ class Client
 
     // Whether the server of a persistent client is still there.
     bool is_linked();
+    void unlink() { is_linked_ = false; }
     void lose(std::uint16_t request_id_of_server, std::uint32_t server);
 
     const std::string         name_;
@@ -115,6 +116,7 @@ class Client
   private:
     std::uint16_t request_id() const;
     bool          may_be_answered() const;
+    bool          waits_for_answer() const;
 
     const bool                is_master_; // a client of cfepy's ROS application
     std::uint16_t             answer_id_ = 0;
