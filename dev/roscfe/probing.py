@@ -50,6 +50,7 @@ LIBRARIES = (
     *("-lactionlib", "-lboost_thread"),
 )
 MORE_LIBRARIES = {
+    "approximate": ("-lmessage_filters",),
     "queues": ("-lmessage_filters",),
     "clouds": ("-linteractive_markers", "-llaser_geometry", "-ltf", "-ltf2"),
     "shapes": ("-ltopic_tools",),

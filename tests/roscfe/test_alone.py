@@ -15,7 +15,7 @@ from dev.roscfe.building import needs_cpp, target_named
 from dev.roscfe.probing import PROBES
 
 pytestmark = [pytest.mark.slow, needs_cpp]
-NODES = ("actions", "clouds", "logs", "names", "params", "timers", "topics", "values")
+NODES = ("actions", "approximate", "clouds", "logs", "names", "params", "timers", "topics", "values")
 """Probes whose topics have MsgIds there (`dev.roscfe.alone.TOPICS`)."""
 OWN = Path(__file__).parent / "alone_nodes"
 NUMERIC = ("clouds",)
