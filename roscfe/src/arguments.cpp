@@ -36,7 +36,7 @@ bool isInitialized()
 
 bool isStarted()
 {
-    return g_node.started && !g_node.shutting_down;
+    return g_node.started && !g_node.is_shut; // requestShutdown() changes nothing yet
 }
 
 bool isShuttingDown()

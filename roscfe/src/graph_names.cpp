@@ -30,9 +30,8 @@ void getAdvertisedTopics(V_string &topics)
     }
 }
 
-void getSubscribedTopics(V_string &topics)
+void getSubscribedTopics(V_string &topics) // behind those that are there, as in roscpp
 {
-    topics.clear();
     for (const auto &each : roscfe::g_node.subscriptions)
     {
         topics.push_back(each->topic_);

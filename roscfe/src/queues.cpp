@@ -6,11 +6,6 @@
 namespace ros
 {
 
-CallbackQueue *getInternalCallbackQueue()
-{
-    return &roscfe::g_node.queue;
-}
-
 // Those that are being called are not among them.
 void CallbackQueue::clear()
 {

@@ -42,7 +42,6 @@ void spinOnce();
 
 void removeROSArgs(int argc, const char *const *argv, V_string &args);
 std::string getROSArg(int argc, const char *const *argv, const std::string &arg);
-CallbackQueue *getInternalCallbackQueue();
 
 } // namespace ros
 
