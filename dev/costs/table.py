@@ -16,7 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 PATH = ROOT / "tests/costs.tsv"
 DEAR_S = 0.015  # of CPU time: the quick loop has no such test
-SLOW_S = 0.1  # of CPU time: such a test is a slow one
+SLOW_S = 0.05  # of CPU time: such a test is a slow one
 
 
 def file_of(test: str) -> str:

@@ -36,7 +36,7 @@ def add(commands: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
     build.add_argument(
         "--defs",
         metavar="DIR",
-        help="a mission's headers, before the application's own; of a tree, its folder of definitions",
+        help="a mission's headers; of a tree, its definitions",
     )
     add_cfe(build)
     build.add_argument(
@@ -64,7 +64,7 @@ def _add_tree(options: argparse._ArgumentGroup) -> None:
         metavar="DIR",
         action="append",
         default=[],
-        help="find modules here first, as CFS_APP_PATH of a cFS build; repeatable",
+        help="find modules here first (CFS_APP_PATH)",
     )
     options.add_argument("--startup", metavar="FILE", help="use this startup script, not the tree's")
     options.add_argument(
