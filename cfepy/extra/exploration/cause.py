@@ -103,7 +103,7 @@ NO_CAUSE = Cause()
 def cause_of(evidence: Evidence) -> Cause:
     """Return the cause; it has no text if no pattern matches."""
     sentences: tuple[Callable[[Evidence], Cause], ...] = (
-        _deadlock,
+        deadlock_of,
         _late,
         _lost_update,
         _lost_wake_up,
@@ -125,7 +125,7 @@ def cause_of(evidence: Evidence) -> Cause:
 # -- deadlock --------------------------------------------------------------------------------------------------------
 
 
-def _deadlock(evidence: Evidence) -> Cause:
+def deadlock_of(evidence: Evidence) -> Cause:
     """Return a cause if each task of a cycle holds the lock that the task before it wants."""
     if evidence.failure.kind != DEADLOCK:
         return NO_CAUSE

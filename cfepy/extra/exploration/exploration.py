@@ -409,6 +409,8 @@ class Expedition:
                 told.shrunk = self._shrunk(trial, finding, tally.done) if told.repeats else None
             if told.shrunk is not None:
                 told.story = _story(told.shrunk, finding)
+            elif finding.in_reference and finding.failure.kind not in _NO_WAY and not tally.interrupted:
+                told.story = story_of(trial, finding.verdict, finding.failure, ())
         except KeyboardInterrupt:  # keep the findings so far
             tally.interrupted = True
         return told

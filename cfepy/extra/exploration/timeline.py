@@ -15,7 +15,7 @@ from textwrap import wrap
 from typing import Protocol
 
 from cfepy.attachment import Attachment
-from cfepy.extra.exploration.cause import NO_CAUSE, Evidence, cause_of
+from cfepy.extra.exploration.cause import NO_CAUSE, Evidence, cause_of, deadlock_of
 from cfepy.extra.exploration.failure_kinds import FailureWatch
 from cfepy.extra.exploration.made_moves import MadeMove, MoveNotingPolicy
 from cfepy.extra.exploration.mission_transfer import PlanElsewhere
@@ -146,9 +146,11 @@ class Retellable(Protocol):
 def story_of(trial: Retellable, verdict: Verdict, failure: Failure, moves: Sequence[MadeMove]) -> Story:
     """Fly the run once more, and the run under fifo. Returns the story of the failure.
 
+    If fifo fails in this way already, only a circle of waiting tasks is a cause, since there is no run to compare with.
+
     Args:
         trial: the trial.
-        verdict: of the shrunk schedule.
+        verdict: of the shrunk schedule, or of fifo.
         failure: the failure.
         moves: moves of the schedule.
     """
@@ -168,7 +170,7 @@ def story_of(trial: Retellable, verdict: Verdict, failure: Failure, moves: Seque
     culprit = failure.task or sender
     ran, usually_ran = (each.between(end_ns - (failure.span_ns or 0), end_ns) for each in (times, usual_times))
     evidence = Evidence(failure, moves, rows, look.deeds, usual.deeds, look.names, ran, usually_ran)
-    cause = NO_CAUSE if known is not None or failure.kind == LONGEST else cause_of(evidence)
+    cause = NO_CAUSE if failure.kind == LONGEST else deadlock_of(evidence) if known is not None else cause_of(evidence)
     rows = tuple(row for row in look.rows_with(cause.deeds) if row.at_ns <= end_ns)
     touched = {deed.thing for deed in look.deeds if deed.ident and deed.thing in cause.text}
     rows = tuple(_without_touches(rows, touched))

@@ -136,6 +136,23 @@ def test_begin_at_operational_is_refused_when_the_mission_never_is() -> None:
         Expedition(plan, from_s=FROM_OPERATIONAL).run()
 
 
+CROSSED = (
+    missions.LOCK_ORDER.replace("rospy.get_time()", "pass")
+    .replace("with first:\n", "with first:\n                both.wait()\n")
+    .replace("left, right =", "both = threading.Barrier(2)\n    left, right =")
+)
+
+
+def test_failure_of_fifo_has_a_timeline_and_a_circle_its_cause(tmp_path: Path) -> None:
+    locks = missions.write(tmp_path, {"LOCKS": CROSSED})
+    plan = RunPlan((str(locks),), seconds=0.6, tasks="greenlet")
+    (told,) = Expedition(plan, seeds=1, jobs=1, shrink=0).run().findings
+    assert told.finding.in_reference
+    assert told.story.cause.startswith("LOCKS.locks.1.1 holds left (locks.py:6) and waits for right (locks.py:6); ")
+    assert any("wants right" in line and "which LOCKS.locks.2.2 has" in line for line in told.timeline), told.timeline
+    assert any(line.startswith("at the end  FAILURE in LOCKS") for line in told.timeline)
+
+
 @pytest.mark.slow
 def test_search_ends_when_schedules_bring_nothing_new(tmp_path: Path) -> None:
     stock = missions.write(tmp_path, {"STOCK": missions.CHECK_THEN_ACT})
