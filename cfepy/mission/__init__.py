@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     )
     from cfepy.mission.device_config import DeviceConfig
     from cfepy.mission.drawn_parameters import CHOICE, INTEGERS, ParameterDistribution
-    from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, endless_waits
+    from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, WaitsAtEnds, endless_waits
     from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
     from cfepy.mission.host_actions import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
     from cfepy.mission.launch import (
@@ -134,6 +134,7 @@ __all__ = [
     "TopicWatch",
     "TracebackReader",
     "Traffic",
+    "WaitsAtEnds",
     "app_traceback",
     "built_programs",
     "cpp_nodes_of",
@@ -202,6 +203,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".endless_wait": (
                 "EndlessWait",
                 "EndlessWaits",
+                "WaitsAtEnds",
                 "endless_waits",
             ),
             ".failed_code": (

@@ -10,6 +10,7 @@ queue, a socket or a time can be ended from outside.
 from __future__ import annotations
 
 from collections.abc import Collection
+from dataclasses import dataclass, field
 from pathlib import PurePath
 from types import FrameType, FunctionType
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,11 +18,21 @@ from typing import TYPE_CHECKING, NamedTuple
 from cfepy.interpreter.own_code import is_own_code
 from cfepy.osal import OsObject
 from cfepy.rtos import Kernel, Task, Wait, circles, endless
-from cfepy.units import instant_text
+from cfepy.units import NS_PER_MS, instant_text
 
 if TYPE_CHECKING:
     from cfepy.mission.mission import Mission
     from rospy_shim.client.node import Node
+
+
+LONG_NS = 100 * NS_PER_MS  # a wait before the end of a program counts from here on
+_QUEUE = "queue"
+_ENDED_BY = {
+    "Queue.put": frozenset(["get", "get_nowait", "queue"]),
+    "Queue.get": frozenset(["put", "put_nowait", "queue"]),
+    "Queue.join": frozenset(["task_done", "unfinished_tasks"]),
+}
+"""Methods of `queue.Queue` that wait, and the names of those that can end the wait."""
 
 
 class EndlessWait(NamedTuple):
@@ -62,6 +73,28 @@ class EndlessWaits(NamedTuple):
 
     circles: list[tuple[EndlessWait, ...]]
     alone: list[EndlessWait]
+
+
+@dataclass
+class WaitsAtEnds:
+    """The waits of nodes, just before their programs ended with an error; a part of the mission's record.
+
+    Attributes:
+        by_app: by application; of several starts, the last one.
+    """
+
+    by_app: dict[str, EndlessWaits] = field(default_factory=dict)
+
+    def note(self, mission: Mission, app: str) -> None:
+        """Keep the waits of a node that can never end.
+
+        A single wait counts only if it began some time ago: the program could have ended a later one if it had not
+        ended itself.
+        """
+        found, before_ns = endless_waits(mission), mission.kernel.now - LONG_NS
+        circles = [circle for circle in found.circles if any(wait.app == app for wait in circle)]
+        alone = [wait for wait in found.alone if wait.app == app and wait.since_ns <= before_ns]
+        self.by_app[app] = EndlessWaits(circles, alone)
 
 
 def endless_waits(mission: Mission) -> EndlessWaits:
@@ -131,14 +164,19 @@ class _Wakers:
         """Return whether code that a node may still execute can reach a lock, or its main program waits there
         for good.
         """
-        from cfepy.nodes import held_by, reaches
+        from cfepy.nodes import can_call, held_by, reaches
 
         roots: list[object] = [node, *node.universe.exit_hooks, *node.universe.signals.handlers()]
+        frames = []
         for each in self._kernel.tasks:
             if each.owner is node.owner and each not in lost:
-                roots += [each.entry, *held_by(self._kernel.context.frame_of(each))]
+                frame = self._kernel.context.frame_of(each)
+                roots += [each.entry, *held_by(frame)]
+                frames += [] if frame is None else [frame]
         closed = [node.universe.importer.modules]
-        return reaches(roots, lock, closed) or (task is node.universe.main_task and self._is_at_rest(node, task, lock))
+        enders = _enders(self._kernel.context.frame_of(task))
+        is_reached = reaches(roots, lock, closed) and (not enders or can_call([*frames, *roots], enders, closed))
+        return is_reached or (task is node.universe.main_task and self._is_at_rest(node, task, lock))
 
     def _is_at_rest(self, node: Node, task: Task, lock: object) -> bool:
         """Return whether a main program waits on an object that no other code can reach, that is, until Ctrl-C."""
@@ -148,6 +186,15 @@ class _Wakers:
         while own is not None and not is_own_code(own.f_code.co_filename):
             own = own.f_back
         return own is None or is_private(lock, own.f_code, _functions(node), [node.universe.importer.modules])
+
+
+def _enders(frame: FrameType | None) -> frozenset[str]:
+    """Return the names of the methods that can end a task's wait in a queue; empty for another wait."""
+    while frame is not None and not is_own_code(frame.f_code.co_filename):
+        if frame.f_globals.get("__name__") == _QUEUE and frame.f_code.co_qualname in _ENDED_BY:
+            return _ENDED_BY[frame.f_code.co_qualname]
+        frame = frame.f_back
+    return frozenset()
 
 
 def _functions(node: Node) -> list[object]:

@@ -198,6 +198,7 @@ class Mission:
             run_files=RunFiles(),
             accesses=self.accesses,
             stall_watch=self.stall_watch,
+            on_bad_end=_while_there_is_one(self._note_bad_end, None),
         )
 
     def _provide_tables(self) -> None:
@@ -386,6 +387,12 @@ class Mission:
             self.close()
 
     # -- failures and resets ---------------------------------------------------------------------------------------
+
+    def _note_bad_end(self, app: str) -> None:
+        """Record the waits of a node whose program has just ended with an error, before its threads end."""
+        from cfepy.mission.endless_wait import WaitsAtEnds
+
+        self.record.part(WaitsAtEnds).note(self, app)
 
     def _task_failed(self, task: Task, error: BaseException) -> bool:
         """Report an exception from a task, and let ES handle it as the startup script requests."""

@@ -62,6 +62,7 @@ class Machine:
     `retained` is the memory that outlives a processor reset. `network` connects the sockets. `bus` is the class of the
     Software Bus. The PSP calls `on_restart` for a reset: (type, reason, fault). `run_files` are the files of apps and
     nodes. `accesses` collects accesses of their code to shared data. `stall_watch` ends a run that does not advance.
+    `on_bad_end` is called with the application of a node whose program has just ended with an error.
     """
 
     spec: MissionSpec
@@ -79,6 +80,7 @@ class Machine:
     run_files: RunFiles
     accesses: Accesses
     stall_watch: StallWatch
+    on_bad_end: Callable[[str], object]
 
     @property
     def epoch_ns(self) -> int:
@@ -334,6 +336,7 @@ class Processor:
             files=machine.run_files.of(machine),
             accesses=machine.accesses,
             traps=machine.record.traps,
+            at_bad_end=machine.on_bad_end,
         )
 
     @property

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from cfepy.nodes.busy_waits import turn_hook
     from cfepy.nodes.files import ASKED, LISTED, MADE, NEEDED, PREFIX, WRITES_FILE, FilePoints, Overlay, below_root
     from cfepy.nodes.importer import imported, show_only
-    from cfepy.nodes.reachable_objects import held_by, is_private, reaches
+    from cfepy.nodes.reachable_objects import can_call, held_by, is_private, reaches
     from cfepy.nodes.refused_modules import RefusedError
     from cfepy.nodes.universe import Factory, ProcessNumbers, StartThread, Universe, process_number
 
@@ -63,6 +63,7 @@ __all__ = [
     "Touch",
     "Universe",
     "below_root",
+    "can_call",
     "held_by",
     "imported",
     "is_private",
@@ -92,7 +93,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "below_root",
             ),
             ".importer": ("imported", "show_only"),
-            ".reachable_objects": ("held_by", "is_private", "reaches"),
+            ".reachable_objects": ("can_call", "held_by", "is_private", "reaches"),
             ".refused_modules": ("RefusedError",),
             ".universe": (
                 "Factory",

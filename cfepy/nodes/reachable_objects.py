@@ -15,6 +15,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from functools import _lru_cache_wrapper, lru_cache
 from types import (
+    BuiltinMethodType,
     CodeType,
     CoroutineType,
     FrameType,
@@ -22,6 +23,7 @@ from types import (
     GeneratorType,
     GetSetDescriptorType,
     MethodDescriptorType,
+    MethodType,
     ModuleType,
     WrapperDescriptorType,
 )
@@ -32,6 +34,8 @@ _ANYTHING = frozenset(
     ["__dict__", "__import__", "eval", "exec", "get_objects", "globals", "import_module", "locals", "modules", "vars"]
 )
 """Names through which code can reach everything in its module."""
+_BY_NAME = frozenset(["attrgetter", "getattr", "methodcaller"])
+"""Functions through which code can call a method that it does not name."""
 _OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", "ros_libraries", "rospy_shim"])
 _WITH = ("BEFORE_WITH", "BEFORE_ASYNC_WITH", "LOAD_SPECIAL")
 _JUMPS = frozenset((*dis.hasjrel, *dis.hasjabs))
@@ -58,6 +62,49 @@ def reaches(roots: Iterable[object], subject: object, closed: Iterable[object] =
         seen[id(here)] = here
         ahead.extend(_next(here))
     return False
+
+
+def can_call(roots: Iterable[object], names: frozenset[str], closed: Iterable[object] = ()) -> bool:
+    """Return whether code that the roots lead to can call a method of one of these names.
+
+    Args:
+        roots: where paths of references start; a frame stands for the code of a task from its place on.
+        names: names of methods.
+        closed: objects that no path may pass.
+    """
+    wanted = names | _ANYTHING | _BY_NAME
+    seen = {id(each): each for each in closed}
+    ahead = deque(roots)
+    while ahead:
+        here = ahead.popleft()
+        if type(here) in _PLAIN or id(here) in seen:
+            continue
+        seen[id(here)] = here
+        if isinstance(here, (MethodType, BuiltinMethodType)) and here.__name__ in names:
+            return True
+        if not _names_used(here).isdisjoint(wanted):
+            return True
+        ahead.extend(held_by(here) if isinstance(here, FrameType) else _next(here))
+    return False
+
+
+def _names_used(here: object) -> frozenset[str]:
+    """Return the names in the code of a function or of a task; empty for other objects."""
+    if isinstance(here, FrameType):
+        frames = _own_frames(here)
+        return frozenset().union(*(_names_ahead(frame.f_code, frame.f_lasti) for frame in frames))
+    if type(here) is FunctionType:
+        is_opaque = _is_opaque(here.__globals__.get("__name__", ""))
+        return frozenset() if is_opaque else _all_names(here.__code__)
+    return frozenset()
+
+
+def _own_frames(frame: FrameType | None) -> Iterator[FrameType]:
+    """Yield a frame and its callers that are not the simulator's or Python's."""
+    while frame is not None:
+        if not _is_opaque(frame.f_globals.get("__name__", "")):
+            yield frame
+        frame = frame.f_back
 
 
 def held_by(frame: FrameType | None) -> Iterator[object]:

@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from cfepy.es import APP_ERROR, CFE_APP, CFE_LIB, BadLine, StartupEntry, parse
 from cfepy.evs import CRITICAL
-from cfepy.mission import CORE_APPS, EndlessWait, EndlessWaits, FailedCode, Mission, RaisedError
+from cfepy.mission import CORE_APPS, EndlessWait, EndlessWaits, FailedCode, Mission, RaisedError, WaitsAtEnds
 from cfepy.monitors import DeadlineRecord, InvariantRecords
 from cfepy.pilot.failure import LEAVES_OTHERS_WAITING, Failure, FailureKind, without_values
 from cfepy.rtos import InjectedCrash
@@ -188,7 +189,11 @@ def _bad_ends(mission: Mission) -> Iterator[RunProblem]:
         cause = without_values(_COLLECTION.sub("#", text))
         failures = () if is_told else (Failure(FailureKind.ENDED, name, text, cause=cause),)
         history = mission.record.history.get(name)
-        yield RunProblem(f"{name} ended with {text}", None if history is None else history.failed_ns, failures)
+        at_ns = None if history is None else history.failed_ns
+        yield RunProblem(f"{name} ended with {text}", at_ns, failures)
+        waits = mission.record.part(WaitsAtEnds).by_app.get(name)
+        if waits is not None:
+            yield from (_at(at_ns, each) for each in (*map(_circle, waits.circles), *_alone(waits.alone, ())))
 
 
 def end_of(mission: Mission, name: str) -> str:
@@ -310,6 +315,11 @@ def _circle(circle: Sequence[EndlessWait]) -> RunProblem:
     detail = "\n".join(wait.text for wait in circle)
     failure = Failure(FailureKind.DEADLOCK, apps, text, None, detail, circle[-1].task)
     return RunProblem(f"deadlock: {text}", None, (failure,))
+
+
+def _at(at_ns: int | None, problem: RunProblem) -> RunProblem:
+    """Return a problem and its failures with a time."""
+    return problem._replace(at_ns=at_ns, failures=tuple(replace(each, at_ns=at_ns) for each in problem.failures))
 
 
 def _alone(waits: Sequence[EndlessWait], found: Sequence[Failure]) -> Iterator[RunProblem]:

@@ -9,6 +9,7 @@ import pytest
 from cfepy.attachment import Attachment
 from cfepy.mission import EndlessWaits, Mission, endless_waits
 from cfepy.pilot import RunPlan, fly
+from cfepy.schedules import Schedule
 from tests.extra.exploration import missions
 
 HEAD = """
@@ -190,6 +191,34 @@ def Other(cfe):
     cfe.sb.receive_buffer(cfe.sb.create_pipe(4, "WORK"))
     cfe.os.bin_sem_give(done)
 """
+FULL = """
+    import sys
+    things, guard = queue.Queue(2), threading.Lock()
+
+
+    def work():
+        while True:
+            things.get()
+            with guard:
+                pass
+
+
+    def fill():
+        with guard:
+            for number in range(6):
+                things.put(number)
+
+
+    def other(message):
+        things.{call}
+
+
+    rospy.Subscriber("a", Int32, other)
+    threading.Thread(target=work, daemon=True).start()
+    filler = threading.Thread(target=fill, daemon=True)
+    filler.start()
+    {end}
+"""
 BY_RIGHT = [BY_MESSAGE, BY_TIMER, BY_HOOK, BY_LOOP, BY_BLOCK, BY_LIST, PARKED, IDLE]
 NAMES = ["message", "timer", "hook", "loop", "block", "list", "parked", "idle"]
 
@@ -237,6 +266,30 @@ def test_worker_without_a_sentinel_waits_forever_when_it_is_joined(tmp_path: Pat
         "PAIR.pair.2.2 waits forever for the end of Queue.get() at pair.py:12, "
         f"since {wait.since_ns / 1e9:.6f} s; no remaining task can end this wait"
     )
+
+
+def test_full_queue_is_endless_when_its_reader_needs_the_lock_of_its_writer(tmp_path: Path) -> None:
+    (wait,) = in_node(tmp_path, FULL.format(call="put(message)", end="filler.join()")).alone
+    assert (wait.task, wait.what, wait.place) == ("PAIR.pair.2.3", "the end of Queue.put()", "pair.py:22")
+
+
+def test_full_queue_that_a_callback_may_empty_is_not_reported(tmp_path: Path) -> None:
+    assert in_node(tmp_path, FULL.format(call="get()", end="filler.join()")) == ([], [])
+
+
+@pytest.mark.parametrize(("sleep_s", "count"), [(0.3, 1), (0.05, 0)])
+def test_program_that_ends_with_an_error_leaves_its_long_endless_waits(
+    tmp_path: Path, sleep_s: float, count: int
+) -> None:
+    end = f"rospy.sleep({sleep_s})\n    sys.exit('not done')"
+    folder = missions.write(tmp_path, {"PAIR": HEAD + FULL.format(call="put(message)", end=end)})
+    plan = RunPlan((str(folder),), seconds=1.5, tasks="greenlet", schedule=Schedule.parse("at"))
+    flown = fly(plan)  # a lock has a known holder only under a schedule
+    ended, *stuck = flown.results.problems
+    assert ended == "PAIR ended with exit status 1 (node /pair): not done"
+    assert [text.partition(",")[0] for text in stuck] == [
+        "PAIR.pair.2.3 waits forever for the end of Queue.put() at pair.py:22"
+    ] * count
 
 
 def test_wait_after_the_last_notify_is_endless(tmp_path: Path) -> None:
