@@ -53,7 +53,7 @@ def test_random_faults_repeat_on_capture() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("name", "count", "seconds"), [("lab", 100, 12), ("sched", 50, 12), ("rx64m_pubsub", 50, 12), ("capture", 10, 6)]
+    ("name", "count", "seconds"), [("lab", 50, 12), ("sched", 25, 12), ("rx64m_pubsub", 25, 12), ("capture", 10, 6)]
 )
 def test_many_random_faults_repeat(name: str, count: int, seconds: float) -> None:
     check(name, range(100, 100 + count), seconds)

@@ -101,7 +101,7 @@ def flown_again_and_again(tasks: str, seconds: float, count: int) -> list[tuple[
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("tasks", "seconds", "count"), [("thread", 0.2, 5_000), ("greenlet", 0.2, 5_000), ("greenlet", 0.65, 500)]
+    ("tasks", "seconds", "count"), [("thread", 0.2, 2_000), ("greenlet", 0.2, 2_000), ("greenlet", 0.65, 500)]
 )
 def test_thousands_of_schedules_leave_nothing_in_the_process(tasks: str, seconds: float, count: int) -> None:
     """Most flights end before the nodes start, so that most of the time goes into boot and end. Fewer include nodes.
