@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     )
     from cfepy.mission.device_config import DeviceConfig
     from cfepy.mission.drawn_parameters import CHOICE, INTEGERS, ParameterDistribution
-    from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, WaitsAtEnds, endless_waits
+    from cfepy.mission.endless_wait import EndlessWait, EndlessWaits, WaitsAtEnds, endless_waits, note_waits
     from cfepy.mission.failed_code import FailedCode, RaisedError, TracebackReader
     from cfepy.mission.host_actions import CALL, FILE, PACKET, PARAM, PUBLISH, ROS, HostCall
     from cfepy.mission.launch import (
@@ -156,6 +156,7 @@ __all__ = [
     "mission_environment",
     "mission_file_of",
     "node_script",
+    "note_waits",
     "read_launch",
     "read_lock",
     "read_mission",
@@ -205,6 +206,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "EndlessWaits",
                 "WaitsAtEnds",
                 "endless_waits",
+                "note_waits",
             ),
             ".failed_code": (
                 "FailedCode",

@@ -85,16 +85,17 @@ class WaitsAtEnds:
 
     by_app: dict[str, EndlessWaits] = field(default_factory=dict)
 
-    def note(self, mission: Mission, app: str) -> None:
-        """Keep the waits of a node that can never end.
 
-        A single wait counts only if it began some time ago: the program could have ended a later one if it had not
-        ended itself.
-        """
-        found, before_ns = endless_waits(mission), mission.kernel.now - LONG_NS
-        circles = [circle for circle in found.circles if any(wait.app == app for wait in circle)]
-        alone = [wait for wait in found.alone if wait.app == app and wait.since_ns <= before_ns]
-        self.by_app[app] = EndlessWaits(circles, alone)
+def note_waits(mission: Mission, app: str) -> None:
+    """Keep the waits of a node that can never end in the mission's record; see `Mission.on_bad_end`.
+
+    A single wait counts only if it began some time ago: the program could have ended a later one if it had not ended
+    itself.
+    """
+    found, before_ns = endless_waits(mission), mission.kernel.now - LONG_NS
+    circles = [circle for circle in found.circles if any(wait.app == app for wait in circle)]
+    alone = [wait for wait in found.alone if wait.app == app and wait.since_ns <= before_ns]
+    mission.record.part(WaitsAtEnds).by_app[app] = EndlessWaits(circles, alone)
 
 
 def endless_waits(mission: Mission) -> EndlessWaits:

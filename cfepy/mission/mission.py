@@ -112,6 +112,8 @@ class Mission:
         stall_watch: ends the run if a task does not give up the CPU.
         processor: the processor that runs between two resets; a reset replaces it.
         booted: virtual ns at which the mission first became OPERATIONAL; None before.
+        on_bad_end: called with the mission and the application of a node whose program has just ended with an error,
+            before the node's threads end.
         meet: synchronizes missions that fly together, and returns the virtual ns until which this one may continue;
             None if it flies alone.
     """
@@ -152,6 +154,7 @@ class Mission:
         self.outside.do = HostActs(self).do
         self.kernel.on_task_error = _while_there_is_one(self._task_failed, False)
         self.accesses = Accesses(kernel)
+        self.on_bad_end: Callable[[Mission, str], object] = lambda mission, app: None
         self.stall_watch = StallWatch(self.kernel, is_own=is_own_code)
         self.meet: Callable[[], int] | None = None
         self._first_boot: int | None = None
@@ -198,7 +201,7 @@ class Mission:
             run_files=RunFiles(),
             accesses=self.accesses,
             stall_watch=self.stall_watch,
-            on_bad_end=_while_there_is_one(self._note_bad_end, None),
+            on_bad_end=_while_there_is_one(self._bad_end, None),
         )
 
     def _provide_tables(self) -> None:
@@ -388,11 +391,8 @@ class Mission:
 
     # -- failures and resets ---------------------------------------------------------------------------------------
 
-    def _note_bad_end(self, app: str) -> None:
-        """Record the waits of a node whose program has just ended with an error, before its threads end."""
-        from cfepy.mission.endless_wait import WaitsAtEnds
-
-        self.record.part(WaitsAtEnds).note(self, app)
+    def _bad_end(self, app: str) -> None:
+        self.on_bad_end(self, app)
 
     def _task_failed(self, task: Task, error: BaseException) -> bool:
         """Report an exception from a task, and let ES handle it as the startup script requests."""

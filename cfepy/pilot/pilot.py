@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, TypedDict, Unpack
 
 from cfepy.attachment import Attachment
 from cfepy.interpreter.cached import CachedProperty
-from cfepy.mission import Mission, MissionSpec, endless_waits
+from cfepy.mission import Mission, MissionSpec, endless_waits, note_waits
 from cfepy.pilot.plan import RunPlan
 from cfepy.pilot.problems import RunProblem, problems_of
 from cfepy.pilot.results import Mark, Results, never_happened, rules_without_input
@@ -319,6 +319,7 @@ def takeoff(
             trace,
             [*_judges(spec), *_race_watch(plan), *_own(plan, script), *attachments, *faults],
         )
+        mission.on_bad_end = note_waits
     _watch_for_stalls(mission, plan, host)
     seconds = plan.virtual_s
     if plan.seconds is None and script is None and host.longest_s is not None:
