@@ -99,7 +99,7 @@ def note_waits(mission: Mission, app: str) -> None:
 
 
 def endless_waits(mission: Mission) -> EndlessWaits:
-    """Find the waits, while no task runs."""
+    """Find the waits, while no task runs, or one whose program is over."""
     kernel = mission.kernel
     found = endless(kernel.tasks, _Wakers(mission).could_end)
     rings = [tuple(_told(kernel, wait) for wait in circle) for circle in circles(found)]
@@ -176,7 +176,7 @@ class _Wakers:
                 frames += [] if frame is None else [frame]
         closed = [node.universe.importer.modules]
         enders = _enders(self._kernel.context.frame_of(task))
-        is_reached = reaches(roots, lock, closed) and (not enders or can_call([*frames, *roots], enders, closed))
+        is_reached = reaches(roots, lock, closed) and (not enders or can_call(roots, frames, enders, closed))
         return is_reached or (task is node.universe.main_task and self._is_at_rest(node, task, lock))
 
     def _is_at_rest(self, node: Node, task: Task, lock: object) -> bool:

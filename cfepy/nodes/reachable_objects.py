@@ -51,60 +51,55 @@ def reaches(roots: Iterable[object], subject: object, closed: Iterable[object] =
         subject: the object to reach.
         closed: objects that no path may pass.
     """
-    seen = {id(each): each for each in closed}  # the values keep temporary objects alive, so that ids are not reused
-    ahead = deque(roots)
-    while ahead:
-        here = ahead.popleft()
-        if here is subject:
-            return True
-        if type(here) in _PLAIN or id(here) in seen:
-            continue
-        seen[id(here)] = here
-        ahead.extend(_next(here))
-    return False
+    return any(here is subject for here in _reached(roots, closed))
 
 
-def can_call(roots: Iterable[object], names: frozenset[str], closed: Iterable[object] = ()) -> bool:
-    """Return whether code that the roots lead to can call a method of one of these names.
+def can_call(
+    roots: Iterable[object], frames: Iterable[FrameType], names: frozenset[str], closed: Iterable[object] = ()
+) -> bool:
+    """Return whether tasks, or code that the roots lead to, can call a method of one of these names.
 
     Args:
-        roots: where paths of references start; a frame stands for the code of a task from its place on.
+        roots: where paths of references start.
+        frames: the innermost frames of the tasks, whose code counts from its place on.
         names: names of methods.
         closed: objects that no path may pass.
     """
     wanted = names | _ANYTHING | _BY_NAME
-    seen = {id(each): each for each in closed}
+    if any(not _names_from(frame).isdisjoint(wanted) for frame in frames):
+        return True
+    return any(_may_call(here, names, wanted) for here in _reached(roots, closed))
+
+
+def _reached(roots: Iterable[object], closed: Iterable[object]) -> Iterator[object]:
+    """Yield each object to which a path of references leads, once; see `reaches`."""
+    seen = {id(each): each for each in closed}  # the values keep temporary objects alive, so that ids are not reused
     ahead = deque(roots)
     while ahead:
         here = ahead.popleft()
-        if type(here) in _PLAIN or id(here) in seen:
-            continue
-        seen[id(here)] = here
-        if isinstance(here, (MethodType, BuiltinMethodType)) and here.__name__ in names:
-            return True
-        if not _names_used(here).isdisjoint(wanted):
-            return True
-        ahead.extend(held_by(here) if isinstance(here, FrameType) else _next(here))
-    return False
+        if type(here) not in _PLAIN and id(here) not in seen:
+            seen[id(here)] = here
+            yield here
+            ahead.extend(_next(here))
 
 
-def _names_used(here: object) -> frozenset[str]:
-    """Return the names in the code of a function or of a task; empty for other objects."""
-    if isinstance(here, FrameType):
-        frames = _own_frames(here)
-        return frozenset().union(*(_names_ahead(frame.f_code, frame.f_lasti) for frame in frames))
-    if type(here) is FunctionType:
-        is_opaque = _is_opaque(here.__globals__.get("__name__", ""))
-        return frozenset() if is_opaque else _all_names(here.__code__)
-    return frozenset()
+def _may_call(here: object, names: frozenset[str], wanted: frozenset[str]) -> bool:
+    """Return whether an object is a method of one of the names, or a function that has a wanted name in its code."""
+    if isinstance(here, (MethodType, BuiltinMethodType)):
+        return here.__name__ in names
+    if type(here) is not FunctionType or _is_opaque(here.__globals__.get("__name__", "")):
+        return False
+    return not _all_names(here.__code__).isdisjoint(wanted)
 
 
-def _own_frames(frame: FrameType | None) -> Iterator[FrameType]:
-    """Yield a frame and its callers that are not the simulator's or Python's."""
+def _names_from(frame: FrameType | None) -> frozenset[str]:
+    """Return the names in the code of a task from its place on, without the simulator's and Python's."""
+    names: frozenset[str] = frozenset()
     while frame is not None:
         if not _is_opaque(frame.f_globals.get("__name__", "")):
-            yield frame
+            names |= _names_ahead(frame.f_code, frame.f_lasti)
         frame = frame.f_back
+    return names
 
 
 def held_by(frame: FrameType | None) -> Iterator[object]:
