@@ -8,7 +8,7 @@ before file calls while schedules are explored. The files of OSAL are in `cfepy.
 
 from __future__ import annotations
 
-from cfepy.nodes.files.file_calls import Entries, FileCalls, same_sizes
+from cfepy.nodes.files.file_calls import DISK_BYTES, Entries, FileCalls, same_sizes
 from cfepy.nodes.files.file_points import READS_FILE, WRITES_FILE, FilePoints, file_points
 from cfepy.nodes.files.opened import OpenFiles
 from cfepy.nodes.files.overlay import PREFIX, Overlay
@@ -17,6 +17,7 @@ from cfepy.nodes.files.stamps import ASKED, GROUP, LISTED, MADE, NEEDED, USER
 
 __all__ = [
     "ASKED",
+    "DISK_BYTES",
     "GROUP",
     "LISTED",
     "MADE",

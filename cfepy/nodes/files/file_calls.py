@@ -166,7 +166,8 @@ class FileCalls:
         }
         found |= {name: function for name, function in owners.items() if hasattr(os, name)}
         found |= {name: self._look_at(getattr(os, name)) for name in _LOOKS if hasattr(os, name)}
-        found |= {name: self._look_at(same_sizes(getattr(os, name))) for name in ("statvfs",) if hasattr(os, name)}
+        if hasattr(os, "statvfs"):
+            found["statvfs"] = self._look_at(same_sizes(os.statvfs))
         found |= {name: self._changing(getattr(os, name)) for name in _CHANGES if hasattr(os, name)}
         found |= {name: self._changing(getattr(os, name), follow=False) for name in _LINK_CHANGES if hasattr(os, name)}
         found |= {name: self._writing(name, getattr(os, name)) for name in _WRITES if hasattr(os, name)}

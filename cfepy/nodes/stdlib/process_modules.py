@@ -16,6 +16,7 @@ import locale
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from cfepy.nodes.files import DISK_BYTES
 from cfepy.nodes.made_modules import made, proxy, rebind
 
 if TYPE_CHECKING:
@@ -259,7 +260,7 @@ def psutil_module(universe: Universe) -> ModuleType:
         cpu_percent=cpu_percent,
         cpu_times=cpu_times,
         disk_partitions=lambda all=False: [],
-        disk_usage=lambda path: Disk(MEMORY_BYTES, 0, MEMORY_BYTES, 0.0),
+        disk_usage=lambda path: Disk(DISK_BYTES, 0, DISK_BYTES, 0.0),
         getloadavg=lambda: (0.0, 0.0, 0.0),
         net_if_addrs=dict,
         net_io_counters=lambda pernic=False, nowrap=True: {"lo": NetTraffic()} if pernic else NetTraffic(),

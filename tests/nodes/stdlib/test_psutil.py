@@ -45,7 +45,7 @@ def test_disk_is_empty_for_every_function(run):
         import os, psutil, shutil
         found = os.statvfs(".")
         sizes = {shutil.disk_usage("/").free, psutil.disk_usage("/").free, found.f_bavail * found.f_frsize}
-        print(sizes == {psutil.virtual_memory().total}, shutil.disk_usage("/").used, found.f_fsid)
+        print(sizes == {1 << 30}, shutil.disk_usage("/").used, found.f_fsid)
         try:
             shutil.disk_usage("/none")
         except FileNotFoundError as error:
