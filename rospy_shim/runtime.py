@@ -149,7 +149,7 @@ class RosRuntime:
         files: their view of files; None is the computer's own.
         accesses: receives the accesses of their code to data, or None.
         traps: receives their loops that wait without a sleep, and similar traps.
-        at_bad_end: called with the application of a node in Python whose program has just ended with an error.
+        on_bad_end: called with the application of a node in Python whose program has just ended with an error.
 
     Attributes:
         graph: publishers, subscribers and services.
@@ -173,7 +173,7 @@ class RosRuntime:
         files: Overlay | None = None,
         accesses: Accesses | None = None,
         traps: list[object] | None = None,
-        at_bad_end: Callable[[str], object] = lambda app: None,
+        on_bad_end: Callable[[str], object] = lambda app: None,
     ) -> None:
         self.graph = Graph(config)
         self.switchboard = Switchboard(self.graph)
@@ -188,7 +188,7 @@ class RosRuntime:
         self._network = network
         self._files = files
         self._accesses = accesses
-        self._at_bad_end = at_bad_end
+        self._on_bad_end = on_bad_end
         self.traps = self.graph.traps = [] if traps is None else traps
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
@@ -245,7 +245,7 @@ class RosRuntime:
         """Run a node's script once, in a universe of its own. Returns its exit status."""
         node = self._make_node(script, app_name, config)
         self._running.append(node)
-        node.universe.at_bad_end = lambda: self._at_bad_end(app_name)
+        node.universe.on_bad_end = lambda: self._on_bad_end(app_name)
         try:
             return node.universe.run_script()
         except InjectedCrash as error:

@@ -336,7 +336,7 @@ class Processor:
             files=machine.run_files.of(machine),
             accesses=machine.accesses,
             traps=machine.record.traps,
-            at_bad_end=machine.on_bad_end,
+            on_bad_end=machine.on_bad_end,
         )
 
     @property

@@ -140,7 +140,7 @@ class Universe:
         self.make_hidden_objects: Callable[[], object] = _free  # those that programs find only through `gc`
         self.main_task: Task | None = None
         self.exit_status: int | None = None
-        self.at_bad_end: Callable[[], object] = lambda: None  # called when the program has ended with an error
+        self.on_bad_end: Callable[[], object] = lambda: None  # called when the program has ended with an error
         self.error: BaseException | None = None  # error that ended the script
         self.thread_errors: list[BaseException] = []
         self.thread_count = 0
@@ -463,7 +463,7 @@ def _run_script(universe: Universe) -> int:
     try:
         status = _execute(universe)
         if status:
-            universe.at_bad_end()
+            universe.on_bad_end()
         status = _shut_down(universe) or status
         universe.exit_status = status
     except TaskExit:
