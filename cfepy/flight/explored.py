@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Unpack
+from typing import Any, Literal, Unpack
 
 from cfepy.flight.expectations import counted
 from cfepy.flight.plans import MissionWords, RunOptions, plan_of
@@ -17,6 +17,7 @@ from cfepy.schedules import Schedule
 from cfepy.writing.markup import code, folded, headline, lines_of, trouble
 
 DEFAULT_SEEDS = 100
+AUTO = "auto"
 EXPLORE: Hook[Callable[..., Explored]] = Hook("explore")
 """Explores a plan; the other arguments are those of `explore`, with the unit in their names."""
 
@@ -121,7 +122,7 @@ class Explored:
 def explore(
     mission: MissionWords,
     *,
-    seeds: int = DEFAULT_SEEDS,
+    seeds: int | Literal["auto"] = DEFAULT_SEEDS,
     budget: float | None = None,
     policy: str = "all",
     depth: int | None = None,
@@ -149,7 +150,7 @@ def explore(
 
     Args:
         mission: see `run`.
-        seeds: number of schedules.
+        seeds: number of schedules; "auto" goes on until schedules bring nothing new.
         budget: wall time in s after which no new schedule starts; None for no limit.
         policy: their source: "random", "pct", "abreast", "dfs", "orders", or "all".
         depth: depth of the bugs that PCT looks for; maximum number of preemptions of "dfs"; number of steps in which
@@ -184,7 +185,8 @@ def explore(
     plan = plan_of(mission, options, known)
     return EXPLORE.need("cfepy.explore")(
         plan,
-        seeds=seeds,
+        seeds=None if seeds == AUTO else seeds,
+        until_known=seeds == AUTO,
         budget_s=budget,
         policy=policy,
         depth=depth,

@@ -99,6 +99,14 @@ def test_an_exploration() -> None:
     assert "PREEMPTED" in failure._repr_html_()
 
 
+@pytest.mark.slow
+def test_exploration_can_end_when_schedules_bring_nothing_new() -> None:
+    mission = Path(__file__).parents[1] / "quality/missions/lost_update"
+    found = cfepy.explore(mission, seeds="auto", seconds=1, jobs=1, shrink=0)
+    switches = found.to_dict()["breadth"]["switches"]
+    assert found.schedules == switches["schedules"] >= switches["last_new"] + 50
+
+
 def test_long_tables_are_folded() -> None:
     rows = [(f"topic {number}", number) for number in range(markup.MOST + 5)]
     page = markup.rows_of(("name", "sent"), rows)

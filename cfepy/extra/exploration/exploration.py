@@ -228,6 +228,7 @@ class Expedition:
         Raises:
             UsageError: the mission cannot be explored with these options.
         """
+        self._check_end()
         watch, options = Stopwatch(), self._options()
         if self.policy == "orders":
             check_visible(self.plan.spec())
@@ -254,10 +255,12 @@ class Expedition:
             breadth.switches, trial = search.switches, replace(trial, keep_switches=True)
         distribution = None if measure is None else Distribution.of(measure, reference)
 
-        def see(number: int, verdict: Verdict) -> None:
+        def see(number: int, verdict: Verdict) -> bool:
+            """Take a verdict. Returns whether the search has seen enough."""
             breadth.take(verdict)
             if distribution is not None:
                 distribution.take(number, verdict)
+            return self.until_known and breadth.switches is not None and breadth.switches.are_all_known
 
         tally = self._fly(trial, search, findings, reference, watch, see)
         if tally is None:
@@ -284,14 +287,22 @@ class Expedition:
         """Return the search of `make_search`; with a measure, the search for the longest value that begins with it."""
         holds = self.worst is None  # a delayed task is late by the delay, not by the mission
         steps, tick_ns = first.verdict.decisions, first.tick_ns
-        is_open = self.seeds is None and holds and self.policy in SEEDED_POLICIES
-        if self.until_known and not is_open:
-            other = "without --worst" if self.worst is not None else f"with --policy {' or '.join(SEEDED_POLICIES)}"
-            raise UsageError(f"auto is possible only {other}", field="--seeds")
+        is_open = self.seeds is None and holds
         found = make_search(
             self.policy, self.depth, steps, options, self.first_seed, tick_ns, holds=holds, new_switches=is_open
         )
         return found if holds or not isinstance(found, SeededSearch) else WorstSearch(found, self.first_seed)
+
+    def _check_end(self) -> None:
+        """Check that a search with `until_known` can end by itself.
+
+        Raises:
+            UsageError: its schedules do not come from seeds alone.
+        """
+        if self.until_known and self.worst is not None:
+            raise UsageError("auto is possible only without --worst", field="--seeds")
+        if self.until_known and self.policy not in SEEDED_POLICIES:
+            raise UsageError(f"auto is possible only with --policy {' or '.join(SEEDED_POLICIES)}", field="--seeds")
 
     @property
     def _liveness(self) -> Limits:
@@ -329,7 +340,7 @@ class Expedition:
         findings: Findings,
         reference: Verdict,
         watch: Stopwatch,
-        see: Callable[[int, Verdict], object],
+        see: Callable[[int, Verdict], bool],
     ) -> Tally | None:
         """Run all schedules, or until the first failure. None if another process runs differently under fifo."""
         if self.until_failure and reference.failed:
@@ -346,9 +357,8 @@ class Expedition:
         progress = make_progress(self.progress, self.seeds, 0 if file is None else len(file), self.budget_s)
 
         def take(number: int, verdict: Verdict) -> bool:
-            see(number, verdict)
-            is_over = self.budget_s is not None and watch.elapsed_ns() > self.budget_s * NS_PER_S
-            is_over |= self.until_known and isinstance(search, NewSwitchSearch) and search.switches.are_all_known
+            is_over = see(number, verdict)
+            is_over |= self.budget_s is not None and watch.elapsed_ns() > self.budget_s * NS_PER_S
             return (findings.take(number, verdict) and self.until_failure) or is_over
 
         return Campaign(trial, search, most, crew, file, progress).run(take)
@@ -394,7 +404,7 @@ class Expedition:
         search |= {"worst": self.worst} if self.worst is not None else {}
         search |= {"liveness": list(self._liveness)} if any(self._liveness) else {}
         search |= {"fair": self.fair} if self.fair is not None else {}
-        search |= {"until": "budget" if self.until_known is False else "auto"} if self.seeds is None else {}
+        search |= {"until": "auto" if self.until_known else "budget"} if self.seeds is None else {}
         return identity_of(trial.plan, files, search)
 
     def _told(self, trial: Trial, finding: Finding, tally: Tally) -> Told:

@@ -166,10 +166,16 @@ def test_search_ends_when_schedules_bring_nothing_new(tmp_path: Path) -> None:
     assert report.trial.keep_switches is False
 
 
-@pytest.mark.parametrize("other", [{"policy": "dfs"}, {"worst": "response:STOCK"}])
-def test_only_schedules_from_seeds_end_by_themselves(other: dict[str, str]) -> None:
-    with pytest.raises(UsageError, match="auto is possible only with"):
-        Expedition(PLAN, seeds=None, until_known=True, jobs=1, **other).run()  # type: ignore[arg-type]
+@pytest.mark.parametrize(
+    ("expedition", "remedy"),
+    [
+        (Expedition(PLAN, seeds=None, until_known=True, policy="dfs"), "with --policy all or random or pct or abreast"),
+        (Expedition(PLAN, seeds=None, until_known=True, worst="response:STOCK"), "without --worst"),
+    ],
+)
+def test_only_schedules_from_seeds_end_by_themselves(expedition: Expedition, remedy: str) -> None:
+    with pytest.raises(UsageError, match=f"--seeds: auto is possible only {remedy}"):
+        expedition.run()
 
 
 def test_time_budget_ends_the_exploration(monkeypatch: pytest.MonkeyPatch) -> None:
