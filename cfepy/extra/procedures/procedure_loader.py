@@ -245,7 +245,7 @@ def _parsed(text: str, file: Path) -> ast.Module:
     try:
         return ast.parse(text, str(file))
     except SyntaxError:
-        changed = older(text)
+        changed = without_new_f_strings(text)
         if changed == text:
             raise
     return ast.parse(changed, str(file))
@@ -320,7 +320,7 @@ class _TooNewError(Exception):
     """A text that has no form in Python 3.11."""
 
 
-def older(source: str) -> str:
+def without_new_f_strings(source: str) -> str:
     """Return source code of Python 3.12 for 3.11: a text inside of an f-string gets other quotes than the f-string's.
 
     Args:

@@ -6,7 +6,7 @@ import ast
 
 import pytest
 
-from cfepy.extra.procedures.procedure_loader import older
+from cfepy.extra.procedures.procedure_loader import without_new_f_strings
 
 NAMES = {"a": "x y", "values": {"k": 3}, "b": 2}
 
@@ -23,14 +23,14 @@ NAMES = {"a": "x y", "values": {"k": 3}, "b": 2}
     ],
 )
 def test_text_inside_of_an_f_string_may_have_its_quotes(source: str, value: str) -> None:
-    assert eval(compile(ast.parse(older(source), mode="eval"), "a.py", "eval"), dict(NAMES)) == value
+    assert eval(compile(ast.parse(without_new_f_strings(source), mode="eval"), "a.py", "eval"), dict(NAMES)) == value
 
 
 @pytest.mark.parametrize("source", ['f"{"it\'s".title()}"', 'f"{a', "'open\n", 'f"{"\\n".join(a)}"'])
 def test_source_without_an_older_form_stays(source: str) -> None:
-    assert older(source) == source
+    assert without_new_f_strings(source) == source
 
 
 def test_source_without_nested_quotes_stays() -> None:
     source = 'def f(x):\n    """Say "it"."""\n    return f"{x["a"]}" if x else \'{"\'  # f"\n'
-    assert older(source) == source.replace('x["a"]', "x['a']")
+    assert without_new_f_strings(source) == source.replace('x["a"]', "x['a']")
