@@ -15,28 +15,19 @@ from dev.corpus.pool import run_all
 from dev.corpus.report import PAGE, write_page
 from dev.corpus.ros_flight import RosFlight
 from dev.corpus.scenarios import Corpus, Scenario, read_corpus
-from dev.corpus.sources import ENVIRONMENT, FETCH, Sources
+from dev.corpus.sources import ENVIRONMENT, FETCH, Sources, add_fetch, execute
 from dev.corpus.verdict import Verdict, judge
 
 
 def main() -> int:
     """Execute the command line. Returns the exit status."""
-    arguments = _parser().parse_args()
-    try:
-        status: int = arguments.action(arguments, read_corpus())
-    except UsageError as error:
-        print(error, file=sys.stderr)
-        return 2
-    return status
+    return execute(_parser(), read_corpus)
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m dev.corpus", description=__doc__)
     actions = parser.add_subparsers(required=True)
-    fetch = actions.add_parser("fetch", help="get the sources from GitHub, each repository at its commit")
-    fetch.add_argument("folder", type=Path)
-    fetch.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
-    fetch.set_defaults(action=_fetch)
+    add_fetch(actions)
     for name, action in (("run", _run), ("report", _report), ("fly", _fly), ("beside", _beside)):
         sub = actions.add_parser(name, help=(action.__doc__ or "").splitlines()[0])
         sub.add_argument("ids", nargs="*", metavar="ID", help="scenarios; all when none is given")
@@ -45,13 +36,6 @@ def _parser() -> argparse.ArgumentParser:
         sub.add_argument("--tasks", choices=("thread", "greenlet"), default="thread")
         sub.set_defaults(action=action)
     return parser
-
-
-def _fetch(arguments: argparse.Namespace, corpus: Corpus) -> int:
-    """Get the sources."""
-    for repo in Sources(arguments.folder).fetch_all(corpus.commits, arguments.mirrors):
-        print(repo)
-    return 0
 
 
 def _run(arguments: argparse.Namespace, corpus: Corpus) -> int:

@@ -6,13 +6,16 @@ and pictures, are left out.
 
 from __future__ import annotations
 
+import argparse
 import hashlib
 import io
 import os
 import subprocess
+import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
+from typing import Any, Protocol
 
 from cfepy.status import UsageError
 from dev.corpus.scenarios import Program, Scenario
@@ -119,3 +122,44 @@ def _git(folder: Path, *arguments: str, given: str = "") -> bytes:
     if done.returncode:
         raise UsageError(f"git {' '.join(arguments[:4])}: {done.stderr.decode().strip()}", file=str(folder))
     return done.stdout
+
+
+# -- programs ----------------------------------------------------------------------------------------------------------
+
+
+class Listed(Protocol):
+    """A list of public code."""
+
+    @property
+    def commits(self) -> Mapping[str, str]:
+        """The commit of each repository, by its name."""
+
+
+def add_fetch(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
+    """Add the action `fetch` to a program."""
+    parser = actions.add_parser("fetch", help="get the sources from GitHub, each repository at its commit")
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
+    parser.set_defaults(action=_fetch)
+
+
+def _fetch(arguments: argparse.Namespace, listed: Listed) -> int:
+    for repo in Sources(arguments.folder).fetch_all(listed.commits, arguments.mirrors):
+        print(repo)
+    return 0
+
+
+def execute(parser: argparse.ArgumentParser, read: Callable[[], Any]) -> int:
+    """Execute the action of a command line. Returns the exit status, 2 for bad usage.
+
+    Args:
+        parser: sets `action`, which gets the arguments and the list.
+        read: reads the list.
+    """
+    arguments = parser.parse_args()
+    try:
+        status: int = arguments.action(arguments, read())
+    except UsageError as error:
+        print(error, file=sys.stderr)
+        return 2
+    return status

@@ -9,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from cfepy.status import UsageError
-from dev.corpus.sources import Sources
+from dev.corpus.sources import Sources, add_fetch, execute
 from dev.peers.flight import Verdict, run
 from dev.peers.peers import Peers, read_peers
 from dev.peers.report import PAGE, row, write_page
@@ -19,22 +19,13 @@ ENVIRONMENT = "CFEPY_PEERS_SOURCES"
 
 def main() -> int:
     """Execute the command line. Returns the exit status."""
-    arguments = _parser().parse_args()
-    try:
-        status: int = arguments.action(arguments, read_peers())
-    except UsageError as error:
-        print(error, file=sys.stderr)
-        return 2
-    return status
+    return execute(_parser(), read_peers)
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m dev.peers", description=__doc__)
     actions = parser.add_subparsers(required=True)
-    fetch = actions.add_parser("fetch", help="get the sources from GitHub, each repository at its commit")
-    fetch.add_argument("folder", type=Path)
-    fetch.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
-    fetch.set_defaults(action=_fetch)
+    add_fetch(actions)
     for name, action in (("run", _run), ("report", _report)):
         sub = actions.add_parser(name, help=(action.__doc__ or "").splitlines()[0])
         sub.add_argument("names", nargs="*", metavar="NAME", help="test files, or how their names begin; else all")
@@ -43,13 +34,6 @@ def _parser() -> argparse.ArgumentParser:
         sub.add_argument("--verbose", action="store_true", help="show the output of failing tests")
         sub.set_defaults(action=action)
     return parser
-
-
-def _fetch(arguments: argparse.Namespace, peers: Peers) -> int:
-    """Get the sources."""
-    for repo in Sources(arguments.folder).fetch_all(peers.commits, arguments.mirrors):
-        print(repo)
-    return 0
 
 
 def _run(arguments: argparse.Namespace, peers: Peers) -> int:

@@ -7,32 +7,22 @@ import json
 import sys
 from pathlib import Path
 
-from cfepy.status import UsageError
 from dev.c.public_apps.flight import flown
 from dev.c.public_apps.missions import PublicMissions, read_missions
 from dev.c.public_apps.results import PAGE, read_results, write_page, write_results
 from dev.c.public_apps.trial import try_mission
-from dev.corpus.sources import Sources
+from dev.corpus.sources import Sources, add_fetch, execute
 
 
 def main() -> int:
     """Execute the command line. Returns the exit status."""
-    arguments = _parser().parse_args()
-    try:
-        status: int = arguments.action(arguments, read_missions())
-    except UsageError as error:
-        print(error, file=sys.stderr)
-        return 2
-    return status
+    return execute(_parser(), read_missions)
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m dev.c.public_apps", description=__doc__)
     actions = parser.add_subparsers(required=True)
-    fetch = actions.add_parser("fetch", help="get the sources from GitHub, each repository at its commit")
-    fetch.add_argument("folder", type=Path)
-    fetch.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
-    fetch.set_defaults(action=_fetch)
+    add_fetch(actions)
     run = actions.add_parser("run", help="build and fly missions, and write results.tsv")
     run.add_argument("names", nargs="*", metavar="NAME", help="missions; all when none is given")
     run.add_argument("--sources", type=Path, required=True, help="the folder with the sources")
@@ -43,13 +33,6 @@ def _parser() -> argparse.ArgumentParser:
     report = actions.add_parser("report", help="write the page of results.tsv")
     report.set_defaults(action=_report)
     return parser
-
-
-def _fetch(arguments: argparse.Namespace, missions: PublicMissions) -> int:
-    commits = {name: each.commit for name, each in missions.repositories.items()}
-    for repo in Sources(arguments.folder).fetch_all(commits, arguments.mirrors):
-        print(repo)
-    return 0
 
 
 def _run(arguments: argparse.Namespace, missions: PublicMissions) -> int:

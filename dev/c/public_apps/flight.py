@@ -13,13 +13,11 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from cfepy.attachment import Attachment
 from cfepy.es import StartupEntry, entries
 from cfepy.evs.packets import LONG_EVENT_MSG_MID
-from cfepy.mission import Mission
+from cfepy.mission import Mission, PacketWatch, Seen
 from cfepy.mission.host_actions import PACKET
 from cfepy.msg import command
-from cfepy.sb import SoftwareBus
 from cfepy.writing.console import Console
 
 BOOT_S, ANSWER_S = 10, 3
@@ -60,41 +58,23 @@ def fly(folder: Path) -> Flown:
     return Flown(found["runs"], tuple(found["answers"]), found["reason"])
 
 
-class _Telemetry(Attachment):
-    """Notes the sender and size of each telemetry packet, also of those without subscribers."""
-
-    def __init__(self) -> None:
-        self.sent: list[tuple[str, int, int]] = []
-
-    def bus(self, base: type[SoftwareBus]) -> type[SoftwareBus]:
-        sent = self.sent
-
-        class Noting(base):  # type: ignore[misc, valid-type]
-            def transmit_msg(self, packet: bytes | bytearray, is_origination: bool = True) -> None:
-                msg_id = int.from_bytes(packet[:2], "big")
-                if not msg_id & COMMAND_BIT:
-                    sent.append((self.caller_name(), msg_id, len(packet)))
-                super().transmit_msg(packet, is_origination)
-
-        return Noting
-
-
 def flown(folder: Path) -> Flown:
     """Fly the last application of a mission folder in this process."""
     entry = entries((folder / SCRIPT).read_bytes())[-1]
-    telemetry = _Telemetry()
+    sent: list[Seen] = []
+    telemetry = PacketWatch(sent.append, lambda msg_id: not msg_id & COMMAND_BIT and msg_id != LONG_EVENT_MSG_MID)
     with Mission(str(folder), console=Console(quiet=True), attachments=[telemetry]) as mission:
         mission.run_for(BOOT_S)
         wanted = _commands(mission.cfe.sb, entry.name)
-        lines, packets = len(mission.console.lines), len(telemetry.sent)
+        lines, packets = len(mission.console.lines), len(sent)
         for msg_id in wanted:
             mission.outside.act(PACKET, bytes(command(msg_id, 0)))
             mission.run_for(ANSWER_S / len(wanted))
         answers = list(_events(mission.console.lines[lines:], entry.name))
         answers += [
-            f"telemetry 0x{msg_id:04X}, {size} bytes"
-            for name, msg_id, size in telemetry.sent[packets:]
-            if name == entry.name and msg_id != LONG_EVENT_MSG_MID
+            f"telemetry 0x{each.msg_id:04X}, {len(each.packet)} bytes"
+            for each in sent[packets:]
+            if each.sender == entry.name
         ]
         is_there = any(each.name == entry.name for each in mission.cfe.es.apps)
         reason = next((each for each in mission.console.lines if _is_failure(each, entry)), "")

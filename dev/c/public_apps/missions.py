@@ -90,6 +90,11 @@ class PublicMissions(NamedTuple):
     missions: Mapping[str, PublicMission]
     repositories: Mapping[str, Repository]
 
+    @property
+    def commits(self) -> dict[str, str]:
+        """The commit of each repository, by its name."""
+        return {name: each.commit for name, each in self.repositories.items()}
+
     def chosen(self, names: list[str]) -> list[PublicMission]:
         """Return the missions with these names, or all if none are given.
 
