@@ -3,13 +3,13 @@ machine."""
 
 from __future__ import annotations
 
+import importlib
 import os
 import signal
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-import numpy as np  # noqa: F401  pytester forgets modules that its runs load first, and numpy cannot be loaded twice
 import pytest
 from hypothesis import settings
 
@@ -24,6 +24,7 @@ pytest.register_assert_rewrite(
 from tests import costs  # noqa: E402
 from tests.add_ons import MISSING, lacks_add_on  # noqa: E402
 
+importlib.import_module("numpy")  # pytester forgets modules that its runs load first; numpy cannot be loaded twice
 pytest_plugins = ["pytester", "cfepy.testing.plugin"]  # an installed plugin has this name, too
 
 settings.register_profile("cfepy", settings.default, deadline=None)

@@ -19,8 +19,8 @@ _SUBJECT = re.compile(r"^ {8}([\w, ]+): (.+?)(?=^ {8}\w[\w, ]*: |\Z)", re.MULTIL
 _HEAD = """# Releases of cFE
 
 A mission chooses a release with `cfe_version` in its [mission file](../mission_file.md). The default is {default}. This
-page has each fact that differs between the releases. Another page tells
-[what the differences mean for you](../differences.md#what-cfe_version-decides).
+page has each fact that differs between the releases. [Differences](../differences.md#what-cfe_version-decides) explains
+what they mean for you.
 
 `python -m dev.pages.releases` writes this page from `cfepy/config/releases`, the files that the simulator reads itself.
 """

@@ -249,7 +249,7 @@ APART = {
         SET(MISSION_NAME "Apart")
         list(APPEND MISSION_GLOBAL_APPLIST imu/fsw/cfs two)
         foreach(X ${MISSION_GLOBAL_APPLIST})
-            list(APPEND APPLICATION_PLATFORM_INC_LIST ${${X}_MISSION_DIR}/inc ${${X}_MISSION_DIR}/../shared)
+            list(APPEND APPLICATION_PLATFORM_INC_LIST ${${X}_MISSION_DIR}/inc ${${X}_MISSION_DIR}/../common)
         endforeach()
         SET(MISSION_CPUNAMES cpu1)
     """,
@@ -257,7 +257,7 @@ APART = {
     "components/imu/fsw/cfs/CMakeLists.txt": "add_cfe_app(imu imu.c)\n",
     "components/imu/fsw/cfs/imu.c": "",
     "components/imu/fsw/cfs/inc/imu.h": "",
-    "components/imu/fsw/shared/imu_device.h": "",
+    "components/imu/fsw/common/imu_device.h": "",
     "components/two/CMakeLists.txt": "add_cfe_app(two two.c)\n",
     "components/two/two.c": "",
     "fsw/apps/two/CMakeLists.txt": "add_cfe_app(two other.c)\n",
@@ -279,7 +279,7 @@ def test_modules_of_other_folders_go_before_the_trees(reader: Reader, tmp_path: 
     assert imu.code == [tmp_path / "components/imu/fsw/cfs/imu.c"]
     assert two.code == [tmp_path / "components/two/two.c"]
     for each in (imu, two):
-        assert {tmp_path / "components/imu/fsw/cfs/inc", tmp_path / "components/imu/fsw/shared"} <= set(each.includes)
+        assert {tmp_path / "components/imu/fsw/cfs/inc", tmp_path / "components/imu/fsw/common"} <= set(each.includes)
     assert find_startup(model).origin == "../cfg/apart_defs/cpu1_cfe_es_startup.scr"
 
 
