@@ -164,14 +164,12 @@ class BuiltNode:
         entry: its entry point.
         sources: its source files and headers.
         types: message types whose headers it includes.
-        warnings: warnings of the compiler.
     """
 
     library: Path
     entry: str
     sources: SourceSet
     types: list[str] = field(default_factory=list)
-    warnings: list[str] = field(default_factory=list)
 
 
 def build_node(program: Program, entry: NodeEntry, library: Library, options: BuildOptions | None = None) -> BuiltNode:
@@ -227,28 +225,28 @@ class NodeBuild:
         flags = [*LANGUAGE, *PLAIN, *profile_flags(self._options.profile)]
         own = [*flags, *(f"-D{each}" for each in program.definitions), "-include", str(main)]
         made_for_it = (messages.name, configurations.name, main_header(entry.takes_arguments))
-        known = _digest(*made_for_it, *self.sources.contents.values())
-        units = [CompileUnit(each, own, includes, _digest(known, _label(each, program))) for each in program.sources]
+        units = []
+        for each in program.sources:
+            known = _digest(*made_for_it, _label(each, program), *self.sources.read_with(each))
+            units.append(CompileUnit(each, own, includes, known))
         header = library_folder() / "include/roscfe/node.h"
-        around = known if entry.nodelet else _digest(header.read_bytes(), header.with_name("parts.h").read_bytes())
+        around = _digest(header.read_bytes(), header.with_name("parts.h").read_bytes())
+        if entry.nodelet:
+            around = _digest(around, *made_for_it, *self.sources.contents.values())
         units.append(CompileUnit(start, flags, includes, _digest(entry.text(), around)))
         units += [self._support(each, flags, includes) for each in program.support]
-        core = core_key(self._options, self._real_boost, self._types, self.sources.contents)
-        key = _digest(core, *link_flags(self._options.profile), *(each.key for each in units))
+        core = core_units(self._options, self._real_boost, self._types, self.sources.contents)
+        key = _digest(*link_flags(self._options.profile), *(each.key for each in (*core, *units)))
         made = _folder() / f"{entry.app.lower()}-{key}.so"
-        warnings = made.with_suffix(".warnings")
         if not made.is_file():
-            archive = built_core(self._options, self._real_boost, self._types, self.sources.contents)
-            told = compile_units(units, entry.name)
+            archive = built_core(self._options.profile, core)
+            compile_units(units, entry.name)
             _link(
                 [*(str(each.object) for each in units), *WHOLE, str(archive), *NOT_WHOLE],
                 made,
                 link_flags(self._options.profile),
             )
-            with writing_cache(warnings.parent):
-                warnings.write_text("\n".join(filter(None, told)), encoding="utf-8")
-        told = [warnings.read_text(encoding="utf-8")] if warnings.is_file() else []
-        return BuiltNode(made, entry.symbol, self.sources, self.types, list(filter(None, told)))
+        return BuiltNode(made, entry.symbol, self.sources, self.types)
 
     def _support(self, source: Path, flags: Sequence[str], includes: Sequence[Path]) -> CompileUnit:
         """Return a library source that is compiled with the program. It does not change when the program changes."""
@@ -315,19 +313,47 @@ def configurations_folder(headers: Mapping[str, str]) -> Path:
     return kept
 
 
-def core_key(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> str:
-    """Return the cache key of a profile's interface library."""
-    return _core(options, real_boost, library, used)[0]
+def core_units(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> list[CompileUnit]:
+    """Return the sources of the interface library that a node needs.
+
+    Each has its own cache key, so a node that uses one more part of the library compiles only this part's sources.
+
+    Args:
+        options: the build options.
+        real_boost: as of `library_includes`.
+        library: of message types.
+        used: as of `library_sources`.
+    """
+    profile = options.profile
+    files, includes = library_sources(used, real_boost), library_includes(real_boost)
+    messages = messages_folder(message_types(collect(files, includes).missing, library), library, options)
+    sources = collect(files, [messages, *includes])
+    flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *core_flags(profile), *STRICT_WARNINGS]
+    folder = library_folder()
+    return [
+        CompileUnit(
+            each,
+            [*flags, *options.flags_of(each)],
+            [messages, *includes],
+            _digest(str(each.relative_to(folder)), *sources.read_with(each)),
+            needs_cfe=True,
+        )
+        for each in files
+    ]
 
 
-def built_core(options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]) -> Path:
+def built_core(profile: Profile, units: Sequence[CompileUnit]) -> Path:
     """Return the interface library of a profile as an archive, compiled if it is not in the cache.
 
+    Args:
+        profile: of the node.
+        units: see `core_units`.
+
     Raises:
-        CompilerError: the compiler refused it.
+        CompilerError: the compiler refused a source.
     """
-    key, units = _core(options, real_boost, library, used)
-    archive = _folder() / f"libroscfe-{options.profile.value}-{_digest(key, identity())}.a"
+    key = _digest(*(each.key for each in units), identity())
+    archive = _folder() / f"libroscfe-{profile.value}-{key}.a"
     if not archive.is_file():
         print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
         compile_units(units, "the interface library")
@@ -336,29 +362,6 @@ def built_core(options: BuildOptions, real_boost: bool, library: Library, used: 
             _call(["ar", "rcs", str(made), *(str(each.object) for each in units)])
             os.replace(made, archive)
     return archive
-
-
-def _core(
-    options: BuildOptions, real_boost: bool, library: Library, used: Iterable[Path]
-) -> tuple[str, list[CompileUnit]]:
-    profile = options.profile
-    files, includes = library_sources(used, real_boost), library_includes(real_boost)
-    sources = collect(files, includes)
-    messages = messages_folder(message_types(sources.missing, library), library, options)
-    flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *core_flags(profile), *STRICT_WARNINGS]
-    known = _digest(messages.name, *sources.contents.values())
-    folder = library_folder()
-    units = [
-        CompileUnit(
-            each,
-            [*flags, *options.flags_of(each)],
-            [messages, *includes],
-            _digest(known, str(each.relative_to(folder))),
-            needs_cfe=True,
-        )
-        for each in files
-    ]
-    return _digest(*(each.key for each in units)), units
 
 
 # -- compiling ---------------------------------------------------------------------------------------------------------
@@ -403,22 +406,18 @@ class CompileUnit:
         return [*cpp_compiler(), *self.flags, *folders, *cfe, *maps, *watch, "-c", str(self.source), "-o", str(made)]
 
 
-def compile_units(units: Iterable[CompileUnit], name: str) -> list[str]:
+def compile_units(units: Iterable[CompileUnit], name: str) -> None:
     """Compile the sources whose object files are not in the cache, a few at once.
 
     Args:
         units: the sources.
         name: of the thing that they are part of, for the progress.
 
-    Returns:
-        The compiler's warnings.
-
     Raises:
-        CompilerError: it refused one.
+        CompilerError: the compiler refused a source.
         UsageError: there is no compiler, or a header of a ROS on this computer was used.
     """
     missing = [each for each in units if not each.object.is_file()]
-    warnings: list[str] = []
     with WorkProgress(Stopwatch().elapsed_ns) as progress:
         for at in range(0, len(missing), MOST_AT_ONCE):
             group = missing[at : at + MOST_AT_ONCE]
@@ -427,11 +426,10 @@ def compile_units(units: Iterable[CompileUnit], name: str) -> list[str]:
                 try:
                     for number, each in enumerate(running, at + 1):
                         progress.show(f"compiling {name}: {number} of {len(missing)}, {each.source.name}")
-                        warnings.append(each.finished(progress.refresh))
+                        each.finish(progress.refresh)
                 finally:
                     for each in running:
                         each.end()
-    return warnings
 
 
 class _Compiler:
@@ -454,11 +452,11 @@ class _Compiler:
         with self._log.open("wb") as log:
             self._process = start_bounded(unit.command(self._made), log.fileno())
 
-    def finished(self, while_waiting: Callable[[], object]) -> str:
-        """Wait for it, and keep the object file. `while_waiting` is called every few seconds. Returns its warnings."""
+    def finish(self, while_waiting: Callable[[], object]) -> None:
+        """Wait for it, and keep the object file. `while_waiting` is called every few seconds."""
         status = end_bounded(self._process, while_waiting)
-        said = self._log.read_text(encoding="utf-8", errors="replace").rstrip()
         if status:
+            said = self._log.read_text(encoding="utf-8", errors="replace").rstrip()
             raise CompilerError(said or f"{cpp_compiler()[0]} ended with {status}")
         used = self._made.with_suffix(".d").read_text(encoding="utf-8", errors="replace").split()
         wrong = next((each for each in used if each.startswith(SYSTEM_ROS)), None)
@@ -466,7 +464,6 @@ class _Compiler:
             text = f"includes {wrong} of the ROS on this computer, which is not available on cFE [system-ros]"
             raise UsageError(text, file=self._unit.source)
         os.replace(self._made, self._unit.object)
-        return said
 
     def end(self) -> None:
         """End it if it still runs: another compiler has failed, and its result is not needed."""

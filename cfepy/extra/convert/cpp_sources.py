@@ -26,12 +26,24 @@ class SourceSet:
     Attributes:
         texts: of each file, without comments; the sources first.
         contents: of each file, unchanged.
+        headers: that each file includes itself and that are in one of the folders.
         missing: headers that are in none of the folders, as written.
     """
 
     texts: dict[Path, str] = field(default_factory=dict)
     contents: dict[Path, bytes] = field(default_factory=dict)
+    headers: dict[Path, list[Path]] = field(default_factory=dict)
     missing: list[str] = field(default_factory=list)
+
+    def read_with(self, source: Path) -> list[bytes]:
+        """Return the contents of the files that a compiler reads for one source: its own, and all its headers'."""
+        files = {source: None}
+        waiting = [source]
+        for file in waiting:
+            new = [each for each in self.headers[file] if each not in files]
+            files.update(dict.fromkeys(new))
+            waiting += new
+        return [self.contents[each] for each in files]
 
 
 def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
@@ -59,12 +71,13 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
             most = f"{CPP_FILES:,} files or {CPP_FILES_BYTES:,} bytes"
             raise UsageError(f"includes headers of more than {most}, counting nested includes", file=waiting[0])
         text = found.texts[file] = without_comments(found.contents[file].decode("utf-8", "replace"))
+        headers = found.headers[file] = []
         for name in dict.fromkeys(includes_of(text)):
             beside = file.parent / name
             if ".." in beside.parts:  # otherwise files that include each other would get ever new names
                 beside = Path(os.path.normpath(beside))
             if _is_there(beside):
-                waiting.append(beside)
+                headers.append(beside)
                 continue
             if name not in where:
                 where[name] = next((each / name for each in includes if _is_there(each / name)), None)
@@ -72,7 +85,8 @@ def collect(sources: Iterable[Path], includes: Sequence[Path]) -> SourceSet:
             if header is None:
                 missing[name] = None
             else:
-                waiting.append(header)
+                headers.append(header)
+        waiting += headers
     found.missing = list(missing)
     return found
 

@@ -12,12 +12,20 @@ import pytest
 from cfepy.cli.main import main
 from cfepy.extra.c import CompilerError
 from cfepy.extra.convert import build
-from cfepy.extra.convert.build import unique_symbols
+from cfepy.extra.convert.build import (
+    BuildOptions,
+    CompileUnit,
+    compile_units,
+    core_units,
+    library_folder,
+    unique_symbols,
+)
 from cfepy.journal import read_journal, replay
 from cfepy.mission import read_mission
 from cfepy.pilot.plan import built_node
 from cfepy.writing.work_progress import WorkProgress
 from dev.convert.ping import ping_package
+from rospy_shim.types.msgs import shipped
 
 pytestmark = pytest.mark.slow
 
@@ -48,18 +56,53 @@ def test_missing_elf_reader_is_reported_before_anything_is_compiled(
     assert "pip install 'cfepy[c]'" in capfd.readouterr().err
 
 
-def test_compiling_shows_the_source_and_its_number(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def shown(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The texts that tell the progress of compiling."""
+
     class Shown(WorkProgress):
         def show(self, text: str) -> None:
             texts.append(text)
 
     texts: list[str] = []
     monkeypatch.setattr(build, "WorkProgress", Shown)
-    monkeypatch.setenv("CFEPY_CACHE", str(package / "cache"))
-    assert main(["launch", "ping", "ping.launch", "--for", "1"]) == 0
-    library = [each for each in texts if each.startswith("compiling the interface library: ")]
-    assert library[0].split(", ")[0] == f"compiling the interface library: 1 of {len(library)}"
-    assert "compiling left: 1 of 3, sender.cpp" in texts
+    return texts
+
+
+def test_compiling_shows_the_source_and_its_number(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, shown: list[str]
+) -> None:
+    monkeypatch.setenv("CFEPY_CACHE", str(tmp_path / "cache"))
+    sources = [tmp_path / name for name in ("sender.cpp", "words.cpp", "hearer.cpp")]
+    for each in sources:
+        each.write_text("int word;\n", encoding="utf-8")
+    units = [CompileUnit(each, (), (), each.name) for each in sources]
+    compile_units(units[1:2], "words")
+    compile_units(units, "left")
+    assert shown == [
+        "compiling words: 1 of 1, words.cpp",
+        "compiling left: 1 of 2, sender.cpp",
+        "compiling left: 2 of 2, hearer.cpp",
+    ]
+
+
+def test_a_changed_source_alone_is_compiled_again(package: Path, shown: list[str]) -> None:
+    assert main(["launch", "ping", "ping.launch", "--for", "1.55"]) == 0
+    shown.clear()
+    words = package / "src/words.cpp"
+    never_compiled = words.read_text(encoding="utf-8").replace("even", str(package))
+    words.write_text(never_compiled, encoding="utf-8")
+    assert main(["launch", "ping", "ping.launch", "--for", "1.55"]) == 0
+    assert {each.split(", ")[-1] for each in shown} == {"words.cpp"}
+
+
+def test_a_further_part_of_the_library_leaves_the_other_parts_as_they_are() -> None:
+    options, library = BuildOptions(), shipped()
+    few = {each.source: each.key for each in core_units(options, False, library, [])}
+    with_tf = [library_folder() / "include/tf2_ros/buffer.h"]
+    more = {each.source: each.key for each in core_units(options, False, library, with_tf)}
+    assert few.items() < more.items()
+    assert {each.parent.name for each in more.keys() - few.keys()} == {"tf"}
 
 
 def test_standard_output_of_a_node_is_shown_with_its_name(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
