@@ -82,6 +82,11 @@ def freeze_many() -> None:
         gc.freeze()
 
 
+def collect_young() -> None:
+    """Collect garbage among the objects that were made since the last collection."""
+    gc.collect(0)
+
+
 def collect_every(runs: int) -> None:
     """Let `collect_leftovers` collect garbage at the end of every `runs`-th run only.
 

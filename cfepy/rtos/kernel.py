@@ -16,7 +16,7 @@ from typing import Any
 
 from cfepy import trace as tr
 from cfepy.interpreter.compiled import mypyc_attr
-from cfepy.interpreter.garbage import collect_leftovers, freeze_many, no_collection
+from cfepy.interpreter.garbage import collect_leftovers, collect_young, freeze_many, no_collection
 from cfepy.rtos.context import make_context, take_back
 from cfepy.rtos.errors import DeadlockError
 from cfepy.rtos.scheduler import FAIR_PRIORITY, Scheduler
@@ -25,6 +25,9 @@ from cfepy.rtos.wait_graph import Wait, circles, endless, waiting_report
 
 ENDLESS = 1 << 62
 COLLECT_NS = 10_000_000_000  # garbage is collected at multiples of this, so finalizers run at fixed times
+COLLECT_ALL_NS = (
+    600_000_000_000  # until then, each time among all objects; later more seldom: a long run has more of them
+)
 
 
 @mypyc_attr(allow_interpreted_subclasses=True)
@@ -68,6 +71,7 @@ class Kernel(Scheduler):
         self._stopped = False
         self._begun = False
         self._collect_at = COLLECT_NS
+        self._collected_all_at = 0
         self.is_running = self.is_collecting = self.is_lost = False
         self.guard = threading.Lock()
         self._gave_up = False
@@ -305,7 +309,7 @@ class Kernel(Scheduler):
         """Run in parts, and collect garbage between them, at fixed virtual times."""
         while self.now <= end:
             if self.now >= self._collect_at:
-                self._collect(gc.collect)
+                self._collect(gc.collect if self._is_due_among_all() else collect_young)
                 self._collect_at = self.now // COLLECT_NS * COLLECT_NS + COLLECT_NS
             self._until = min(end, self._collect_at)
             self._enter()
@@ -313,6 +317,12 @@ class Kernel(Scheduler):
             if self._stopped or self._exhausted or self._until >= end or self.broken is not None:
                 return
             self.now = max(self.now, self._until)
+
+    def _is_due_among_all(self) -> bool:
+        """Return whether to look for garbage among all objects. The distance doubles when the time has doubled."""
+        distance = COLLECT_NS << max(0, (self.now // COLLECT_ALL_NS).bit_length() - 1)
+        before, self._collected_all_at = self._collected_all_at, self.now // distance * distance
+        return before != self._collected_all_at
 
     @property
     def is_stopped(self) -> bool:

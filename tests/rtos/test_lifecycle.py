@@ -290,6 +290,24 @@ def test_garbage_is_collected_only_at_fixed_virtual_times(kernel: Kernel) -> Non
     assert gc.isenabled()
 
 
+def test_long_run_collects_among_all_objects_more_and_more_seldom(
+    kernel: Kernel, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    among_all: list[int] = []
+    young: list[int] = []
+
+    def collect(generation: int = 2) -> None:
+        (young if generation == 0 else among_all).append(kernel.now)
+
+    monkeypatch.setattr(gc, "collect", collect)
+    kernel.spawn("sleeper", lambda: kernel.delay(86_400_000_000_000))
+    kernel.run(until_ns=86_400_000_000_000)
+    assert sorted(young + among_all) == list(range(10_000_000_000, 86_400_000_000_000, 10_000_000_000))
+    assert among_all[:62] == [*range(10_000_000_000, 620_000_000_000, 10_000_000_000), 620_000_000_000]
+    assert among_all[-2:] == [84_480_000_000_000, 85_760_000_000_000]
+    assert len(among_all) < 500
+
+
 def test_ctrl_c_reaches_the_host_while_a_task_computes(context: str) -> None:
     main = threading.get_ident()
 
