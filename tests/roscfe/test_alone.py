@@ -42,6 +42,12 @@ def test_probes_print_the_recorded_output(here: Alone) -> None:
         assert here.fly(node) == node.with_suffix(".txt").read_text(encoding="utf-8").splitlines(), name
 
 
+def test_probes_print_the_recorded_output_with_only_the_parts_that_they_need(here: Alone) -> None:
+    for name in NODES:
+        node = PROBES / f"{name}.cpp"
+        assert here.fly(node, is_small=True) == node.with_suffix(".txt").read_text(encoding="utf-8").splitlines(), name
+
+
 @pytest.mark.parametrize("target", ["powerpc", "arm"])
 def test_probes_print_the_recorded_output_elsewhere(tmp_path: Path, target: str) -> None:
     nodes = [PROBES / f"{name}.cpp" for name in NODES if name not in NUMERIC]

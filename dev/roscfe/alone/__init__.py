@@ -70,13 +70,19 @@ class Alone:
         write_headers(types, messages, profile, LIBRARY, capacities())
         self._flags = [f"-I{messages}", f"-I{FOLDER}", "-isystem", str(headers_folder())]
         self._flags += [*profile_flags(profile), *flags]
-        library = self._objects(self.sources, [*STRICT_FLAGS, *WITHOUT_TYPES, *own_flags])
+        self._library = self._objects(self.sources, [*STRICT_FLAGS, *WITHOUT_TYPES, *own_flags])
         stand_in = [FOLDER / "cfe_stand_in.cpp", FOLDER.parent / "cfe_messages.cpp"]
-        self._library = [*library, *self._objects(stand_in, FLIGHT_FLAGS, "stand_in")]
+        self._stand_in = self._objects(stand_in, FLIGHT_FLAGS, "stand_in")
+        self._nodes: dict[tuple[Path, ...], list[Path]] = {}
 
-    def fly(self, source: Path) -> list[str]:
-        """Return a node's output. It has the name, the namespace and the remappings of `dev.roscfe.probing`."""
-        done = self.run(self.program(source))
+    def fly(self, source: Path, is_small: bool = False) -> list[str]:
+        """Return a node's output. It has the name, the namespace and the remappings of `dev.roscfe.probing`.
+
+        Args:
+            source: the node's main file.
+            is_small: see `program`.
+        """
+        done = self.run(self.program(source, is_small=is_small))
         assert done.returncode == 0, (done.returncode, done.stderr[-3000:])
         return list(marked(done.stdout.splitlines()))
 
@@ -98,23 +104,34 @@ class Alone:
             command, capture_output=True, check=False, timeout=timeout_s, text=True, errors="replace", env=variables
         )
 
-    def program(self, source: Path, *more: Path, entry: NodeEntry | None = None) -> Path:
+    def program(self, source: Path, *more: Path, entry: NodeEntry | None = None, is_small: bool = False) -> Path:
         """Return the program of a node.
 
         Args:
             source: the node's main file.
             more: further sources.
             entry: its entry point, of the application NODE; None for the probes' entry point.
+            is_small: whether to link only the parts of the library that the node needs, as in the image of a small
+                computer. `target` must be this computer.
         """
         main = self._folder / "main.h"
         main.write_text(main_header(True), encoding="utf-8")
         made = self._folder / "entry.cpp"
         made.write_text((entry or probe_entry()).text(), encoding="utf-8")
-        node = self._objects([source, *more], ["-std=c++17", "-Wall", "-include", str(main)], "node")
-        parts = [*node, *self._objects([made], STRICT_FLAGS), *self._library]
+        sources = source, *more
+        if sources not in self._nodes:
+            self._nodes[sources] = self._objects(sources, ["-std=c++17", "-Wall", "-include", str(main)], "node")
+        library = [self._archive()] if is_small else self._library
+        parts = [*self._nodes[sources], *self._objects([made], STRICT_FLAGS), *self._stand_in, *library]
         wrapped = [f"-Wl,--wrap={',--wrap='.join(WRAPPED)}"]
         wrapped += WITH_ARENA if self._profile is not Profile.HOST else ()
         return link_program(self._folder / source.stem, parts, *wrapped, *self._flags, target=self._target)
+
+    def _archive(self) -> Path:
+        made = self._folder / "libroscfe.a"
+        if not made.is_file():
+            subprocess.run(["ar", "rcs", str(made), *map(str, self._library)], check=True)
+        return made
 
     def _objects(self, sources: Sequence[Path], base: Sequence[str], part: str = "library") -> list[Path]:
         return compile_objects(self._folder / part, sources, *self._flags, target=self._target, base=base)
