@@ -42,7 +42,9 @@ from cfepy.status import UsageError
 from cfepy.writing.work_progress import WorkProgress
 from rospy_shim.types.msgs import Library
 
-LANGUAGE = ("-std=c++17", "-fPIC", "-fvisibility=hidden", "-fno-gnu-unique", "-Wall")
+SECTIONS, DROP_UNUSED = ("-ffunction-sections", "-fdata-sections"), "-Wl,--gc-sections"
+"""Flags of the compiler and of the linker, which together leave out what a node never calls."""
+LANGUAGE = ("-std=c++17", "-fPIC", "-fvisibility=hidden", "-fno-gnu-unique", *SECTIONS, "-Wall")
 """Flags of every source, so that nodes share no variables, and leave none behind when they end."""
 PLAIN = ("-O1", "-g", "-fno-stack-protector", "-U_FORTIFY_SOURCE", "-D_LINUX_OS_", "-D_POSIX_OS_")
 WITHOUT_TYPES = ("-fno-rtti",)
@@ -57,7 +59,7 @@ ALLOCATING = (
     *("aligned_alloc", "posix_memalign", "memalign"),
 )
 """libc functions that the arena replaces, in profiles that have one."""
-LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic")
+LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic", DROP_UNUSED)
 BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that refuse headers of the real Boost that were found by chance."""
 BOOST_IN_PART = ("boost/thread.hpp", "boost/thread/thread.hpp", "boost/foreach.hpp", "boost/circular_buffer.hpp")

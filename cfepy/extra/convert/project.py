@@ -149,8 +149,6 @@ set_property(DIRECTORY PROPERTY COMPILE_OPTIONS "${{ROSCFE_OPTIONS}}")
 if(NOT TARGET ${{ROSCFE_LIBRARY}})
     add_library(${{ROSCFE_LIBRARY}} STATIC{listed}
     )
-    # What a node does not need is left out of it: of the library, its sections, and functions of the C++ library.
-    target_compile_options(${{ROSCFE_LIBRARY}} PRIVATE -ffunction-sections -fdata-sections)
     if(NOT CMAKE_SYSTEM_NAME STREQUAL "Generic") # a computer without an operating system has no POSIX, either
         target_sources(${{ROSCFE_LIBRARY}} PRIVATE{hosted}
         )
@@ -167,10 +165,9 @@ endif()
 function(roscfe_node NAME MAIN_HEADER ENTRY)
     add_cfe_app(${{NAME}} ${{ENTRY}} ${{ARGN}})
     target_compile_options(${{NAME}} PRIVATE ${{ROSCFE_FLAGS}} ${{ROSCFE_NODE_FLAGS}})
-    target_compile_options(${{NAME}} PRIVATE -ffunction-sections -fdata-sections)
     set_source_files_properties(${{ARGN}} PROPERTIES COMPILE_OPTIONS "-include;${{ROSCFE_DIR}}/${{MAIN_HEADER}}")
     target_link_libraries(${{NAME}} ${{ROSCFE_LIBRARY}})
-    target_link_options(${{NAME}} PRIVATE {linked} -Wl,--gc-sections -Wl,--version-script=${{ROSCFE_DIR}}/{EXPORTS})
+    target_link_options(${{NAME}} PRIVATE {linked} -Wl,--version-script=${{ROSCFE_DIR}}/{EXPORTS})
 endfunction()
 """
 

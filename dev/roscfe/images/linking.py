@@ -36,8 +36,6 @@ MESSAGES = FOLDER.parent / "cfe_messages.cpp"
 SIZE_FLAGS = (
     "-Os",
     "-g0",
-    "-ffunction-sections",
-    "-fdata-sections",
     "-fno-threadsafe-statics",
     "-fno-asynchronous-unwind-tables",
     "-fno-unwind-tables",

@@ -73,6 +73,19 @@ int main(int argc, char **argv)
     return filtered(count);
 }
 """
+NEVER_CALLED = """
+#include <ros/ros.h>
+#include <thread>
+double filtered(double value);
+struct Remote { virtual ~Remote(); virtual void send() = 0; };
+struct Unused : Remote { void send() override { filtered(1); } };
+Remote *made() { return new Unused; }
+int main(int argc, char **argv)
+{
+    ros::init(argc, argv, "lost");
+    ros::spin();
+}
+"""
 FILES = """
 #include <cstdio>
 #include <ros/ros.h>
@@ -117,6 +130,12 @@ def test_memory_is_known_of_callbacks_of_any_form(tmp_path: Path) -> None:
 def test_name_that_nothing_defines_is_an_error_before_flight(tmp_path: Path) -> None:
     errors = [each for each in checked(tmp_path, LOST).findings if each.rule == "undefined-name"]
     assert [(each.place.line, each.message) for each in errors] == [(10, "nothing defines count, filtered(double)")]
+
+
+@needs_cpp
+@pytest.mark.slow
+def test_code_that_is_never_called_may_use_names_that_nothing_defines(tmp_path: Path) -> None:
+    assert not checked(tmp_path, NEVER_CALLED).is_refused
 
 
 @needs_cpp

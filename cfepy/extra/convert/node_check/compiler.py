@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.extra.c import CompilerError, call_bounded, cpp_compiler
-from cfepy.extra.convert.build import ALLOCATING, WRAPPED, profile_flags
+from cfepy.extra.convert.build import ALLOCATING, DROP_UNUSED, SECTIONS, WRAPPED, profile_flags
 from cfepy.extra.convert.message_headers import Profile
 from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace
 from cfepy.extra.convert.node_check.headers import SYSTEM, is_of_ros
@@ -83,7 +83,8 @@ class Compiler:
     """
 
     def __init__(self, profile: Profile, folders: Sequence[Path], definitions: Iterable[str] = ()) -> None:
-        self.command = [*cpp_compiler(), "-std=c++17", "-fPIC", "-fvisibility=hidden", "-g1", "-DROSCFE_IS_CHECKED"]
+        self.command = [*cpp_compiler(), "-std=c++17", "-fPIC", "-fvisibility=hidden", *SECTIONS]
+        self.command += ["-g1", "-DROSCFE_IS_CHECKED"]
         self.command += ["-fdiagnostics-format=json", "-fdiagnostics-column-unit=byte", *profile_flags(profile)]
         self.command += [f"-D{each}" for each in definitions]
         self.command += [word for place in folders for word in ("-I", str(place))]
@@ -118,10 +119,13 @@ class Compiler:
     def undefined(self, scratch: Path) -> list[UndefinedName]:
         """Link all files that were compiled, and return the names that nothing defines.
 
+        Names in code that is never called do not count, since the build leaves it out.
+
         Raises:
             UsageError: there is no such compiler.
         """
-        command = [*cpp_compiler(), "-shared", *ASK, "-o", str(scratch / "linked.so"), *map(str, self.objects)]
+        kept = ("-Wl,-e,main", DROP_UNUSED)
+        command = [*cpp_compiler(), "-shared", *kept, *ASK, "-o", str(scratch / "linked.so"), *map(str, self.objects)]
         return undefined_names(_call(command)[1], with_library=False)
 
     def ending_calls(self) -> list[tuple[UndefinedName, str]]:
