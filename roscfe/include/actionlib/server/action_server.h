@@ -11,7 +11,6 @@
 #include "actionlib_msgs/GoalStatus.h"
 #include "actionlib_msgs/GoalStatusArray.h"
 #include "ros/ros.h"
-#include "roscfe/waiting.h"
 
 namespace actionlib
 {
@@ -30,7 +29,10 @@ class ServerGoalHandle
     ServerGoalHandle() = default;
 
     bool                       isValid() const { return tracker_ != nullptr; }
-    GoalConstPtr               getGoal() const { return roscfe::part_of(tracker_->goal, tracker_->goal->goal); }
+    GoalConstPtr               getGoal() const
+    {
+        return tracker_ ? roscfe::part_of(tracker_->goal, tracker_->goal->goal) : GoalConstPtr();
+    }
     actionlib_msgs::GoalID     getGoalID() const { return tracker_ ? tracker_->status.goal_id : actionlib_msgs::GoalID(); }
     actionlib_msgs::GoalStatus getGoalStatus() const
     {
@@ -70,7 +72,7 @@ class ServerGoalHandle
 
     void publishFeedback(const Feedback &feedback)
     {
-        if (tracker_ != nullptr)
+        if (has_goal())
         {
             server_->publishFeedback(tracker_->status, feedback);
         }
@@ -104,17 +106,26 @@ class ServerGoalHandle
     {
     }
 
+    bool has_goal() const
+    {
+        if (tracker_ == nullptr)
+        {
+            ROS_ERROR_NAMED("actionlib", "A goal handle is used that has no goal");
+        }
+        return tracker_ != nullptr;
+    }
     bool is(unsigned status) const { return tracker_ != nullptr && tracker_->status.status == status; }
 
     bool move(unsigned from, unsigned to, unsigned or_from, unsigned or_to, const std::string &text)
     {
+        if (!has_goal())
+        {
+            return false;
+        }
         if (!is(from) && !is(or_from))
         {
-            if (tracker_ != nullptr)
-            {
-                ROS_ERROR_NAMED("actionlib", "A goal of status %u cannot get the status %u",
-                                static_cast<unsigned>(tracker_->status.status), to);
-            }
+            ROS_ERROR_NAMED("actionlib", "A goal of status %u cannot get the status %u",
+                            static_cast<unsigned>(tracker_->status.status), to);
             return false;
         }
         tracker_->status.status = static_cast<std::uint8_t>(is(from) ? to : or_to);
@@ -170,7 +181,6 @@ class ActionServer
             start();
         }
     }
-    ~ActionServer() { waiting_.stop(); }
     ActionServer(const ActionServer &) = delete;
     ActionServer &operator=(const ActionServer &) = delete;
 
@@ -184,9 +194,6 @@ class ActionServer
             return;
         }
         started_ = true;
-        // Goals are taken whenever the node waits, also while the callback of another goal does.
-        node_.setCallbackQueue(&queue_);
-        waiting_.start(&queue_);
         result_publisher_   = node_.advertise<ActionResult>("result", 50);
         feedback_publisher_ = node_.advertise<ActionFeedback>("feedback", 50);
         status_publisher_   = node_.advertise<actionlib_msgs::GoalStatusArray>("status", 50, true);
@@ -324,8 +331,6 @@ class ActionServer
     }
 
     ros::NodeHandle    node_;
-    ros::CallbackQueue queue_;
-    roscfe::WhileWaiting waiting_;
     Callback           on_goal_;
     Callback           on_cancel_;
     GoalIDGenerator    ids_;
