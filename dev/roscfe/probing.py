@@ -51,6 +51,7 @@ LIBRARIES = (
 )
 MORE_LIBRARIES = {
     "approximate": ("-lmessage_filters",),
+    "filters": ("-ltf2_ros", "-ltf2", "-lmessage_filters"),
     "queues": ("-lmessage_filters",),
     "clouds": ("-linteractive_markers", "-llaser_geometry", "-ltf", "-ltf2"),
     "shapes": ("-ltopic_tools",),

@@ -5,6 +5,7 @@
 #include <boost/function.hpp>
 #include <boost/shared_ptr.hpp>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -111,6 +112,21 @@ class MessageFilter : public MessageFilterBase,
         {
             each = std::string(bare(each));
         }
+        make_room();
+        requests_.clear();
+        for (std::size_t at = 0; at < waiting_.size();)
+        {
+            const Waiting each  = waiting_[at];
+            const Asked   asked = ask(*each.event.getConstMessage(), each.number);
+            if (!asked.never && asked.later > 0)
+            {
+                waiting_[at++].left = asked.later;
+                continue;
+            }
+            forget(each.number);
+            waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(at));
+            finish(each.event, !asked.never, filter_failure_reasons::Unknown);
+        }
     }
     std::string getTargetFramesString() const
     {
@@ -123,7 +139,11 @@ class MessageFilter : public MessageFilterBase,
     }
 
     // A message is passed on when it can be transformed at its time, and so much later.
-    void setTolerance(const ros::Duration &tolerance) override { tolerance_ = tolerance; }
+    void setTolerance(const ros::Duration &tolerance) override
+    {
+        tolerance_ = tolerance;
+        make_room();
+    }
 
     void setQueueSize(std::uint32_t new_queue_size) override
     {
@@ -135,6 +155,7 @@ class MessageFilter : public MessageFilterBase,
         room_       = roscfe::queue_size(new_queue_size);
         slots_      = boost::make_shared<roscfe::Slots<M>>(room_ + kKept);
         waiting_.reserve(room_);
+        make_room();
         done_.reserve(2 * room_);
         if (callbacks_ != nullptr)
         {
@@ -147,6 +168,7 @@ class MessageFilter : public MessageFilterBase,
     void clear() override
     {
         waiting_.clear();
+        requests_.clear();
         done_.clear();
         if (callbacks_ != nullptr)
         {
@@ -167,25 +189,28 @@ class MessageFilter : public MessageFilterBase,
             finish(event, false, filter_failure_reasons::EmptyFrameID);
             return;
         }
-        const Prospect prospect = look(message);
-        if (prospect != Prospect::later)
+        const Asked asked = ask(message, ++number_);
+        if (asked.never || asked.later == 0)
         {
-            finish(event, prospect == Prospect::now, filter_failure_reasons::OutTheBack);
+            forget(number_);
+            finish(event, !asked.never, filter_failure_reasons::OutTheBack);
             return;
         }
         if (!waiting_.empty() && (waiting_.size() >= room_ || !slots_->any()))
         {
-            finish(waiting_.front(), false, filter_failure_reasons::Unknown);
+            forget(waiting_.front().number);
+            finish(waiting_.front().event, false, filter_failure_reasons::Unknown);
             waiting_.erase(waiting_.begin());
         }
         if (!slots_->any()) // the node holds all that there are
         {
+            forget(number_);
             finish(event, false, filter_failure_reasons::Unknown);
             return;
         }
         const boost::shared_ptr<M> copy = roscfe::Slots<M>::take(slots_);
         *copy                           = message;
-        waiting_.push_back(MEvent(copy, event.getReceiptTime()));
+        waiting_.push_back(Waiting{MEvent(copy, event.getReceiptTime()), number_, asked.later});
     }
 
     message_filters::Connection registerFailureCallback(const FailureCallback &callback)
@@ -203,6 +228,25 @@ class MessageFilter : public MessageFilterBase,
         now,
         later,
         never
+    };
+    // A message that waits, and how many of its requests have no answer yet.
+    struct Waiting
+    {
+        MEvent        event;
+        std::uint32_t number;
+        std::uint32_t left;
+    };
+    // A question to the buffer: can this message be transformed into a target frame, at its time or later?
+    struct Request
+    {
+        std::uint32_t number;
+        std::uint32_t target;
+        bool          is_later;
+    };
+    struct Asked
+    {
+        std::uint32_t later = 0;     // requests whose answer comes later
+        bool          never = false; // an answer is no
     };
     struct Done
     {
@@ -234,22 +278,62 @@ class MessageFilter : public MessageFilterBase,
 
     void incoming(const MEvent &event) { add(event); }
 
-    Prospect look(const M &message) const
+    void make_room()
     {
-        Prospect all = Prospect::now;
-        for (const std::string &target : target_frames_)
+        requests_.reserve((room_ + 1) * target_frames_.size() * (tolerance_.isZero() ? 1 : 2));
+        answered_.reserve(requests_.capacity());
+    }
+
+    // Ask for each target frame, and keep the requests whose answer comes later.
+    Asked ask(const M &message, std::uint32_t number)
+    {
+        Asked asked;
+        for (std::uint32_t target = 0; target < target_frames_.size() && !asked.never; ++target)
         {
-            for (const ros::Duration &later : {ros::Duration(), tolerance_})
+            for (const bool is_later : {false, true})
             {
-                const Prospect one = look(target, frame_of(message), message.header.stamp + later);
-                if (one == Prospect::never)
+                const Prospect one = is_later && tolerance_.isZero() ? Prospect::now : look(message, target, is_later);
+                asked.never        = asked.never || one == Prospect::never;
+                if (one == Prospect::later)
                 {
-                    return one;
+                    requests_.push_back(Request{number, target, is_later});
+                    ++asked.later;
                 }
-                all = one == Prospect::later ? one : all;
             }
         }
-        return all;
+        return asked;
+    }
+    void forget(std::uint32_t number)
+    {
+        requests_.erase(std::remove_if(requests_.begin(), requests_.end(),
+                                       [number](const Request &each) { return each.number == number; }),
+                        requests_.end());
+    }
+    std::size_t place_of(std::uint32_t number) const
+    {
+        std::size_t at = 0;
+        while (at < waiting_.size() && waiting_[at].number != number)
+        {
+            ++at;
+        }
+        return at;
+    }
+
+    Prospect look(const M &message, std::uint32_t target, bool is_later) const
+    {
+        const ros::Time time = message.header.stamp + (is_later ? tolerance_ : ros::Duration());
+        return look(target_frames_[target], frame_of(message), time);
+    }
+    bool is_transformable(const M &message) const
+    {
+        for (std::uint32_t target = 0; target < target_frames_.size(); ++target)
+        {
+            if (look(message, target, false) != Prospect::now || look(message, target, true) != Prospect::now)
+            {
+                return false;
+            }
+        }
+        return true;
     }
     Prospect look(std::string_view target, std::string_view source, const ros::Time &time) const
     {
@@ -262,20 +346,38 @@ class MessageFilter : public MessageFilterBase,
         return !latest.isZero() && time + bc_.getCacheLength() < latest ? Prospect::never : Prospect::later;
     }
 
+    // The order is tf2's: the last request takes the place of one that is answered. An answer holds once it is there, so
+    // the message is looked at again when all answers are: what was possible first may be too old now.
     void transforms_changed() override
     {
-        for (std::size_t at = 0; at < waiting_.size();)
+        std::vector<std::uint32_t> answered;
+        answered.swap(answered_);
+        for (std::size_t at = 0; at < requests_.size();)
         {
-            const Prospect prospect = look(*waiting_[at].getConstMessage());
-            if (prospect == Prospect::later)
+            const Request request = requests_[at];
+            const M &     message = *waiting_[place_of(request.number)].event.getConstMessage();
+            if (look(message, request.target, request.is_later) == Prospect::later)
             {
                 ++at;
                 continue;
             }
-            const MEvent event = waiting_[at];
-            waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(at));
-            finish(event, prospect == Prospect::now, filter_failure_reasons::Unknown);
+            answered.push_back(request.number);
+            requests_[at] = requests_.back();
+            requests_.pop_back();
         }
+        for (const std::uint32_t number : answered)
+        {
+            const std::size_t at = place_of(number);
+            if (at == waiting_.size() || --waiting_[at].left > 0)
+            {
+                continue;
+            }
+            const MEvent event = waiting_[at].event;
+            waiting_.erase(waiting_.begin() + static_cast<std::ptrdiff_t>(at));
+            finish(event, is_transformable(*event.getConstMessage()), filter_failure_reasons::Unknown);
+        }
+        answered.clear();
+        answered_.swap(answered);
     }
 
     void finish(const MEvent &event, bool good, FilterFailureReason reason)
@@ -328,7 +430,10 @@ class MessageFilter : public MessageFilterBase,
     ros::Duration                       tolerance_;
     std::uint32_t                       queue_size_ = 0; // as asked for; 0 is no limit
     std::uint32_t                       room_       = 0;
-    std::vector<MEvent>                 waiting_;
+    std::uint32_t                       number_     = 0; // of the last message
+    std::vector<Waiting>                waiting_;
+    std::vector<Request>                requests_;
+    std::vector<std::uint32_t>          answered_; // its memory is used again
     std::vector<Done>                   done_;
     std::vector<FailureCallback>        failures_;
     message_filters::Connection         input_;
