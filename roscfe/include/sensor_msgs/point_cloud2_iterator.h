@@ -138,8 +138,9 @@ class PointCloud2Modifier
 namespace impl
 {
 
-// T is a field's type, const for clouds that are only read; Byte is the type of the cloud's bytes.
-template <class T, class Byte, class Cloud>
+// Self is the iterator that is derived; T is a field's type, const for clouds that are only read; Byte is the type of the
+// cloud's bytes.
+template <class Self, class T, class Byte, class Cloud>
 class PointCloud2IteratorBase
 {
   public:
@@ -157,33 +158,35 @@ class PointCloud2IteratorBase
     T &operator[](std::size_t i) const { return reinterpret_cast<T *>(at_)[i]; }
     T &operator*() const { return *reinterpret_cast<T *>(at_); }
 
-    PointCloud2IteratorBase &operator++()
+    Self &operator++()
     {
         at_ += step_;
-        return *this;
+        return own();
     }
-    PointCloud2IteratorBase operator+(int count) const
+    Self operator+(int count) const
     {
-        PointCloud2IteratorBase moved = *this;
+        Self moved = own();
         moved += count;
         return moved;
     }
-    PointCloud2IteratorBase &operator+=(int count)
+    Self &operator+=(int count)
     {
         at_ += static_cast<std::ptrdiff_t>(step_) * count;
-        return *this;
+        return own();
     }
-    bool operator!=(const PointCloud2IteratorBase &other) const { return at_ != other.at_; }
-    bool operator==(const PointCloud2IteratorBase &other) const { return at_ == other.at_; }
+    bool operator!=(const Self &other) const { return at_ != other.at_; }
 
-    PointCloud2IteratorBase end() const
+    Self end() const
     {
-        PointCloud2IteratorBase last = *this;
-        last.at_                     = end_;
+        Self last = own();
+        last.at_  = end_;
         return last;
     }
 
   private:
+    Self &      own() { return static_cast<Self &>(*this); }
+    const Self &own() const { return static_cast<const Self &>(*this); }
+
     // Where a field is in a point. The parts of "rgb" and "rgba" have names of their own.
     int offset_of(const Cloud &cloud, const std::string &name) const
     {
@@ -216,18 +219,20 @@ class PointCloud2IteratorBase
 } // namespace impl
 
 template <class T>
-class PointCloud2Iterator : public impl::PointCloud2IteratorBase<T, unsigned char, PointCloud2>
+class PointCloud2Iterator
+    : public impl::PointCloud2IteratorBase<PointCloud2Iterator<T>, T, unsigned char, PointCloud2>
 {
   public:
-    typedef impl::PointCloud2IteratorBase<T, unsigned char, PointCloud2> Base;
+    typedef impl::PointCloud2IteratorBase<PointCloud2Iterator<T>, T, unsigned char, PointCloud2> Base;
     PointCloud2Iterator(PointCloud2 &cloud, const std::string &name) : Base(cloud, name) {}
 };
 
 template <class T>
-class PointCloud2ConstIterator : public impl::PointCloud2IteratorBase<const T, const unsigned char, const PointCloud2>
+class PointCloud2ConstIterator
+    : public impl::PointCloud2IteratorBase<PointCloud2ConstIterator<T>, const T, const unsigned char, const PointCloud2>
 {
   public:
-    typedef impl::PointCloud2IteratorBase<const T, const unsigned char, const PointCloud2> Base;
+    typedef impl::PointCloud2IteratorBase<PointCloud2ConstIterator<T>, const T, const unsigned char, const PointCloud2> Base;
     PointCloud2ConstIterator(const PointCloud2 &cloud, const std::string &name) : Base(cloud, name) {}
 };
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <stdexcept>
 #include <string>
 
 #include "ros/console.h"
@@ -73,9 +74,17 @@ static inline bool convertPointCloudToPointCloud2(const PointCloud &input, Point
     return true;
 }
 
-// The fields beside x, y and z become channels. False, with an error logged, when one of those three is not there.
+// The fields beside x, y and z become channels. False, with an error logged, when one of those three is not there. A cloud
+// of fewer than three fields ends the node, as in ROS.
 static inline bool convertPointCloud2ToPointCloud(const PointCloud2 &input, PointCloud &output)
 {
+    output.header = input.header;
+    output.points.resize(static_cast<std::size_t>(input.width) * input.height);
+    if (input.fields.size() < 3)
+    {
+        ROSCFE_THROW(std::length_error("a cloud of fewer than three fields has no x, y and z"));
+    }
+    output.channels.resize(input.fields.size() - 3);
     const int axes[] = {getPointCloud2FieldIndex(input, "x"), getPointCloud2FieldIndex(input, "y"),
                         getPointCloud2FieldIndex(input, "z")};
     if (axes[0] < 0 || axes[1] < 0 || axes[2] < 0)
@@ -97,9 +106,6 @@ static inline bool convertPointCloud2ToPointCloud(const PointCloud2 &input, Poin
         return readPointCloud2BufferValue<float>(&input.data[point * input.point_step + input.fields[field].offset],
                                                  input.fields[field].datatype);
     };
-    output.header = input.header;
-    output.points.resize(static_cast<std::size_t>(input.width) * input.height);
-    output.channels.resize(input.fields.size() - 3);
     for (std::size_t i = 0; i < output.points.size(); ++i)
     {
         output.points[i].x = value(i, static_cast<std::size_t>(axes[0]));
