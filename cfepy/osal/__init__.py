@@ -19,7 +19,7 @@ from cfepy.osal.clock import (
     time_from_total_nanoseconds,
 )
 from cfepy.osal.core import NOBODY, Ledger, Nobody, ObjectSizes, OsObject
-from cfepy.osal.filesystem import FileSystem
+from cfepy.osal.filesystem import FilePlace, FileSystem
 from cfepy.osal.limits import (
     OS_CHECK,
     OS_EVENT_RESOURCE_ALLOCATED,
@@ -130,6 +130,7 @@ __all__ = [
     "Endpoint",
     "FdSet",
     "FileNode",
+    "FilePlace",
     "FileSystem",
     "Ledger",
     "Listener",

@@ -131,16 +131,21 @@ class FileSystem:
             )
         if not path.startswith("/") or ".." in path:
             raise OsalError(OS_FS_ERR_PATH_INVALID, f'{path!r} must begin with "/" and must not contain ".."')
+        place = self.place_of(path)
+        if place is None:
+            points = ", ".join(self.mount_points())
+            raise OsalError(OS_FS_ERR_PATH_INVALID, f"{path!r} is not below a mount point; expected one of {points}")
+        return place
+
+    def place_of(self, path: str) -> FilePlace | None:
+        """Return the volume and path behind an absolute path, with names of any length; None if it is outside."""
         for mount_point, volume in self._mounts.items():
             if path == mount_point or path.startswith(mount_point + "/"):
                 rest = path[len(mount_point) :]
                 if rest.endswith("/") or "/." in rest or "//" in rest:
                     return _plain_place(volume, rest)
                 return FilePlace(volume, rest[1:], "")
-        raise OsalError(
-            OS_FS_ERR_PATH_INVALID,
-            f"{path!r} is not below a mount point; expected one of {', '.join(self.mount_points())}",
-        )
+        return None
 
     def find(self, path: str) -> FileNode | None:
         """Return the file at a path, or None if there is none.

@@ -17,11 +17,13 @@ from cfepy.units import NS_PER_S
 
 I2C = "/dev/i2c-"
 """The beginning of the names of I2C buses; the name of a device there ends with ":" and its address."""
-DEVICE_FUNCTIONS = (
-    *("open", "close", "read", "write", "ioctl", "fcntl", "tcgetattr", "tcsetattr", "tcflush", "tcdrain"),
-    *("cfsetispeed", "cfsetospeed", "cfsetspeed", "cfgetispeed", "cfgetospeed", "cfmakeraw"),
+TERMINAL_FUNCTIONS = frozenset(
+    (
+        *("cfgetispeed", "cfgetospeed", "cfmakeraw", "cfsetispeed", "cfsetospeed", "cfsetspeed", "tcdrain", "tcflush"),
+        *("tcgetattr", "tcsetattr"),
+    )
 )
-"""The functions of POSIX for device files, which a mission with devices has."""
+"""The functions of POSIX that only serve device files."""
 _HERE = "127.0.0.1"
 
 
@@ -129,6 +131,11 @@ class DevicePorts:
             if found is not None:
                 return found
         return None
+
+    def has_file(self, name: str) -> bool:
+        """Return True if a device file exists."""
+        number = name.removeprefix(I2C)
+        return name in self._devices or (name.startswith(I2C) and number.isdecimal() and self.has_bus(int(number)))
 
     def has_bus(self, bus: int) -> bool:
         """Return True if an I2C bus has devices."""

@@ -30,20 +30,14 @@ IN_IT = "__cxa_throw"
 UNUSED = frozenset(
     (
         *("__strftime_l", "__wcscoll_l", "__wcsftime_l", "__wcsxfrm_l", "bind_textdomain_codeset"),
-        *("bindtextdomain", "dgettext", "fileno", "fopen64", "fseeko64", "fstat", "fstat64", "ftello64"),
-        *("iconv", "iconv_close", "iconv_open", "ioctl", "lseek64", "mbsnrtowcs", "poll", "putwc", "read"),
-        *("ungetwc", "wcsnrtombs", "write", "writev"),
+        *("bindtextdomain", "dgettext", "iconv", "iconv_close", "iconv_open", "mbsnrtowcs", "poll", "putwc", "ungetwc"),
+        "wcsnrtombs",
     )
 )
-"""libc functions of libstdc++ for files, other locales and wide characters, which cfepy does not provide."""
+"""libc functions of libstdc++ for other locales and wide characters, which cfepy does not provide."""
 GUARDS = ("__cxa_guard_acquire", "__cxa_guard_release", "__cxa_guard_abort")
 """Functions that libstdc++ also has; the API's versions know waits of tasks and their order."""
-STAND_INS = frozenset(
-    (
-        *("access", "arc4random", "close", "fclose", "fcntl", "fdopen", "fopen", "fread", "fseek", "getentropy"),
-        *("getrandom", "mkdir", "mmap", "open"),
-    )
-)
+STAND_INS = frozenset(("arc4random", "getentropy", "getrandom", "mmap"))
 """Refused functions that there is something of, for libgcov and libstdc++."""
 C_LIBRARIES = ("libc.so.6", "libm.so.6")
 """The libraries of NASA's core-cpu1 whose functions all code sees."""

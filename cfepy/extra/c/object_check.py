@@ -9,7 +9,7 @@ from pathlib import Path
 from cfepy.es import CFE_LIB, NODE_SYMBOL, StartupEntry
 from cfepy.extra.c.abi import AbiProfile, abi_profile
 from cfepy.extra.c.api import function_names
-from cfepy.extra.c.devices import DEVICE_FUNCTIONS
+from cfepy.extra.c.devices import TERMINAL_FUNCTIONS
 from cfepy.extra.c.elf import ElfError, SharedObject, read_shared_object
 from cfepy.extra.c.ground_check import ground_differences
 from cfepy.extra.c.linking import refused_names, undefined_on_linux, wanted_names
@@ -43,8 +43,8 @@ def check_compiled(
     """
     try:
         source = read_shared_object(read_limited(file, OBJECT_BYTES), file.name)
-        given = set(DEVICE_FUNCTIONS) if _has_devices(script) else set()
-        wanted = (set(wanted_names(source)) - function_names() | refused_names(source)) - given
+        wanted = set(wanted_names(source)) - function_names() | refused_names(source)
+        terminal = TERMINAL_FUNCTIONS.intersection(wanted_names(source))
     except ElfError as error:
         yield MissionProblem(file, 0, str(error))
         return
@@ -53,6 +53,10 @@ def check_compiled(
         hint = did_you_mean(entry.symbol, functions, "correct the name, or export the function (it may be static)")
         yield MissionProblem(script, entry.line, f"{file.name} has no function {entry.symbol}; {hint}")
     yield from _check_needs(script, entries, entry, source, wanted)
+    if terminal and not _has_devices(script):
+        listed = _listed(set(terminal), first_calls(source, set(terminal)))
+        text = f"{entry.name} needs {listed} for a device, but the mission connects none"
+        yield MissionProblem(script, entry.line, f"{text}; add `devices:` to the mission file", is_warning=True)
     yield from ground_differences(entry.path, script.parent)
 
 

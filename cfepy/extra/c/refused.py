@@ -11,17 +11,9 @@ _COMPLEX = (
 )
 
 BY_REASON: dict[str, tuple[str, ...]] = {
-    "files of the host are not available; use OS_OpenCreate, OS_read and OS_write": (
-        *("fclose", "fdopen", "fgetpos", "fmemopen", "fopen", "fopen64", "fread", "freopen", "freopen64", "fseek"),
-        *("fseeko", "fsetpos", "ftell", "ftello", "open_memstream", "remove", "rename", "rewind", "tmpfile", "tmpnam"),
-        *("access", "chdir", "closedir", "creat", "dup", "dup2", "fileno", "fstat", "fsync"),
-        *("ftruncate", "getcwd", "link", "lseek", "lstat", "mkdir", "mkstemp", "mmap", "munmap"),
-        *("open64", "openat", "opendir", "pipe", "readdir", "readlink", "realpath", "rmdir", "stat"),
-        *("statvfs", "symlink", "truncate", "unlink"),
-    ),
-    "files of the host are not available; use OS_OpenCreate, or connect a device (`devices:` in the mission file)": (
-        *("cfgetispeed", "cfgetospeed", "cfmakeraw", "cfsetispeed", "cfsetospeed", "cfsetspeed", "close", "fcntl"),
-        *("ioctl", "open", "read", "tcdrain", "tcflush", "tcgetattr", "tcsetattr", "write"),
+    "only files and folders of the mission are available; use fopen, open or OS_OpenCreate": (
+        *("chdir", "fchdir", "fmemopen", "freopen", "freopen64", "link", "mkfifo", "mkstemp", "mmap", "munmap"),
+        *("open_memstream", "pipe", "readlink", "realpath", "shm_open", "statvfs", "symlink", "tmpfile", "tmpnam"),
     ),
     "CPU time and the clock of the host are not available; use clock_gettime or OS_SetLocalTime": (
         *("clock", "clock_settime", "settimeofday", "times", "timespec_getres"),

@@ -9,7 +9,7 @@ from cfepy.app import Cfe
 from cfepy.extra.c.arena import PAGE, Arena
 from cfepy.extra.c.calls import CallTable, Declarations
 from cfepy.extra.c.crashes import CFault, CJump, explained
-from cfepy.extra.c.devices import DEVICE_FUNCTIONS, DevicePorts
+from cfepy.extra.c.devices import DevicePorts
 from cfepy.extra.c.elf import SharedObject
 from cfepy.extra.c.engine import engine
 from cfepy.extra.c.guard import POISON, Guard, GuardedTables
@@ -18,6 +18,8 @@ from cfepy.extra.c.lifetimes import Ends, Openings, ThreadLocals
 from cfepy.extra.c.linking import LIBRARIES, Exports, LinkedWith, host_library, refused_names, wanted_names
 from cfepy.extra.c.memory import CMemory, Constants
 from cfepy.extra.c.packets import PacketImages
+from cfepy.extra.c.posix.descriptors import Descriptor, DescriptorTable
+from cfepy.extra.c.posix.files import PosixFiles
 from cfepy.extra.c.races import CompiledRaceWatch
 from cfepy.extra.c.source_places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.extra.c.stacks import LEAST, Stacks
@@ -71,6 +73,8 @@ class CRuntime:
         openings: which images are open, and which stay.
         at_app_end: called when an application has ended.
         at_close: called at the end of the processor, while its memory still exists.
+        descriptors, posix_files, file_streams: the descriptors, files and FILEs of POSIX.
+        openers: called with path, flags and permissions before a file is opened; they return a device or None.
         on_unload: functions that get each image before it is unloaded.
     """
 
@@ -92,6 +96,7 @@ class CRuntime:
         devices: DevicePorts | None = None,
     ) -> None:
         from cfepy.extra.c.api import declare
+        from cfepy.extra.c.api.stdio import FileStreams
         from cfepy.extra.c.api.streams import Streams
 
         made = engine()
@@ -138,6 +143,11 @@ class CRuntime:
         self.tells_code = cfe.psp.all_memory is None
         self.declared = Declarations(self._libc)
         self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
+        self.descriptors = DescriptorTable()
+        self.openers: list[Callable[[str, int, int], Descriptor | None]] = []
+        self.posix_files = PosixFiles(cfe.os.files, lambda: kernel.now, self._tell_outside)
+        self.file_streams = FileStreams(self)
+        self._outside: set[str] = set()
         self.ends = Ends(self.run, self.image_at)
         self.libraries: dict[str, Image] = {}
         self.modules: dict[int, Image] = {}
@@ -315,7 +325,7 @@ class CRuntime:
             ElfError: a library of the host does not exist.
         """
         libraries = {name for image in self.shared() for name in (*image.thread_locals, *image.symbols)}
-        refused = refused_names(source) - (set(DEVICE_FUNCTIONS) if self.devices else set())
+        refused = refused_names(source)
         return [
             name
             for name in wanted_names(source)
@@ -429,6 +439,17 @@ class CRuntime:
         image = self.image_at(address)
         return (image.variable_at(address) if image is not None else "") or f"memory at 0x{address:x}"
 
+    def _tell_outside(self, function: str, path: str) -> None:
+        """Report a path that leads out of the mission's files, once."""
+        if path in self._outside:
+            return
+        self._outside.add(path)
+        where = f"in the file systems of the mission ({', '.join(self.cfe.os.files.mount_points())})"
+        if path.startswith("/dev/"):
+            where = "a device of the mission (`devices:` in the mission file)"
+        app = getattr(self.kernel.current.owner, "name", "")
+        self.console.write(f"{app}: {function}() of {path}: it is not {where}; errno is ENOENT")
+
     def place_of(self, address: int) -> str:
         """Return the place of an address of code, in words."""
         place = self._place(address)
@@ -445,6 +466,9 @@ class CRuntime:
         for image in self._images[::-1]:
             if image.source.has_coverage:
                 self._finish(image)
+        if self.kernel.abortion is None:  # exit() of NASA's process writes the buffers, abort() does not
+            self.file_streams.flush_all()
+        self.descriptors.close_all()
         if self.guard is not None:
             self.guard.check_all()
         self.cfe.tbl.leave_memory(lambda data: True)  # reports may read tables later

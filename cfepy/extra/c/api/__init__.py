@@ -33,6 +33,7 @@ from cfepy.extra.c.api import (
     osal_system,
     osal_tasks,
     osal_time,
+    posix_files,
     posix_time,
     psp,
     psp_iodriver,
@@ -41,6 +42,7 @@ from cfepy.extra.c.api import (
     resource_ids,
     sb,
     sorting,
+    stdio,
     streams,
     tbl,
     text,
@@ -57,9 +59,10 @@ _OSAL = (
     *(osal_sockets, osal_select, osal_modules, osal_objects, osal_system),
 )
 _PSP = (psp, psp_memory, psp_iodriver)
-_TOOLS = (streams, error_texts, sorting, cpp, pthread, gcov, unsent, posix_time, device_files, hwlib)
+_TOOLS = (streams, error_texts, sorting, cpp, pthread, gcov, unsent, posix_time, hwlib)
+_POSIX = (device_files, posix_files, stdio)
 _CORE = (text, es, memory_pools, cds, evs, sb, tbl, time, fs, config, resource_ids)
-_MODULES = (*_CORE, *_TOOLS, *_OSAL, *_PSP)
+_MODULES = (*_CORE, *_TOOLS, *_POSIX, *_OSAL, *_PSP)
 
 
 def declare(api: Declarations, c: CRuntime) -> None:

@@ -1,35 +1,29 @@
-"""open, read, write, ioctl, tcsetattr and related functions, for the device files that `devices:` connects.
+"""Device files that `devices:` connects, behind POSIX's descriptors, and tcsetattr and related functions.
 
-The rest of POSIX's files is absent. A read waits as on Linux: for the first byte, for VTIME, or not at all.
+A read waits as on Linux: for the first byte, for VTIME, or not at all.
 """
 
 from __future__ import annotations
 
 import errno
-import os
 from struct import Struct
 from typing import TYPE_CHECKING
 
-from cfepy.extra.c.crashes import CFault
-from cfepy.extra.c.devices import DEVICE_FUNCTIONS, I2C, Device, DevicePorts
+from cfepy.extra.c.api.posix_calls import FAILED, PosixCalls
+from cfepy.extra.c.devices import I2C, Device, DevicePorts
+from cfepy.extra.c.posix.descriptors import O_RDWR, Descriptor, failure
 from cfepy.units import NS_PER_MS
 
 if TYPE_CHECKING:
-    from cfepy.extra.c.calls import Declarations, Declared
+    from cfepy.extra.c.calls import Declarations
     from cfepy.extra.c.memory import CMemory
     from cfepy.extra.c.runtime import CRuntime
 
-FAILED = -1
-FIRST = 900
-"""The first descriptor, so that they are no files of libgcov, and that they fit an fd_set."""
-F_GETFL, F_SETFL = 3, 4
 FIONREAD, I2C_SLAVE, I2C_SLAVE_FORCE, I2C_RDWR = 0x541B, 0x0703, 0x0706, 0x0707
 SPI_MAGIC, SPI_MESSAGE, SPI_SIZE = 0x6B, 0, 32
 I2C_READ = 1
 I2C_MESSAGE, I2C_DATA = Struct("<HHH2xQ"), Struct("<QI")
 SPI_TRANSFER = Struct("<QQI12x")
-STANDARD = 3
-"""The number of standard streams."""
 TERMIOS = 60
 VTIME, VMIN = 17 + 5, 17 + 6
 """Offsets of c_cc[VTIME] and c_cc[VMIN] in struct termios."""
@@ -40,24 +34,89 @@ TENTH_NS = 100 * NS_PER_MS
 _LOOK_NS = 10 * NS_PER_MS
 
 
-class OpenDevice:
+class OpenDevice(Descriptor):
     """An open device file.
 
     Args:
-        name: its path.
+        c: the C side of the processor.
         device: the device; None for an I2C bus, whose devices have addresses.
-        bus: number of the I2C bus.
+        bus: number of the I2C bus; -1 for none.
         flags: the flags of open.
     """
 
-    def __init__(self, name: str, device: Device | None, bus: int, flags: int) -> None:
-        self.name = name
+    def __init__(self, c: CRuntime, device: Device | None, bus: int, flags: int = O_RDWR) -> None:
+        super().__init__(flags)
+        self._c = c
+        self._ports: DevicePorts = c.devices
         self.device = device
-        self.bus = bus
-        self.flags = flags
+        self._bus = bus
         self.options = bytearray(TERMIOS)
         self.options[VMIN] = 1
-        self.settings: dict[int, bytes] = {}
+        self._settings: dict[int, bytes] = {}
+
+    @property
+    def is_terminal(self) -> bool:  # type: ignore[override]
+        """Whether it is a serial port, or may be one."""
+        return self._bus == FAILED
+
+    def read(self, count: int) -> bytes:
+        device = self._reached()
+        if self._bus != FAILED:
+            return i2c_bytes(device, count)
+        if self.is_nonblocking:
+            data = device.read(count)[:count]
+            if not data:
+                raise failure(errno.EAGAIN)
+            return data
+        wait_ns = None if self.options[VMIN] else self.options[VTIME] * TENTH_NS
+        return awaited(self._c, device, count, wait_ns)
+
+    def write(self, data: bytes) -> int:
+        self._reached().write(data)
+        return len(data)
+
+    def _reached(self) -> Device:
+        if self.device is None:
+            raise failure(errno.EREMOTEIO)
+        return self.device
+
+    @property
+    def readable(self) -> bool:
+        return self.device is None or self._bus != FAILED or self.device.waiting() > 0
+
+    def control(self, request: int, argument: int) -> int:
+        memory = self._c.memory
+        if self._bus != FAILED and request in (I2C_SLAVE, I2C_SLAVE_FORCE):
+            self.device = self._ports.i2c(self._bus, argument)
+            return 0
+        if self._bus != FAILED and request == I2C_RDWR:
+            count = i2c_messages(memory, self._ports, self._bus, argument)
+            if count is None:
+                raise failure(errno.EREMOTEIO)
+            return count
+        if request == FIONREAD and self.device is not None:
+            memory.put_u32(argument, self.device.waiting())
+            return 0
+        if request >> 8 & 0xFF == SPI_MAGIC and self.device is not None:
+            return self._spi(self.device, request, argument)
+        raise failure(errno.ENOTTY)
+
+    def _spi(self, device: Device, request: int, argument: int) -> int:
+        memory, size = self._c.memory, request >> 16 & 0x3FFF
+        if request & 0xFF != SPI_MESSAGE:  # mode, bits and speed have one place for writing and reading
+            if request >> 30 == 1:
+                self._settings[request & 0xFF] = bytes(memory.peek(argument, size))
+            else:
+                memory.poke(argument, self._settings.get(request & 0xFF, bytes(size)))
+            return 0
+        total = 0
+        for at in range(argument, argument + size, SPI_SIZE):
+            sent, received, count = SPI_TRANSFER.unpack(memory.peek(at, SPI_SIZE))
+            answer = device.transfer(bytes(memory.peek(sent, count)) if sent else bytes(count))
+            if received:
+                memory.poke(received, answer[:count].ljust(count, b"\0"))
+            total += count
+        return total
 
 
 def i2c_bytes(device: Device, count: int) -> bytes:
@@ -109,20 +168,12 @@ def awaited(c: CRuntime, device: Device, count: int, wait_ns: int | None) -> byt
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    if not isinstance(c.devices, DevicePorts) or not c.devices:
-        return
-    files = DeviceFiles(c, c.devices, {name: api.functions[name] for name in DEVICE_FUNCTIONS if name in api.functions})
-    api.add("open", "SiI", files.open, FAILED)
-    api.add("close", "i", files.close)
-    api.add("read", "$iPQ", files.read, FAILED)
-    api.add("write", "$iPQ", files.write, FAILED)
-    api.add("ioctl", "$iQp", files.control)
-    api.add("fcntl", "iip", files.flags)
-    api.add("tcgetattr", "iP", files.get_options, FAILED)
-    api.add("tcsetattr", "iiP", files.set_options, FAILED)
-    api.add("tcflush", "ii", files.flush)
-    api.add("tcdrain", "i", files.drain)
-    memory = c.memory
+    calls, files, memory = PosixCalls(api, c), DeviceFiles(c), c.memory
+    c.openers.append(files.opened)
+    calls.add("tcgetattr", "iP", files.get_options)
+    calls.add("tcsetattr", "iiP", files.set_options)
+    calls.add("tcflush", "ii", files.flush)
+    calls.add("tcdrain", "i", files.drain)
     for name, offsets in (("cfsetispeed", (0,)), ("cfsetospeed", (4,)), ("cfsetspeed", (0, 4))):
 
         def set_speed(at: int, speed: int, offsets: tuple[int, ...] = offsets) -> int:
@@ -130,164 +181,53 @@ def declare(api: Declarations, c: CRuntime) -> None:
                 memory.put_u32(at + SPEEDS + offset, speed)
             return 0
 
-        api.add(name, "PI", set_speed, FAILED)
+        calls.add(name, "PI", set_speed)
     api.add("cfgetispeed", "P", lambda at: memory.u32(at + SPEEDS), 0)
     api.add("cfgetospeed", "P", lambda at: memory.u32(at + SPEEDS + 4), 0)
-    api.add("cfmakeraw", "P", lambda at: memory.poke(at, RAW), FAILED)
+    calls.add("cfmakeraw", "P", lambda at: memory.poke(at, RAW))
 
 
 class DeviceFiles:
-    """The open device files of a processor.
+    """The device files of a processor.
 
     Args:
         c: its C side.
-        ports: its devices.
-        others: functions of the same names for other files.
     """
 
-    def __init__(self, c: CRuntime, ports: DevicePorts, others: dict[str, Declared]) -> None:
+    def __init__(self, c: CRuntime) -> None:
         self._c = c
-        self._ports = ports
-        self._others = others
-        self._open: dict[int, OpenDevice] = {}
+        self._ports: DevicePorts = c.devices
 
-    def open(self, name: str, flags: int, mode: int) -> int:
-        device = self._ports.find(name)
-        number = name.removeprefix(I2C)
-        bus = int(number) if name.startswith(I2C) and number.isdecimal() else FAILED
+    def opened(self, path: str, flags: int, mode: int) -> Descriptor | None:
+        """Open a device; returns None if the mission connects none with this name."""
+        device = self._ports.find(path)
+        number = path.removeprefix(I2C)
+        bus = int(number) if path.startswith(I2C) and number.isdecimal() else FAILED
         if device is None and not self._ports.has_bus(bus):
-            if name.startswith("/dev/"):
-                return self._fail(errno.ENOENT)
-            return self._other("open", name, flags, mode)
-        descriptor = next(number for number in range(FIRST, 1 << 20) if number not in self._open)
-        self._open[descriptor] = OpenDevice(name, device, bus, flags)
-        return descriptor
-
-    def close(self, descriptor: int) -> int:
-        if descriptor not in self._open:
-            is_other = 0 <= descriptor < FIRST
-            return self._other("close", descriptor) if is_other else self._fail(errno.EBADF)
-        del self._open[descriptor]
-        return 0
-
-    def read(self, descriptor: int, buffer: int, count: int) -> int:
-        file = self._file("read", descriptor)
-        if file is None:
-            return FAILED
-        if file.device is None:
-            return self._fail(errno.EREMOTEIO)
-        data = self._received(file, file.device, count)
-        if data is None:
-            return self._fail(errno.EAGAIN)
-        self._c.memory.poke(buffer, data)
-        return len(data)
-
-    def write(self, descriptor: int, buffer: int, count: int) -> int:
-        file = self._file("write", descriptor)
-        if file is None:
-            return FAILED
-        if file.device is None:
-            return self._fail(errno.EREMOTEIO)
-        file.device.write(bytes(self._c.memory.peek(buffer, count)))
-        return count
-
-    def _received(self, file: OpenDevice, device: Device, count: int) -> bytes | None:
-        """Return the bytes of a read, which may wait; None if there are none and it must not wait."""
-        if file.bus != FAILED:
-            return i2c_bytes(device, count)
-        if file.flags & os.O_NONBLOCK:
-            return device.read(count)[:count] or None
-        wait_ns = None if file.options[VMIN] else file.options[VTIME] * TENTH_NS
-        return awaited(self._c, device, count, wait_ns)
-
-    def control(self, descriptor: int, request: int, argument: int) -> int:
-        file, request = self._file("ioctl", descriptor), request & 0xFFFFFFFF
-        if file is None:
-            return FAILED
-        if file.bus != FAILED and request in (I2C_SLAVE, I2C_SLAVE_FORCE):
-            file.device = self._ports.i2c(file.bus, argument)
-            return 0
-        if file.bus != FAILED and request == I2C_RDWR:
-            count = i2c_messages(self._c.memory, self._ports, file.bus, argument)
-            return self._fail(errno.EREMOTEIO) if count is None else count
-        if request == FIONREAD and file.device is not None:
-            self._c.memory.put_u32(argument, file.device.waiting())
-            return 0
-        if request >> 8 & 0xFF == SPI_MAGIC and file.device is not None:
-            return self._spi(file, file.device, request, argument)
-        return self._fail(errno.ENOTTY)
-
-    def _spi(self, file: OpenDevice, device: Device, request: int, argument: int) -> int:
-        memory, size = self._c.memory, request >> 16 & 0x3FFF
-        if request & 0xFF != SPI_MESSAGE:  # mode, bits and speed have one place for writing and reading
-            if request >> 30 == 1:
-                file.settings[request & 0xFF] = bytes(memory.peek(argument, size))
-            else:
-                memory.poke(argument, file.settings.get(request & 0xFF, bytes(size)))
-            return 0
-        total = 0
-        for at in range(argument, argument + size, SPI_SIZE):
-            sent, received, count = SPI_TRANSFER.unpack(memory.peek(at, SPI_SIZE))
-            answer = device.transfer(bytes(memory.peek(sent, count)) if sent else bytes(count))
-            if received:
-                memory.poke(received, answer[:count].ljust(count, b"\0"))
-            total += count
-        return total
-
-    def flags(self, descriptor: int, command: int, argument: int) -> int:
-        file = self._open.get(descriptor)
-        if file is None:
-            is_other = 0 <= descriptor < FIRST
-            return self._other("fcntl", descriptor, command, argument) if is_other else self._fail(errno.EBADF)
-        if command == F_SETFL:
-            file.flags = argument & 0xFFFFFFFF
-        elif command != F_GETFL:
-            return self._fail(errno.EINVAL)
-        return file.flags if command == F_GETFL else 0
+            return None
+        return OpenDevice(self._c, device, bus, flags)
 
     def get_options(self, descriptor: int, at: int) -> int:
-        file = self._file("tcgetattr", descriptor)
-        if file is None:
-            return FAILED
-        self._c.memory.poke(at, bytes(file.options))
+        self._c.memory.poke(at, bytes(self._device(descriptor).options))
         return 0
 
     def set_options(self, descriptor: int, when: int, at: int) -> int:
-        file = self._file("tcsetattr", descriptor)
-        if file is None:
-            return FAILED
-        file.options[:] = self._c.memory.peek(at, TERMIOS)
+        self._device(descriptor).options[:] = self._c.memory.peek(at, TERMIOS)
         return 0
 
     def flush(self, descriptor: int, queue: int) -> int:
         """Discard received bytes."""
-        file = self._file("tcflush", descriptor)
-        if file is None:
-            return FAILED
-        device = file.device
+        device = self._device(descriptor).device
         while device is not None and queue != 1 and device.waiting():
             device.read(device.waiting())
         return 0
 
     def drain(self, descriptor: int) -> int:
-        return FAILED if self._file("tcdrain", descriptor) is None else 0
+        self._device(descriptor)
+        return 0
 
-    def _file(self, function: str, descriptor: int) -> OpenDevice | None:
-        """Return an open device, or set errno to EBADF as Linux does."""
-        file = self._open.get(descriptor)
-        if file is None and 0 <= descriptor < STANDARD:
-            raise CFault(f"{function}() of {descriptor} is not available; use printf, or OSAL")
-        if file is None:
-            self._fail(errno.EBADF)
-        return file
-
-    def _other(self, function: str, *arguments: object) -> int:
-        other = self._others.get(function)
-        if other is None or other.function is None:
-            raise CFault(f"{function}() is only available for devices of the mission; use OSAL")
-        answer = other.function(*arguments)
-        return answer if isinstance(answer, int) else 0
-
-    def _fail(self, number: int) -> int:
-        self._c.memory.put_u32(self._c.thread_locals.errno(), number)
-        return FAILED
+    def _device(self, descriptor: int) -> OpenDevice:
+        found = self._c.descriptors.of(descriptor)
+        if not isinstance(found, OpenDevice):
+            raise failure(errno.ENOTTY)
+        return found

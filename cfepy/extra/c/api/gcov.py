@@ -1,17 +1,17 @@
 """Host files for libgcov, which writes the counts of an object that was compiled with --coverage.
 
-An application reaches the files of the run through OSAL. These functions are only for libgcov, which is linked into the
-object, and only for its files: their names end in .gcda, and a folder is made only below GCOV_PREFIX.
+An application reaches the files of the mission. The host's files are only for libgcov, which is linked into the object,
+and only its own: their names end in .gcda, and a folder is made only below GCOV_PREFIX.
 """
 
 from __future__ import annotations
 
 import errno
 import os
-from collections.abc import Callable
-from typing import IO, TYPE_CHECKING
+from typing import TYPE_CHECKING
 
 from cfepy.extra.c.crashes import CFault
+from cfepy.extra.c.posix.descriptors import O_ACCMODE, Descriptor, failure
 
 if TYPE_CHECKING:
     from cfepy.extra.c.calls import Declarations
@@ -22,106 +22,54 @@ PREFIX = "GCOV_PREFIX"
 SETTINGS = (PREFIX, "GCOV_PREFIX_STRIP")
 FLOCK = 32
 """Bytes of struct flock."""
-STREAM = 0x1000
-"""The first handle of a libgcov FILE."""
-FAILED = -1
+
+
+class HostFile(Descriptor):
+    """A file of libgcov on the host.
+
+    Args:
+        c: the C side of the processor.
+        path: its path.
+        flags: the flags of open.
+        mode: the permissions of a new file.
+
+    Raises:
+        OSError: it cannot be opened.
+    """
+
+    is_regular = True
+
+    def __init__(self, c: CRuntime, path: str, flags: int, mode: int) -> None:
+        super().__init__(flags & O_ACCMODE)
+        self._c = c
+        self._number = os.open(path, flags, mode)
+
+    def read(self, count: int) -> bytes:
+        return os.read(self._number, count)
+
+    def write(self, data: bytes) -> int:
+        return os.write(self._number, data)
+
+    def seek(self, offset: int, whence: int) -> int:
+        return os.lseek(self._number, offset, whence)
+
+    def lock(self, command: int, argument: int) -> int:
+        import fcntl  # the engine is for Linux, but tools on other systems read the declarations
+
+        if command not in (fcntl.F_SETLK, fcntl.F_SETLKW):
+            raise failure(errno.EINVAL)
+        fcntl.fcntl(self._number, command, bytes(self._c.memory.peek(argument, FLOCK)))
+        return 0
+
+    def close(self) -> None:
+        os.close(self._number)
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    _declare_files(api, c)
-    _declare_streams(api, c)
-    _declare_rest(api, c)
+    """Add functions for the environment, and the files."""
 
-
-def _declare_files(api: Declarations, c: CRuntime) -> None:
-    """Add functions for files by name and number."""
-    import fcntl  # the engine is for Linux, but tools on other systems read the declarations
-
-    memory = c.memory
-    opened: set[int] = set()
-
-    def failing(call: Callable[[], object]) -> int:
-        """Return the number that a call of the host gives, 0 for another answer, or -1 with errno."""
-        try:
-            answer = call()
-            return answer if isinstance(answer, int) else 0
-        except OSError as error:
-            memory.put_u32(c.thread_locals.errno(), error.errno or errno.EIO)
-            return FAILED
-
-    def open_file(name: str, flags: int, mode: int) -> int:
-        if not name.endswith(SUFFIX):
-            raise CFault(f"open() of {name} is not available; use OS_OpenCreate")
-        number = failing(lambda: os.open(name, flags, mode))
-        if number != FAILED:
-            opened.add(number)
-        return number
-
-    def control(number: int, command: int, lock: int) -> int:
-        if number not in opened or command not in (fcntl.F_SETLK, fcntl.F_SETLKW):
-            raise CFault("fcntl() is only available for files of libgcov")
-        return failing(lambda: fcntl.fcntl(number, command, memory.peek(lock, FLOCK)))
-
-    def close(number: int) -> int:
-        if number not in opened:
-            raise CFault("close() is only available for files of libgcov")
-        opened.discard(number)
-        return failing(lambda: os.close(number))
-
-    def access(name: str, mode: int) -> int:
-        if not any(image.source.has_coverage for image in c.images()):
-            raise CFault(f"access() of {name} is not available; use OS_stat")
-        return 0 if os.access(name, mode) else FAILED
-
-    def make_folder(name: str, mode: int) -> int:
-        if not name.startswith(os.environ.get(PREFIX) or "\0"):
-            raise CFault(f"mkdir() of {name} is not available; use OS_mkdir")
-        return failing(lambda: os.mkdir(name, mode))
-
-    api.add("open", "SiI", open_file, FAILED)
-    api.add("fcntl", "iip", control)
-    api.add("close", "i", close)
-    api.add("access", "Si", access, FAILED)
-    api.add("mkdir", "SI", make_folder, FAILED)
-
-
-def _declare_streams(api: Declarations, c: CRuntime) -> None:
-    """Add functions for files as streams."""
-    memory = c.memory
-    streams: dict[int, IO[bytes]] = {}
-
-    def stream_of(number: int, mode: str) -> int:
-        handle = STREAM + number
-        streams[handle] = os.fdopen(number, mode.replace("b", "") + "b")
-        c.streams.writers[handle] = streams[handle].write
-        return handle
-
-    def read(to: int, size: int, count: int, stream: int) -> int:
-        data = _of(streams, stream).read(size * count)
-        memory.poke(to, data)
-        return len(data) // size if size else 0
-
-    def seek(stream: int, offset: int, whence: int) -> int:
-        _of(streams, stream).seek(offset, whence)
-        return 0
-
-    def close(stream: int) -> int:
-        _of(streams, stream).close()
-        del streams[stream], c.streams.writers[stream]
-        return 0
-
-    def open_stream(name: str, mode: str) -> int:
-        raise CFault(f"fopen() of {name} is not available; use OS_OpenCreate")
-
-    api.add("fdopen", "iS", stream_of)
-    api.add("fread", "pQQp", read)
-    api.add("fseek", "pqi", seek)
-    api.add("fclose", "p", close)
-    api.add("fopen", "SS", open_stream)
-
-
-def _declare_rest(api: Declarations, c: CRuntime) -> None:
-    """Add functions for the environment."""
+    def opened(path: str, flags: int, mode: int) -> Descriptor | None:
+        return HostFile(c, path, flags, mode) if path.endswith(SUFFIX) and _has_coverage(c) else None
 
     def get_environment(name: str) -> int:
         value = os.environ.get(name) if name in SETTINGS else None
@@ -130,13 +78,28 @@ def _declare_rest(api: Declarations, c: CRuntime) -> None:
     def map_memory() -> None:
         raise CFault("mmap() is not available; use malloc or a memory pool of cFE")
 
+    c.openers.append(opened)
     api.add("getenv", "S", get_environment)
     api.add("getpid", "", lambda: 1)
     api.add("mmap", "", map_memory)
 
 
-def _of(streams: dict[int, IO[bytes]], stream: int) -> IO[bytes]:
-    found = streams.get(stream)
-    if found is None:
-        raise CFault(f"0x{stream:x} is not an open FILE")
-    return found
+def _has_coverage(c: CRuntime) -> bool:
+    return any(image.source.has_coverage for image in c.images())
+
+
+def has_host_folder(c: CRuntime, path: str) -> bool:
+    """Return whether libgcov finds a folder of the host."""
+    return _has_coverage(c) and os.path.isdir(path)
+
+
+def make_host_folder(path: str, mode: int) -> bool:
+    """Make a folder below GCOV_PREFIX. Returns False for other paths, which are the mission's.
+
+    Raises:
+        OSError: it cannot be made.
+    """
+    if not path.startswith(os.environ.get(PREFIX) or "\0"):
+        return False
+    os.mkdir(path, mode)
+    return True

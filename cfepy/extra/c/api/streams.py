@@ -21,10 +21,6 @@ if TYPE_CHECKING:
 
 STDIN, STDOUT, STDERR = 3, 1, 2
 """Handles of a FILE, whose contents code never reads. There is nothing to read from stdin."""
-EOF = -1
-READS_ONE = ("getc", "fgetc", "getwc", "getc_unlocked")
-SCANS = ("fscanf", "__isoc99_fscanf", "__isoc23_fscanf", "vfscanf", "__isoc99_vfscanf", "__isoc23_vfscanf")
-SCANS_STDIN = ("scanf", "__isoc99_scanf", "__isoc23_scanf", "vscanf", "__isoc99_vscanf", "__isoc23_vscanf")
 LAST_WORDS = 8
 """Lines of stderr in the report of an abort."""
 
@@ -54,7 +50,7 @@ class LineWriter:
 
 
 class Streams:
-    """The open streams, by their FILE handles.
+    """The standard streams for output, by their FILE handles.
 
     Args:
         show: gets lines.
@@ -71,7 +67,7 @@ class Streams:
         self._nodes = nodes or {}
         self._ending = ""
         self._lines = {STDOUT: LineWriter(self._show), STDERR: LineWriter(self._show_error)}
-        self.writers: dict[int, Callable[[bytes], object]] = {
+        self._writers: dict[int, Callable[[bytes], object]] = {
             stream: partial(self._write_text, lines) for stream, lines in self._lines.items()
         }
 
@@ -111,7 +107,7 @@ class Streams:
         Raises:
             CFault: there is no such stream.
         """
-        writer = self.writers.get(stream)
+        writer = self._writers.get(stream)
         if writer is None:
             raise CFault(f"0x{stream:x} is not an open FILE")
         writer(data)
@@ -128,91 +124,19 @@ class Streams:
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    memory, streams = c.memory, c.streams
+    streams = c.streams
 
-    def put_text(text: str, stream: int) -> int:
-        return streams.write(stream, to_bytes(text))
-
-    def put_character(code: int, stream: int) -> int:
-        streams.write(stream, bytes([code & 0xFF]))
-        return code & 0xFF
-
-    def write(data: int, size: int, count: int, stream: int) -> int:
-        streams.write(stream, memory.peek(data, size * count))
-        return count
-
-    def print_to(stream: int, text: str) -> int:
-        return streams.write(stream, to_bytes(text))
-
-    def keep(*arguments: int) -> int:
-        """Leave a stream as it is: a line is always shown when it is complete."""
-        return 0
+    def print_to_console(text: str) -> int:
+        return streams.write(STDOUT, to_bytes(text))
 
     def end(name: str, status: int) -> None:
         raise CFault(f"{name}({status}) was called, which would end cFE")
 
-    _declare_input(api, c)
     for name, value in (("stdin", STDIN), ("stdout", STDOUT), ("stderr", STDERR)):
         api.data[name] = struct.pack("<Q", value)
-    api.add("fputs", "Sp", put_text, EOF)
-    for name in ("fputc", "putc", "fputc_unlocked", "putc_unlocked"):
-        api.add(name, "ip", put_character)
-    api.add("setvbuf", "ppiQ", keep)
-    api.add("setbuf", "pp", keep)
-    api.add("ferror", "p", keep)
-    api.add("fwrite", "pQQp", write)
-    api.add("fprintf", "pf", print_to)
-    api.add("__fprintf_chk", "p-f", print_to)
-    api.add("vfprintf", "pv", print_to)
-    api.add("__vfprintf_chk", "p-v", print_to)
-    api.add("vprintf", "v", lambda text: print_to(STDOUT, text))
-    api.add("__vprintf_chk", "-v", lambda text: print_to(STDOUT, text))
-    api.add("fflush", "p", lambda stream: 0)
+    api.add("vprintf", "v", print_to_console)
+    api.add("__vprintf_chk", "-v", print_to_console)
     api.add("gettext", "p", lambda text: text)
     api.add("abort", "", streams.abort)
     for name in ("exit", "_exit", "_Exit", "quick_exit"):
         api.add(name, "i", partial(end, name))
-
-
-def _declare_input(api: Declarations, c: CRuntime) -> None:
-    """Add functions that read: stdin is at its end, and knows that after the first attempt."""
-    ended: set[int] = set()
-    given_back: dict[int, list[int]] = {}
-
-    def at_end(stream: int) -> int:
-        ended.add(stream)
-        return EOF
-
-    def read_one(stream: int) -> int:
-        return given_back[stream].pop() if given_back.get(stream) else at_end(stream)
-
-    def read_line(to: int, size: int, stream: int) -> int:
-        line = bytearray()
-        while len(line) < size - 1 and not line.endswith(b"\n") and given_back.get(stream):
-            line.append(given_back[stream].pop())
-        if len(line) < size - 1 and not line.endswith(b"\n"):
-            at_end(stream)
-        if not line:
-            return 0
-        c.memory.poke(to, bytes(line) + b"\0")
-        return to
-
-    def give_back(code: int, stream: int) -> int:
-        if code == EOF:
-            return EOF
-        given_back.setdefault(stream, []).append(code & 0xFF)
-        ended.discard(stream)
-        return code & 0xFF
-
-    for name in READS_ONE:
-        api.add(name, "p", read_one)
-    api.add("getchar", "", lambda: read_one(STDIN))
-    api.add("fgets", "pip", read_line)
-    api.add("__fgets_chk", "p-ip", read_line)
-    api.add("ungetc", "ip", give_back)
-    for name in SCANS:
-        api.add(name, "p", at_end)
-    for name in SCANS_STDIN:
-        api.add(name, "", lambda: at_end(STDIN))
-    api.add("feof", "p", lambda stream: stream in ended)
-    api.add("clearerr", "p", ended.discard)

@@ -4,6 +4,7 @@
  *   in   i I int32 uint32   h H int16 uint16   B uint8   b bool   q int64   Q uint64, size_t
  *        p pointer as a number, 0 for NULL   P the same, not NULL   s S text, None for NULL / not NULL
  *        m message, as bytes, not NULL   t CFE_TIME_SysTime_t, as (seconds, subseconds)   f format and what follows   v format and va_list
+ *        F V the same with the NULs that a %c of 0 writes, for files
  *        - is not handed over
  *   out  1 2 4 8 so many bytes at the pointer   w z like 4 and 8, where the pointer may be NULL
  * A NULL where there must not be one is answered with the status that the function was declared with; the others are not
@@ -252,7 +253,7 @@ static int format_argument(Coroutine *coroutine, char *to, size_t room, int fixe
                     : format_text(coroutine, to, room, format, fixed);
 }
 
-static PyObject *formatted(Coroutine *coroutine, int fixed, bool has_list)
+static PyObject *formatted(Coroutine *coroutine, int fixed, bool has_list, bool has_nuls)
 {
     char small[FORMATTED] = "", *text = small;
     int count = format_argument(coroutine, text, sizeof small, fixed, has_list);
@@ -260,7 +261,8 @@ static PyObject *formatted(Coroutine *coroutine, int fixed, bool has_list)
         return PyErr_NoMemory();
     if (text != small)
         format_argument(coroutine, text, (size_t)count + 1, fixed, has_list);
-    PyObject *result = PyErr_Occurred() ? NULL : PyUnicode_DecodeUTF8(text, (Py_ssize_t)strlen(text), "surrogateescape");
+    Py_ssize_t length = has_nuls && count >= 0 ? count : (Py_ssize_t)strlen(text);
+    PyObject *result = PyErr_Occurred() ? NULL : PyUnicode_DecodeUTF8(text, length, "surrogateescape");
     if (text != small)
         PyMem_Free(text);
     return result;
@@ -312,7 +314,9 @@ static PyObject *argument_object(Coroutine *coroutine, char kind, int number)
     case 'm': return value ? message_at(value, coroutine->table->largest_message) : NULL;
     case 't': return Py_BuildValue("(II)", (uint32_t)value, (uint32_t)(value >> 32));
     case 'f':
-    case 'v': return value ? formatted(coroutine, number + 1, kind == 'v') : NULL;
+    case 'v': return value ? formatted(coroutine, number + 1, kind == 'v', false) : NULL;
+    case 'F':
+    case 'V': return value ? formatted(coroutine, number + 1, kind == 'V', true) : NULL;
     default: return PyErr_Format(PyExc_SystemError, "signature letter %c", kind);
     }
 }

@@ -1,4 +1,4 @@
-/* sscanf() and its kin. All arguments behind the format are pointers, so they are words, wherever they come from.
+/* sscanf(), fscanf() and their kin. All arguments behind the format are pointers, so they are words, wherever they come from.
  *
  * The host's function does the work. What it would allocate (%ms) comes from the host's malloc: it gets places of its own
  * for that, and the texts move into the application's memory afterwards.
@@ -20,6 +20,10 @@ extern PUBLIC int vswscanf_of_c89(const wchar_t *, const wchar_t *, va_list) __a
 extern PUBLIC int vsscanf_of_c23(const char *, const char *, va_list) __asm__("__isoc23_vsscanf") __attribute__((weak));
 extern PUBLIC int vswscanf_of_c23(const wchar_t *, const wchar_t *, va_list) __asm__("__isoc23_vswscanf")
     __attribute__((weak));
+
+/* The same for streams. */
+extern PUBLIC int vfscanf_of_c89(FILE *, const char *, va_list) __asm__("vfscanf");
+extern PUBLIC int vfscanf_of_c23(FILE *, const char *, va_list) __asm__("__isoc23_vfscanf") __attribute__((weak));
 
 typedef int (*Scanner)(const void *, const void *, va_list);
 enum { MOST = 64 };
@@ -158,11 +162,11 @@ HIDDEN void scan_abandon(Coroutine *call)
     call->has_note = false;
 }
 
-/* `list`: where a va_list is; or 0, and the pointers are arguments of the call. */
-static uint64_t scan(Coroutine *call, const Function *self, bool is_wide, uint64_t list)
+/* `list`: where a va_list is; or 0, and the pointers are arguments of the call. `from`: a text, or a FILE of the host. */
+static uint64_t scan(Coroutine *call, Scanner scanner, const void *from, bool is_wide, uint64_t list)
 {
-    Scanner scanner = self->target != NULL ? (Scanner)self->target : is_wide ? (Scanner)vswscanf : (Scanner)vsscanf;
-    bool is_c89 = scanner == (Scanner)vsscanf_of_c89 || scanner == (Scanner)vswscanf_of_c89;
+    bool is_c89 = scanner == (Scanner)vsscanf_of_c89 || scanner == (Scanner)vswscanf_of_c89 ||
+                  scanner == (Scanner)vfscanf_of_c89;
     Format format;
     Arguments given;
     uint64_t words[MOST] = {0}, wanted[MOST];
@@ -182,7 +186,7 @@ static uint64_t scan(Coroutine *call, const Function *self, bool is_wide, uint64
     arguments_of_words(&given, words);
     scan_begin(call);
     libc_enter_to_compute(call);
-    int count = scanner(POINTER(0), POINTER(1), given.list);
+    int count = scanner(from, POINTER(1), given.list);
     libc_leave(call);
     scan_abandon(call);
     for (int i = 0; i < format.count; i++)
@@ -191,10 +195,50 @@ static uint64_t scan(Coroutine *call, const Function *self, bool is_wide, uint64
     return (uint64_t)(int64_t)count;
 }
 
-NATIVE(scan_text) { return scan(call, self, false, 0); }
-NATIVE(scan_text_to_list) { return scan(call, self, false, WORD(2)); }
-NATIVE(scan_wide) { return scan(call, self, true, 0); }
-NATIVE(scan_wide_to_list) { return scan(call, self, true, WORD(2)); }
+static uint64_t scan_memory(Coroutine *call, const Function *self, bool is_wide, uint64_t list)
+{
+    Scanner scanner = self->target != NULL ? (Scanner)self->target : is_wide ? (Scanner)vswscanf : (Scanner)vsscanf;
+    return scan(call, scanner, POINTER(0), is_wide, list);
+}
+
+NATIVE(scan_text) { return scan_memory(call, self, false, 0); }
+NATIVE(scan_text_to_list) { return scan_memory(call, self, false, WORD(2)); }
+NATIVE(scan_wide) { return scan_memory(call, self, true, 0); }
+NATIVE(scan_wide_to_list) { return scan_memory(call, self, true, WORD(2)); }
+
+/* What api/stdio.py gives of a stream: its next bytes. It reads afterwards how many of them were used. */
+typedef struct {
+    uint64_t text, size, used, is_ended;
+} Scan;
+
+static uint64_t scan_stream(Coroutine *call, const Function *self, uint64_t list)
+{
+    if (!call->is_again) {
+        call->wants_python = call->wants_again = true;
+        return 0;
+    }
+    uint64_t at = call->result; /* 0: the stream cannot be read */
+    Scan job = {0};
+    if (at == 0 || engine_copy(&job, (void *)at, sizeof job))
+        return (uint64_t)EOF;
+    char nothing[1]; /* fmemopen() takes no NULL */
+    FILE *from = fmemopen(job.size ? (void *)job.text : nothing, job.size ? job.size : 1, "r");
+    if (from == NULL) {
+        PyErr_NoMemory();
+        return (uint64_t)EOF;
+    }
+    if (job.size == 0)
+        getc(from);
+    uint64_t count = scan(call, self->target != NULL ? (Scanner)self->target : (Scanner)vfscanf, from, false, list);
+    job.used = job.size ? (uint64_t)ftell(from) : 0;
+    job.is_ended = feof(from) != 0;
+    fclose(from);
+    engine_copy((void *)at, &job, sizeof job);
+    return count;
+}
+
+NATIVE(scan_file) { return scan_stream(call, self, 0); }
+NATIVE(scan_file_to_list) { return scan_stream(call, self, WORD(2)); }
 
 HIDDEN const NativeRow natives_of_scanning[] = {
     {"sscanf", scan_text, (void *)vsscanf_of_c89},
@@ -209,5 +253,11 @@ HIDDEN const NativeRow natives_of_scanning[] = {
     {"vswscanf", scan_wide_to_list, (void *)vswscanf_of_c89},
     {"__isoc99_vswscanf", scan_wide_to_list, (void *)vswscanf},
     {"__isoc23_vswscanf", scan_wide_to_list, (void *)vswscanf_of_c23},
+    {"fscanf", scan_file, (void *)vfscanf_of_c89},
+    {"__isoc99_fscanf", scan_file, (void *)vfscanf},
+    {"__isoc23_fscanf", scan_file, (void *)vfscanf_of_c23},
+    {"vfscanf", scan_file_to_list, (void *)vfscanf_of_c89},
+    {"__isoc99_vfscanf", scan_file_to_list, (void *)vfscanf},
+    {"__isoc23_vfscanf", scan_file_to_list, (void *)vfscanf_of_c23},
     {NULL},
 };

@@ -45,7 +45,7 @@ static PyObject *table_add(Table *table, PyObject *arguments)
         made.clears_outputs |= *signature == '~';
         made.costs |= *signature == '$';
     }
-    if (strlen(signature) > MOST_PARAMETERS || strspn(signature, "iIhHBbqQpPsSmtfv-1248wz") != strlen(signature))
+    if (strlen(signature) > MOST_PARAMETERS || strspn(signature, "iIhHBbqQpPsSmtfvFV-1248wz") != strlen(signature))
         return PyErr_Format(PyExc_ValueError, "bad signature %s of %s", signature, name);
     strcpy(made.kinds, signature);
     const NativeRow *row = find_native(name);

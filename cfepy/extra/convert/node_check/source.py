@@ -32,7 +32,7 @@ CALLS: dict[str, str] = {
     **dict.fromkeys(("scanf", "std::scanf", "vscanf", "gets", "isatty"), "getchar"),
     **dict.fromkeys(("socket", "recvfrom", "sendto", "getaddrinfo", "gethostbyname"), "socket"),
     **dict.fromkeys(("tcsetattr", "tcgetattr", "cfsetispeed", "cfsetospeed", "ioctl", "cfmakeraw"), "serial"),
-    **dict.fromkeys(("fopen", "freopen", "open", "opendir", "std::fopen", "mkstemp"), "file"),
+    **dict.fromkeys(("fopen", "freopen", "open", "opendir", "std::fopen", "std::freopen", "mkstemp"), "file"),
     **dict.fromkeys(("system", "popen", "fork", "vfork", "execl", "execv", "execvp", "std::system"), "process"),
     **dict.fromkeys(("pthread_create", "std::async", "boost::async"), "thread"),
     **dict.fromkeys(("typeid", "dynamic_cast", "boost::dynamic_pointer_cast", "std::dynamic_pointer_cast"), "rtti"),

@@ -147,17 +147,17 @@ def test_check_reports_device_files_without_devices(tmp_path: Path, objects: Pat
     folder = mission_of(tmp_path, objects, "FILES", "safe: true\n")
     (warning,) = [each.text for each in check_mission(folder)]
     names = re.sub(r" \(files\.c:\d+\)", "", warning)
-    assert names.startswith("FILES needs cfgetispeed, cfmakeraw, cfsetispeed, close, fcntl, ioctl, open, read, ")
-    assert "or connect a device (`devices:` in the mission file); calling it is a fault" in warning
+    assert names.startswith("FILES needs cfgetispeed, cfmakeraw, cfsetispeed, tcgetattr, tcsetattr for a device, but")
+    assert "the mission connects none; add `devices:` to the mission file" in warning
     (tmp_path / "mission.yaml").write_text(DEVICES)
     assert check_mission(folder) == []
 
 
-def test_device_files_without_devices_stay_faults(tmp_path: Path, objects: Path) -> None:
+def test_device_files_without_devices_do_not_exist(tmp_path: Path, objects: Path) -> None:
     folder = mission_of(tmp_path, objects, "FILES", "safe: true\n")
     with Mission(folder, console=Console(quiet=True)) as mission:
         mission.run_for(1)
-    assert any("open() of /dev/ttyS1 is not available" in each for each in mission.console.lines)
+    assert any("open() of /dev/ttyS1: it is not a device of the mission" in each for each in mission.console.lines)
 
 
 @pytest.mark.parametrize(
