@@ -63,11 +63,13 @@ class Endpoint:
     Attributes:
         place: the address it is bound to; None before.
         anonymous: whether it took any free port, so that programs cannot know its port in advance.
+        shares: whether another endpoint that shares may have the same address, by SO_REUSEADDR, which OSAL sets.
     """
 
     def __init__(self, place: Place | None = None) -> None:
         self.place = place
         self.anonymous = False
+        self.shares = True
         self._watchers: list[tuple[Kernel, WaitList]] = []
 
     @property
@@ -327,7 +329,7 @@ class BoundEndpoints(Generic[Bound]):
     """The addresses of bound endpoints, for one protocol.
 
     Args:
-        shares: whether several endpoints can have one address, as UDP sockets with SO_REUSEADDR, which OSAL sets.
+        shares: whether several endpoints that share can have one address, as UDP sockets with SO_REUSEADDR.
 
     Attributes:
         bound: the endpoints by (whether it is IPv6, port), in the order of binding.
@@ -350,8 +352,9 @@ class BoundEndpoints(Generic[Bound]):
         if endpoint.anonymous:
             place = Place(place.host, self._free_port(place.is_ip6))
         others = self.bound.get((place.is_ip6, place.port), [])
-        if not self._shares and any(_clash(place, other.place) for other in others):
-            return None
+        for other in others:
+            if not (self._shares and endpoint.shares and other.shares) and _clash(place, other.place):
+                return None
         endpoint.place = place
         self.bound.setdefault((place.is_ip6, place.port), []).append(endpoint)
         return place

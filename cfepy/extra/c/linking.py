@@ -30,7 +30,7 @@ IN_IT = "__cxa_throw"
 UNUSED = frozenset(
     (
         *("__strftime_l", "__wcscoll_l", "__wcsftime_l", "__wcsxfrm_l", "bind_textdomain_codeset"),
-        *("bindtextdomain", "dgettext", "iconv", "iconv_close", "iconv_open", "mbsnrtowcs", "poll", "putwc", "ungetwc"),
+        *("bindtextdomain", "dgettext", "iconv", "iconv_close", "iconv_open", "mbsnrtowcs", "putwc", "ungetwc"),
         "wcsnrtombs",
     )
 )

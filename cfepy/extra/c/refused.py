@@ -40,9 +40,11 @@ BY_REASON: dict[str, tuple[str, ...]] = {
         *("call_once", "mtx_destroy", "mtx_init", "mtx_lock", "mtx_timedlock", "mtx_trylock", "mtx_unlock"),
     ),
     "a variable of a task is declared _Thread_local": ("tss_create", "tss_delete", "tss_get", "tss_set"),
-    "sockets of the host are not available; use OS_SocketOpen": (
-        *("accept", "bind", "connect", "getaddrinfo", "gethostbyname", "gethostname", "getsockopt", "listen", "poll"),
-        *("recv", "recvfrom", "recvmsg", "select", "send", "sendmsg", "sendto", "setsockopt", "shutdown", "socket"),
+    "the mission's network has one host, localhost; use socket, gethostbyname or OS_SocketOpen": (
+        *("getifaddrs", "gethostbyaddr", "gethostname", "getnameinfo", "getservbyname", "if_nameindex", "socketpair"),
+    ),
+    "descriptors are waited for by select or poll": (
+        *("epoll_create", "epoll_create1", "epoll_ctl", "epoll_wait", "eventfd", "timerfd_create"),
     ),
     "random numbers of the host differ in each run; use rand() with a seed": (
         *("arc4random", "arc4random_buf", "arc4random_uniform", "getentropy", "getrandom"),

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from cfepy.extra.c.api.posix_calls import FAILED, PosixCalls
 from cfepy.extra.c.devices import I2C, Device, DevicePorts
-from cfepy.extra.c.posix.descriptors import O_RDWR, Descriptor, failure
+from cfepy.extra.c.posix.descriptors import O_RDWR, POLLIN, POLLOUT, Descriptor, failure
 from cfepy.units import NS_PER_MS
 
 if TYPE_CHECKING:
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from cfepy.extra.c.memory import CMemory
     from cfepy.extra.c.runtime import CRuntime
 
-FIONREAD, I2C_SLAVE, I2C_SLAVE_FORCE, I2C_RDWR = 0x541B, 0x0703, 0x0706, 0x0707
+I2C_SLAVE, I2C_SLAVE_FORCE, I2C_RDWR = 0x0703, 0x0706, 0x0707
 SPI_MAGIC, SPI_MESSAGE, SPI_SIZE = 0x6B, 0, 32
 I2C_READ = 1
 I2C_MESSAGE, I2C_DATA = Struct("<HHH2xQ"), Struct("<QI")
@@ -43,6 +43,8 @@ class OpenDevice(Descriptor):
         bus: number of the I2C bus; -1 for none.
         flags: the flags of open.
     """
+
+    announces_nothing = True
 
     def __init__(self, c: CRuntime, device: Device | None, bus: int, flags: int = O_RDWR) -> None:
         super().__init__(flags)
@@ -81,8 +83,14 @@ class OpenDevice(Descriptor):
         return self.device
 
     @property
-    def readable(self) -> bool:
-        return self.device is None or self._bus != FAILED or self.device.waiting() > 0
+    def events(self) -> int:
+        is_ready = self.device is None or self._bus != FAILED or self.device.waiting() > 0
+        return POLLIN | POLLOUT if is_ready else POLLOUT
+
+    def waiting(self) -> int:
+        if self.device is None:
+            raise failure(errno.ENOTTY)
+        return self.device.waiting()
 
     def control(self, request: int, argument: int) -> int:
         memory = self._c.memory
@@ -94,9 +102,6 @@ class OpenDevice(Descriptor):
             if count is None:
                 raise failure(errno.EREMOTEIO)
             return count
-        if request == FIONREAD and self.device is not None:
-            memory.put_u32(argument, self.device.waiting())
-            return 0
         if request >> 8 & 0xFF == SPI_MAGIC and self.device is not None:
             return self._spi(self.device, request, argument)
         raise failure(errno.ENOTTY)

@@ -18,6 +18,7 @@ from cfepy.extra.c.posix.descriptors import (
     CHANGEABLE,
     MOST,
     O_CREAT,
+    O_NONBLOCK,
     O_TRUNC,
     O_WRONLY,
     Facts,
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
 AT_FDCWD = -100
 F_DUPFD, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_DUPFD_CLOEXEC = 0, 1, 2, 3, 4, 1030
+FIONREAD, FIONBIO = 0x541B, 0x5421
 IOVEC = Struct("<QQ")
 DIRENT = Struct("<QqHB256s5x")
 _SLOT = 512
@@ -172,7 +174,15 @@ class PosixCallsOnFiles:
         return found.lock(command, argument)
 
     def control(self, number: int, request: int, argument: int) -> int:
-        return self._table.of(number).control(request & 0xFFFFFFFF, argument)
+        found, request = self._table.of(number), request & 0xFFFFFFFF
+        if request == FIONBIO:
+            is_set = self._c.memory.u32(argument) != 0
+            found.flags = found.flags & ~O_NONBLOCK | (O_NONBLOCK if is_set else 0)
+            return 0
+        if request == FIONREAD:
+            self._c.memory.put_u32(argument, found.waiting())
+            return 0
+        return found.control(request, argument)
 
     def is_terminal(self, number: int) -> int:
         if not self._table.of(number).is_terminal:

@@ -17,6 +17,7 @@ MOST = 1024
 O_ACCMODE, O_RDONLY, O_WRONLY, O_RDWR = 3, 0, 1, 2
 O_CREAT, O_EXCL, O_TRUNC, O_APPEND, O_NONBLOCK = 0o100, 0o200, 0o1000, 0o2000, 0o4000
 O_DIRECTORY = getattr(os, "O_DIRECTORY", 0o200000)  # differs between processors; other systems do not define it
+POLLIN, POLLPRI, POLLOUT, POLLERR, POLLHUP, POLLNVAL = 1, 2, 4, 8, 0x10, 0x20
 CHANGEABLE = O_APPEND | O_NONBLOCK
 """The flags that F_SETFL changes."""
 S_IFREG, S_IFDIR, S_IFCHR, S_IFSOCK = 0o100000, 0o040000, 0o020000, 0o140000
@@ -45,13 +46,16 @@ class Descriptor:
 
     Attributes:
         links: the numbers that lead to it.
+        users: the calls that wait at it, which keep it open.
     """
 
-    is_regular = is_terminal = False
+    is_regular = is_terminal = announces_nothing = False
+    more_events = 0
+    """Events of poll beside POLLWRNORM that come with POLLOUT."""
 
     def __init__(self, flags: int = O_RDWR) -> None:
         self.flags = flags
-        self.links = 0
+        self.links = self.users = 0
 
     @property
     def is_nonblocking(self) -> bool:
@@ -60,18 +64,13 @@ class Descriptor:
 
     @property
     def endpoints(self) -> Sequence[Endpoint]:
-        """The ends of the network that announce a change of the states below."""
+        """The ends of the network that announce a change of `events`."""
         return ()
 
     @property
-    def readable(self) -> bool:
-        """Whether a read would not wait."""
-        return True
-
-    @property
-    def writable(self) -> bool:
-        """Whether a write would not wait."""
-        return True
+    def events(self) -> int:
+        """The events of poll that are true now."""
+        return POLLIN | POLLOUT
 
     def read(self, count: int) -> bytes:
         """Return up to `count` bytes, or b"" at the end."""
@@ -101,6 +100,10 @@ class Descriptor:
         """Return the result of fstat."""
         return Facts(S_IFCHR | 0o620)
 
+    def waiting(self) -> int:
+        """Return the number of bytes that can be read (FIONREAD)."""
+        raise failure(errno.ENOTTY)
+
     def control(self, request: int, argument: int) -> int:
         """Perform a request of ioctl."""
         raise failure(errno.ENOTTY)
@@ -108,6 +111,14 @@ class Descriptor:
     def lock(self, command: int, argument: int) -> int:
         """Perform a command of fcntl that is not about flags, such as a lock of a file."""
         raise failure(errno.EINVAL)
+
+    def bind_to(self, at: int, size: int) -> int:
+        """Bind a socket of another family to the sockaddr at an address."""
+        raise failure(errno.ENOTSOCK)
+
+    def set_option(self, level: int, name: int, value: bytes) -> int:
+        """Set an option of a socket of another family."""
+        raise failure(errno.ENOTSOCK)
 
     def close(self) -> None:
         """Release it when its last number is closed."""
@@ -184,7 +195,7 @@ class DescriptorTable:
         found = self.of(number)
         del self._open[number]
         found.links -= 1
-        if not found.links:
+        if not found.links and not found.users:  # a call that waits releases it afterwards
             found.close()
 
     def replace(self, number: int, other: int) -> int:

@@ -367,6 +367,9 @@ class OpenFile(Descriptor):
         self._position = origins[whence] + offset
         return self._position
 
+    def waiting(self) -> int:
+        return len(self._node.data) - self._position
+
     def truncate(self, size: int) -> None:
         if self.flags & O_ACCMODE == O_RDONLY or size < 0:
             raise failure(errno.EINVAL)

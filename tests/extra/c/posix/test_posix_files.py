@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-from cfepy.extra.c.engine import compiler
 from cfepy.mission import Mission
 from cfepy.pilot.mission_check import check_mission
 from cfepy.writing.console import Console
@@ -25,39 +22,9 @@ from tests.extra.c.building import (
     said,
     write_mission,
 )
+from tests.extra.c.posix.comparing import FORTIFIED, compare
 
 pytestmark = needs_compiler
-
-HERE = Path(__file__).parent
-FLAGS = ("-shared", "-fPIC", "-std=gnu11", "-O1", "-w", "-fno-builtin", f"-I{HERE.parent / 'libc'}")
-FORTIFIED = ("-O2", "-D_FORTIFY_SOURCE=2", "-fbuiltin")
-RUN = "import ctypes, os, sys; os.umask(0o022); ctypes.CDLL(sys.argv[1]).TEST_Main()"
-
-
-def build(name: str, folder: Path, *flags: str) -> Path:
-    """Compile a program to a shared object."""
-    made = folder / "TEST.so"
-    done = subprocess.run([*compiler(), *FLAGS, *flags, str(HERE / f"{name}.c"), "-o", str(made)], capture_output=True)
-    assert done.returncode == 0, done.stderr
-    return made
-
-
-def printed_here(made: Path) -> list[str]:
-    """Return the lines of a program on this computer; its current folder has a folder cf."""
-    place = made.parent / "here"
-    (place / "cf").mkdir(parents=True)
-    done = subprocess.run(
-        [sys.executable, "-c", RUN, str(made)], cwd=place, capture_output=True, stdin=subprocess.DEVNULL
-    )
-    assert done.returncode == 0, done.stderr
-    return said(done.stdout.decode("utf-8", "surrogateescape"))
-
-
-def compare(tmp_path: Path, name: str, *flags: str) -> None:
-    here = printed_here(build(name, tmp_path, *flags))
-    flown = said(console_of(fly(write_mission(tmp_path, "TEST"), 1)))
-    assert [(one, other) for one, other in zip(here, flown, strict=False) if one != other] == []
-    assert len(flown) == len(here) > 50
 
 
 @pytest.mark.parametrize("name", ["files", "streams"])
