@@ -17,6 +17,8 @@ from cfepy.units import NS_PER_S
 
 I2C = "/dev/i2c-"
 """The beginning of the names of I2C buses; the name of a device there ends with ":" and its address."""
+PIN = "gpio"
+"""The beginning of the names of pins."""
 TERMINAL_FUNCTIONS = frozenset(
     (
         *("cfgetispeed", "cfgetospeed", "cfmakeraw", "cfsetispeed", "cfsetospeed", "cfsetspeed", "tcdrain", "tcflush"),
@@ -131,6 +133,10 @@ class DevicePorts:
             if found is not None:
                 return found
         return None
+
+    def buses(self) -> dict[str, Device]:
+        """Return the CAN buses: all devices but files and pins."""
+        return {name: each for name, each in self._devices.items() if not name.startswith(("/", PIN))}
 
     def has_file(self, name: str) -> bool:
         """Return True if a device file exists."""

@@ -75,7 +75,6 @@ class CRuntime:
         at_close: called at the end of the processor, while its memory still exists.
         descriptors, posix_files, file_streams: the descriptors, files and FILEs of POSIX.
         openers: called with path, flags and permissions before a file is opened; they return a device or None.
-        socket_makers: called with family, type and protocol; they return a socket of a family of their own or None.
         on_unload: functions that get each image before it is unloaded.
     """
 
@@ -146,7 +145,6 @@ class CRuntime:
         self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
         self.descriptors = DescriptorTable()
         self.openers: list[Callable[[str, int, int], Descriptor | None]] = []
-        self.socket_makers: list[Callable[[int, int, int], Descriptor | None]] = []
         self.posix_files = PosixFiles(cfe.os.files, lambda: kernel.now, self._tell_outside)
         self.file_streams = FileStreams(self)
         self._outside: set[str] = set()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+from functools import cached_property
 from struct import Struct
 from typing import TYPE_CHECKING
 
@@ -10,15 +11,14 @@ from cfepy.extra.c.api.posix_calls import PosixCalls
 from cfepy.extra.c.api.posix_files import IOVEC
 from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.posix.addresses import AF_INET, AF_INET6, read_place, write_place
-from cfepy.extra.c.posix.descriptors import O_NONBLOCK, Descriptor, failure
-from cfepy.extra.c.posix.sockets import MSG_TRUNC, SOCK_DGRAM, SOCK_STREAM, PosixSocket
+from cfepy.extra.c.posix.can_sockets import AF_CAN, CAN_RAW, CanBuses, CanSocket
+from cfepy.extra.c.posix.descriptors import O_NONBLOCK, failure
+from cfepy.extra.c.posix.sockets import MSG_TRUNC, SOCK_DGRAM, SOCK_STREAM, AnySocket, PosixSocket
 from cfepy.osal import Place
 from cfepy.rtos import FOREVER
 from cfepy.units import NS_PER_S, NS_PER_US
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from cfepy.extra.c.calls import Declarations
     from cfepy.extra.c.runtime import CRuntime
 
@@ -45,15 +45,16 @@ class PosixSocketCalls:
         self._c = c
         self._memory = c.memory
         self._table = c.descriptors
-        self.makers: list[Callable[[int, int, int], Descriptor | None]] = c.socket_makers
+
+    @cached_property
+    def _buses(self) -> CanBuses:
+        return CanBuses(self._c.devices.buses())
 
     def make(self, domain: int, kind: int, protocol: int) -> int:
         self._c.kernel.preempt()
         flags, plain = kind & O_NONBLOCK, kind & TYPE_BITS
-        for maker in self.makers:
-            found = maker(domain, kind, protocol)
-            if found is not None:
-                return self._table.add(found)
+        if (domain, plain, protocol) == (AF_CAN, SOCK_RAW, CAN_RAW):
+            return self._table.add(CanSocket(self._c.kernel, self._memory, self._buses, flags))
         if domain not in (AF_INET, AF_INET6):
             self._c.console.write(f"{self._app()}: socket() of family {domain} is not available; errno is EAFNOSUPPORT")
             raise failure(errno.EAFNOSUPPORT)
@@ -75,6 +76,21 @@ class PosixSocketCalls:
         if not isinstance(found, PosixSocket):
             raise failure(errno.ENOTSOCK)
         return found
+
+    def _any_socket(self, number: int) -> AnySocket:
+        found = self._table.of(number)
+        if not isinstance(found, AnySocket):
+            raise failure(errno.ENOTSOCK)
+        return found
+
+    def _target(self, found: AnySocket, at: int, size: int) -> Place | None:
+        """Return the address for a datagram; None for the peer."""
+        if not at or not isinstance(found, PosixSocket) or found.kind != SOCK_DGRAM:
+            return None
+        return read_place(self._memory, at, size, found.is_ip6)
+
+    def index_of(self, name: str) -> int:
+        return self._buses.index(name)
 
     # -- addresses and connections -----------------------------------------------------------------------------------
 
@@ -128,8 +144,8 @@ class PosixSocketCalls:
 
     def send_to(self, number: int, data: int, count: int, flags: int, at: int, size: int) -> int:
         self._c.kernel.preempt()
-        found = self._socket(number)
-        target = read_place(self._memory, at, size, found.is_ip6) if at and found.kind == SOCK_DGRAM else None
+        found = self._any_socket(number)
+        target = self._target(found, at, size)
         return found.send(bytes(self._memory.peek(data, count)), flags, target)
 
     def receive(self, number: int, to: int, count: int, flags: int) -> int:
@@ -137,7 +153,7 @@ class PosixSocketCalls:
 
     def receive_from(self, number: int, to: int, count: int, flags: int, at: int, size_at: int) -> int:
         self._c.kernel.preempt()
-        data, source = self._socket(number).receive(count, flags)
+        data, source = self._any_socket(number).receive(count, flags)
         self._memory.poke(to, data[:count])
         write_place(self._memory, at, size_at, source)
         return len(data) if flags & MSG_TRUNC else min(len(data), count)
@@ -158,8 +174,8 @@ class PosixSocketCalls:
     def send_message(self, number: int, message: int, flags: int) -> int:
         self._c.kernel.preempt()
         at, size, vectors, count, *_ = MSGHDR.unpack(self._memory.peek(message, MSGHDR.size))
-        found = self._socket(number)
-        target = read_place(self._memory, at, size, found.is_ip6) if at and found.kind == SOCK_DGRAM else None
+        found = self._any_socket(number)
+        target = self._target(found, at, size)
         pieces = (bytes(self._memory.peek(*each)) for each in self._vectors(vectors, count))
         return found.send(b"".join(pieces), flags, target)
 
@@ -168,7 +184,7 @@ class PosixSocketCalls:
         at, _, vectors, count, *_ = MSGHDR.unpack(self._memory.peek(message, MSGHDR.size))
         places = self._vectors(vectors, count)
         room = sum(size for _, size in places)
-        data, source = self._socket(number).receive(room, flags)
+        data, source = self._any_socket(number).receive(room, flags)
         rest = data[:room]
         for to, size in places:
             self._memory.poke(to, rest[:size])
@@ -181,15 +197,15 @@ class PosixSocketCalls:
     # -- options -----------------------------------------------------------------------------------------------------
 
     def set_option(self, number: int, level: int, name: int, at: int, size: int) -> int:
-        descriptor = self._table.of(number)
-        if not isinstance(descriptor, PosixSocket):
-            return descriptor.set_option(level, name, bytes(self._memory.peek(at, size)))
-        if level not in LEVELS:
-            raise failure(errno.ENOPROTOOPT)
+        descriptor = self._any_socket(number)
         value = bytes(self._memory.peek(at, size)) if at else b""
         if level == SOL_SOCKET and name in (SO_RCVTIMEO, SO_SNDTIMEO):
             self._set_timeout(descriptor, name, value)
             return 0
+        if not isinstance(descriptor, PosixSocket):
+            return descriptor.set_option(level, name, value)
+        if level not in LEVELS:
+            raise failure(errno.ENOPROTOOPT)
         if level == SOL_SOCKET and len(value) < 4:
             raise failure(errno.EINVAL)
         number_given = int.from_bytes(value[:4], "little")
@@ -205,7 +221,7 @@ class PosixSocketCalls:
         descriptor.options[level, name] = value
         return 0
 
-    def _set_timeout(self, found: PosixSocket, name: int, value: bytes) -> None:
+    def _set_timeout(self, found: AnySocket, name: int, value: bytes) -> None:
         if len(value) < TIMEVAL.size:
             raise failure(errno.EINVAL)
         seconds, microseconds = TIMEVAL.unpack_from(value)
@@ -251,6 +267,7 @@ class PosixSocketCalls:
 def declare(api: Declarations, c: CRuntime) -> None:
     calls, sockets = PosixCalls(api, c), PosixSocketCalls(c)
     calls.add("socket", "$iii", sockets.make)
+    calls.add("if_nametoindex", "S", sockets.index_of, 0)
     calls.add("bind", "$ipI", sockets.bind)
     calls.add("connect", "$ipI", sockets.connect)
     calls.add("listen", "$ii", sockets.listen)

@@ -1,4 +1,4 @@
-/* The functions of libsocketcan, which hwlib's libcan.h needs on Linux. CAN by sockets is not simulated. */
+/* The functions of libsocketcan, which hwlib's libcan.h needs on Linux. */
 #ifndef CFEPY_SOCKETCAN_H
 #define CFEPY_SOCKETCAN_H
 

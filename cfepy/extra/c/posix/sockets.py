@@ -29,8 +29,59 @@ POLLWRBAND = 0x200
 BROADCAST = "255.255.255.255"
 
 
-class PosixSocket(Descriptor):
-    """An open socket.
+class AnySocket(Descriptor):
+    """A socket of any family.
+
+    Attributes:
+        receive_ns, send_ns: SO_RCVTIMEO and SO_SNDTIMEO; FOREVER for none.
+    """
+
+    kind = SOCK_STREAM
+
+    def __init__(self, flags: int) -> None:
+        super().__init__(O_RDWR | flags & O_NONBLOCK)
+        self.receive_ns = self.send_ns = FOREVER
+
+    def read(self, count: int) -> bytes:
+        return self.receive(count, 0)[0][:count]
+
+    def write(self, data: bytes) -> int:
+        return self.send(data, 0, None)
+
+    def receive(self, count: int, flags: int) -> tuple[bytes, Place | None]:
+        """Wait for bytes.
+
+        Args:
+            count: most bytes of a stream; a datagram is given whole.
+            flags: MSG_*.
+
+        Returns:
+            The bytes, and the sender of a datagram.
+        """
+        raise NotImplementedError
+
+    def send(self, data: bytes, flags: int, target: Place | None) -> int:
+        """Send bytes, and wait for room.
+
+        Args:
+            data: the bytes.
+            flags: MSG_*.
+            target: the address for a datagram; None for the peer.
+
+        Returns:
+            The number of bytes that were sent.
+
+        Raises:
+            CFault: the connection is over, and SIGPIPE ends the process.
+        """
+        raise NotImplementedError
+
+    def facts(self) -> Facts:
+        return Facts(S_IFSOCK | 0o777)
+
+
+class PosixSocket(AnySocket):
+    """A socket of UDP or TCP.
 
     Args:
         kernel: the processor.
@@ -41,7 +92,6 @@ class PosixSocket(Descriptor):
         stream: an accepted connection; None for a new socket.
 
     Attributes:
-        receive_ns, send_ns: SO_RCVTIMEO and SO_SNDTIMEO; FOREVER for none.
         error: the errno that SO_ERROR reports next; 0 for none.
         reuses, broadcasts: SO_REUSEADDR and SO_BROADCAST.
         options: the other options, by level and name.
@@ -50,7 +100,7 @@ class PosixSocket(Descriptor):
     def __init__(
         self, kernel: Kernel, network: Network, is_ip6: bool, kind: int, flags: int, stream: Stream | None = None
     ) -> None:
-        super().__init__(O_RDWR | flags & O_NONBLOCK)
+        super().__init__(flags)
         self._kernel = kernel
         self._network = network
         self.is_ip6 = is_ip6
@@ -59,7 +109,6 @@ class PosixSocket(Descriptor):
         self._end: Endpoint = stream or (Mailbox() if kind == SOCK_DGRAM else Endpoint())
         self._target: Place | None = None  # of a connection that began without waiting
         self._is_new = False  # such a connection was made, and no call has reported it
-        self.receive_ns = self.send_ns = FOREVER
         self.error = 0
         self.reuses = self.broadcasts = False
         self.options: dict[tuple[int, int], bytes] = {}
@@ -125,9 +174,6 @@ class PosixSocket(Descriptor):
         if isinstance(end, Listener):
             raise failure(errno.EINVAL)
         return len(end.peek(1 << 30)) if isinstance(end, Stream) else 0
-
-    def facts(self) -> Facts:
-        return Facts(S_IFSOCK | 0o777)
 
     def _any(self, port: int) -> Place:
         return Place("::" if self.is_ip6 else "0.0.0.0", port)
@@ -263,22 +309,7 @@ class PosixSocket(Descriptor):
 
     # -- bytes -------------------------------------------------------------------------------------------------------
 
-    def read(self, count: int) -> bytes:
-        return self.receive(count, 0)[0][:count]
-
-    def write(self, data: bytes) -> int:
-        return self.send(data, 0, None)
-
     def receive(self, count: int, flags: int) -> tuple[bytes, Place | None]:
-        """Wait for bytes.
-
-        Args:
-            count: most bytes of a stream; a datagram is given whole.
-            flags: MSG_*.
-
-        Returns:
-            The bytes, and the sender of a datagram.
-        """
         if flags & MSG_OOB:
             raise failure(errno.EINVAL if self.kind == SOCK_STREAM else errno.EOPNOTSUPP)
         self._go_on()
@@ -313,19 +344,6 @@ class PosixSocket(Descriptor):
         return data, None
 
     def send(self, data: bytes, flags: int, target: Place | None) -> int:
-        """Send bytes, and wait for room.
-
-        Args:
-            data: the bytes.
-            flags: MSG_*.
-            target: the address for a datagram; None for the peer.
-
-        Returns:
-            The number of bytes that were sent.
-
-        Raises:
-            CFault: the connection is over, and SIGPIPE ends the process.
-        """
         self._go_on()
         end = self._end
         if isinstance(end, Mailbox):

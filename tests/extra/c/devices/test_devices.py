@@ -34,7 +34,7 @@ SCRIPT = "CFE_APP, {0}, {0}_Main, {0}, 50, 16384, 0x0, 0;\n!\n"
 def objects(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Compile the applications once."""
     folder = tmp_path_factory.mktemp("objects")
-    for name in ("sensor", "files"):
+    for name in ("sensor", "files", "can"):
         source = folder / name / "fsw/src"
         source.mkdir(parents=True)
         shutil.copy(HERE / f"{name}.c", source)
@@ -128,6 +128,35 @@ def test_read_of_a_serial_port_waits_in_virtual_time(tmp_path: Path, objects: Pa
         lines = [each for each in mission.console.lines if "/FILES 1: first" in each or "/FILES 1: timeout" in each]
     first, late = (float(each.split()[2].rpartition(":")[2]) for each in lines)
     assert late - first == pytest.approx(0.2, abs=0.001)
+
+
+def test_sockets_of_can_exchange_frames_with_a_bus(tmp_path: Path, objects: Path) -> None:
+    assert fly(mission_of(tmp_path, objects, "CAN"), "CAN") == [
+        "unbound -1",
+        "ENXIO 1",
+        "can0 0",
+        "bind 0",
+        "can0 0",
+        "bind 0",
+        "can7 -1",
+        "bind 0",
+        "ENODEV 1",
+        "index 2",
+        "write 16",
+        "short -1",
+        "read 16",
+        "id 291",
+        "second 16",
+        "echo 16",
+        "data 3",
+        "nonblocking -1",
+        "EAGAIN 1",
+        "filter 0",
+        "filtered -1",
+        "poll 1",
+        "passed 16",
+        "id 767",
+    ]
 
 
 def test_udp_port_is_a_device(tmp_path: Path, objects: Path) -> None:
