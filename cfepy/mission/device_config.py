@@ -11,10 +11,13 @@ from typing import NamedTuple
 from cfepy.reading.marked_yaml import Marked
 from cfepy.reading.mistakes import Mistakes
 
-DEVICE_FIELDS = ("python", "udp", "to")
+DEVICE_FIELDS = ("python", "udp", "topic", "to", "type")
+TOPIC_TYPES = ("std_msgs/UInt8MultiArray", "std_msgs/String")
+"""The types of messages that carry the bytes of a device; the first is the default."""
 HERE = "127.0.0.1"
 MOST_PORT = 65_535
 _CLASS = re.compile(r"(?P<file>[^:]+\.py):(?P<name>[A-Za-z_]\w*)")
+_TOPIC = re.compile(r"/?[A-Za-z]\w*(?:/[A-Za-z]\w*)*")
 _PLACE = re.compile(r"(?:(?P<host>[\w.-]+):)?(?P<port>\d{1,5})")
 
 
@@ -26,6 +29,9 @@ class DeviceConfig(NamedTuple):
         file, class_name: a class in Python that is the device; None and "" if there is none.
         port: the UDP port that is the device, on the mission's network; 0 if there is none.
         target: host and port that get the datagrams.
+        topic: the ROS topic whose messages are bytes to read; "" if it is no topic.
+        sends: the ROS topic that gets what is written; "" for none.
+        kind: the type of both topics.
     """
 
     name: str
@@ -33,6 +39,9 @@ class DeviceConfig(NamedTuple):
     class_name: str = ""
     port: int = 0
     target: tuple[str, int] = (HERE, 0)
+    topic: str = ""
+    sends: str = ""
+    kind: str = TOPIC_TYPES[0]
 
 
 def read_devices(section: Marked, mistakes: Mistakes) -> dict[str, DeviceConfig]:
@@ -56,11 +65,19 @@ def read_devices(section: Marked, mistakes: Mistakes) -> dict[str, DeviceConfig]
 
 def _device(name: str, entry: Marked) -> DeviceConfig:
     said = entry.mapping(DEVICE_FIELDS)
-    if ("python" in said) == ("udp" in said):
-        raise entry.fail("requires one of `python: FILE.py:CLASS` and `udp: PORT`")
+    if sum(kind in said for kind in ("python", "udp", "topic")) != 1:
+        raise entry.fail("requires one of `python: FILE.py:CLASS`, `udp: PORT` and `topic: NAME`")
+    if "type" in said and "topic" not in said:
+        raise said["type"].fail("is only valid with `topic`")
+    if "topic" in said:
+        sends = _topic(said["to"]) if "to" in said else ""
+        kind = said["type"].text() if "type" in said else TOPIC_TYPES[0]
+        if kind not in TOPIC_TYPES:
+            raise said["type"].fail(f"{said['type'].shown()} carries no bytes; expected {' or '.join(TOPIC_TYPES)}")
+        return DeviceConfig(name, topic=_topic(said["topic"]), sends=sends, kind=kind)
     if "python" in said:
         if "to" in said:
-            raise said["to"].fail("is only valid with `udp`")
+            raise said["to"].fail("is only valid with `udp` or `topic`")
         file, class_name = _class(said["python"])
         return DeviceConfig(name, file, class_name)
     if "to" not in said:
@@ -78,6 +95,13 @@ def _class(entry: Marked) -> tuple[Path, str]:
     if not os.path.isfile(file):
         raise entry.fail(f"file {file} not found")
     return file, match["name"]
+
+
+def _topic(entry: Marked) -> str:
+    text = entry.text()
+    if _TOPIC.fullmatch(text) is None:
+        raise entry.fail(f"{entry.shown()} is not a ROS name; expected /NAME")
+    return "/" + text.lstrip("/")
 
 
 def _place(entry: Marked) -> tuple[str, int]:

@@ -36,7 +36,7 @@ def begin(link: Link, subscription: Subscription, delay_ns: int, *, late: bool) 
         delay_ns: virtual ns until they are connected; 0 connects them at once.
         late: the publisher existed before, and may have a latched message.
     """
-    if subscription.is_outside and not late:
+    if subscription.connects_itself and not late:
         link.expect_peer(subscription)  # until its connection exists
         return
     if not delay_ns:

@@ -50,9 +50,10 @@ class TopicSide:
 
     Attributes:
         is_outside: True if the node is outside of the mission.
+        connects_itself: True if a program outside makes its connections, so that publishers wait for it.
     """
 
-    is_outside = False
+    is_outside = connects_itself = False
 
     def __init__(self, node: Node, name: str, data_class: MessageClass) -> None:
         self.node = node

@@ -167,7 +167,7 @@ class OutsideSubscription(Subscription):
         out: takes publisher and message.
     """
 
-    is_outside = True
+    is_outside = connects_itself = True
 
     def __init__(
         self,

@@ -42,6 +42,9 @@ class Device:
 
     clock: Callable[[], float] = staticmethod(lambda: 0.0)
 
+    def open(self) -> None:
+        """Handle the opening of its device file."""
+
     def write(self, data: bytes) -> None:
         """Take bytes from the application."""
 
@@ -103,16 +106,25 @@ class DevicePorts:
         configs: the devices, by name.
         network: the mission's network.
         now: returns the virtual time in ns.
+        topic_device: makes the devices that are ROS topics; None if there are none.
 
     Raises:
         UsageError: a file cannot be executed, or has no such class.
     """
 
-    def __init__(self, configs: Mapping[str, DeviceConfig], network: Network, now: Callable[[], int]) -> None:
+    def __init__(
+        self,
+        configs: Mapping[str, DeviceConfig],
+        network: Network,
+        now: Callable[[], int],
+        topic_device: Callable[[DeviceConfig], Device] | None = None,
+    ) -> None:
         self._devices: dict[str, Device] = {}
         self._udp: list[UdpDevice] = []
         for each in configs.values():
-            if each.file is None:
+            if each.topic and topic_device is not None:
+                self._devices[each.name] = topic_device(each)
+            elif each.file is None:
                 udp = UdpDevice(network, each.port, Place(*each.target))
                 self._udp.append(udp)
                 self._devices[each.name] = udp

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from cfepy.extra.c.devices import DevicePorts
+from cfepy.extra.c.devices import Device, DevicePorts
 from cfepy.extra.c.loading import CompiledLoader
 from cfepy.extra.c.runtime import CRuntime
-from cfepy.mission import DataRace, Overwrite
+from cfepy.mission import DataRace, DeviceConfig, Overwrite
 from cfepy.sb import SoftwareBus
 from cfepy.trace import UNSENT
 
@@ -28,6 +28,12 @@ def compiled_loader(processor: Processor, polling_ns: int, start_ros: Callable[[
     """
     machine, cfe = processor.machine, processor.cfe
     watch = machine.stall_watch
+
+    def topic_device(config: DeviceConfig) -> Device:
+        from cfepy.extra.c.topic_devices import TopicDevice  # few missions have one
+
+        return TopicDevice(config, lambda: processor.begin_ros().outside)
+
     with watch.paused():  # the engine may have to be compiled first
         runtime = CRuntime(
             cfe,
@@ -43,7 +49,7 @@ def compiled_loader(processor: Processor, polling_ns: int, start_ros: Callable[[
             on_stack=machine.record.note_stack,
             nodes={app: each.name for app, each in machine.spec.built.items()},
             publication_watch=CompiledWatch(cfe.sb, lambda: processor.ros),
-            devices=DevicePorts(machine.spec.devices, machine.network, lambda: machine.kernel.now),
+            devices=DevicePorts(machine.spec.devices, machine.network, lambda: machine.kernel.now, topic_device),
         )
     cfe.es.core_memory = runtime.core_memory
     if runtime.tables is not None:

@@ -210,6 +210,8 @@ class DeviceFiles:
         bus = int(number) if path.startswith(I2C) and number.isdecimal() else FAILED
         if device is None and not self._ports.has_bus(bus):
             return None
+        if device is not None:
+            device.open()
         return OpenDevice(self._c, device, bus, flags)
 
     def get_options(self, descriptor: int, at: int) -> int:

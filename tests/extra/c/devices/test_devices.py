@@ -14,7 +14,7 @@ from cfepy.osal import Datagram, Mailbox, Place
 from cfepy.pilot.mission_check import check_mission
 from cfepy.status import UsageError
 from cfepy.writing.console import Console
-from tests.extra.c.building import needs_compiler
+from tests.extra.c.building import compile_c, needs_compiler, said
 
 pytestmark = needs_compiler
 
@@ -197,8 +197,15 @@ def test_device_files_without_devices_do_not_exist(tmp_path: Path, objects: Path
         ("{udp: 5010}", "requires `to: HOST:PORT`"),
         ("{udp: 70000, to: 1}", "70000"),
         ("{udp: 1, to: x:y}", "'x:y' is not an address; expected PORT or HOST:PORT"),
-        ("{python: hardware.py:Echo, to: 5}", "is only valid with `udp`"),
-        ("{}", "requires one of `python: FILE.py:CLASS` and `udp: PORT`"),
+        ("{python: hardware.py:Echo, to: 5}", "is only valid with `udp` or `topic`"),
+        ("{python: hardware.py:Echo, type: std_msgs/String}", "is only valid with `topic`"),
+        ("{topic: gps raw}", "'gps raw' is not a ROS name; expected /NAME"),
+        (
+            "{topic: /gps, type: std_msgs/Int8}",
+            "'std_msgs/Int8' carries no bytes; expected std_msgs/UInt8MultiArray or",
+        ),
+        ("{udp: 5, to: 6, topic: /gps}", "requires one of"),
+        ("{}", "requires one of `python: FILE.py:CLASS`, `udp: PORT` and `topic: NAME`"),
         ("{pyton: hardware.py:Echo}", "did you mean python"),
     ],
 )
@@ -229,3 +236,53 @@ def test_headers_of_hwlibs_can_compile_without_the_hosts_library(tmp_path: Path)
     source.parent.mkdir(parents=True)
     source.write_text('#include <libsocketcan.h>\nint up(void) { return can_set_bitrate("can0", 500000); }\n')
     assert build(tmp_path / "can", tmp_path / "can.so").warnings == []
+
+
+NODE = """
+#!/usr/bin/env python3
+import rospy
+from std_msgs.msg import String, UInt8MultiArray
+
+rospy.init_node("gps")
+answers = rospy.Publisher("/gps/{answers}", {kind}, queue_size=10)
+
+
+def answer(message):
+    data = message.data if isinstance(message.data, bytes) else message.data.encode()
+    answers.publish({kind}(data=bytes(data).upper(){decode}))
+
+
+rospy.Subscriber("/gps/commands", {kind}, answer)
+rospy.spin()
+"""
+PORT = """
+    #include <fcntl.h>
+    #include <unistd.h>
+    void TEST_Main(void)
+    {
+        char data[32] = "";
+        int port = open("/dev/ttyS1", O_RDWR);
+        OS_TaskDelay(1000);
+        SAY("write %d", (int)write(port, "position?", 9));
+        int count = read(port, data, 5);
+        SAY("read %d %s", count, data);
+        count = read(port, data, sizeof data);
+        SAY("read %d %.4s", count, data);
+    }
+"""
+
+
+@pytest.mark.parametrize(("kind", "priority"), [("String", 40), ("UInt8MultiArray", 60)])
+def test_node_is_a_device_by_two_topics(tmp_path: Path, kind: str, priority: int) -> None:
+    named = ", type: std_msgs/String" if kind == "String" else ""
+    mission = f"devices:\n  /dev/ttyS1: {{topic: /gps/answers, to: gps/commands{named}}}\n"
+    decode = ".decode()" if kind == "String" else ""
+    compile_c(tmp_path, "TEST", PORT)
+    (tmp_path / "mission.yaml").write_text(mission)
+    (tmp_path / "gps.py").write_text(NODE.format(answers="answers", kind=kind, decode=decode).lstrip())
+    (tmp_path / "startup.scr").write_text(
+        "CFE_APP, gps.py, __main__, GPS, 60, 65536, 0x0, 0;\n" + SCRIPT.format("TEST")
+    )
+    with Mission(str(tmp_path), console=Console(quiet=True)) as flown:
+        flown.run_for(4)
+        assert said("\n".join(flown.console.lines)) == ["write 9", "read 5 POSIT", "read 4 ION?"]
