@@ -255,6 +255,18 @@ class CRuntime:
         takes: int = self._heap.takes
         return takes
 
+    def reallocate(self, address: int, size: int) -> int:
+        """Return a block of malloc of the current application, in place of another one, whose bytes are not kept.
+
+        Args:
+            address: the other block; 0 for none.
+            size: bytes.
+        """
+        self._heap.owner = getattr(self.kernel.current.owner, "app_id", 0)
+        if address:
+            self._heap.give(address)
+        return int(self._heap.take(size))
+
     def close_image(self, image: Image) -> None:
         """Close an image. The images that leave memory with it are unloaded after a call of their end functions."""
         for leaving in self.openings.end(image):

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 FILE_BYTES = 256
 """At least sizeof(FILE), 216."""
 NEW_FILE = 0o666
+FIRST_LINE = 120
+"""The bytes that getline allocates at first."""
 SCAN = Struct("<QQQQ")
 """`Scan` of engine/natives_scanning.c: text, size, bytes used, whether the end was seen."""
 POSITION = Struct("<q8x")
@@ -211,6 +213,21 @@ class Stdio:
             raise CFault("buffer overflow detected")
         return self.read_line(to, size, handle)
 
+    def read_allocated(self, line_at: int, size_at: int, end: int, handle: int) -> int:
+        """Read a text with its end into memory of malloc (getdelim). Returns its bytes, or -1 at the end."""
+        self._c.kernel.preempt()
+        memory, text = self._c.memory, self.files.of(handle).read_line(1 << 30, bytes([end & 0xFF]))
+        if not text:
+            return EOF
+        address, room = memory.u64(line_at), memory.u64(size_at)
+        if not address or room < len(text) + 1:
+            room = max(len(text) + 1, FIRST_LINE, 2 * room if address else 0)
+            address = self._c.reallocate(address, room)
+            memory.put_u64(line_at, address)
+            memory.put_u64(size_at, room)
+        memory.poke(address, text + b"\0")
+        return len(text)
+
     def give_back(self, code: int, handle: int) -> int:
         return self.files.of(handle).give_back(code)
 
@@ -291,6 +308,8 @@ def declare(api: Declarations, c: CRuntime) -> None:
     calls.add("getchar getchar_unlocked", "", lambda: stdio.read_one(STDIN))
     calls.add("fgets fgets_unlocked", "$pip", stdio.read_line, 0)
     calls.add("__fgets_chk __fgets_unlocked_chk", "$pQip", stdio.read_line_checked, 0)
+    calls.add("getline __getline", "$PPp", lambda line, size, handle: stdio.read_allocated(line, size, 10, handle))
+    calls.add("getdelim __getdelim", "$PPip", stdio.read_allocated)
     calls.add("ungetc", "ip", stdio.give_back)
     calls.add("fwrite fwrite_unlocked", "$pQQp", stdio.write, 0)
     calls.add("fputs fputs_unlocked", "Sp", stdio.put_text)

@@ -98,10 +98,10 @@ class FileStream:
             taken += data
         return bytes(taken)
 
-    def read_line(self, limit: int) -> bytes:
-        """Return the bytes up to a newline, at most `limit`."""
+    def read_line(self, limit: int, newline: bytes = b"\n") -> bytes:
+        """Return the bytes up to a newline or another byte, at most `limit`."""
         line = bytearray()
-        while len(line) < limit and not line.endswith(b"\n"):
+        while len(line) < limit and not line.endswith(newline):
             if self._given_back or self._at >= len(self._input):
                 try:
                     byte = self.read(1)
@@ -111,7 +111,7 @@ class FileStream:
                     break
                 line += byte
                 continue
-            end = self._input.find(b"\n", self._at) + 1 or len(self._input)
+            end = self._input.find(newline, self._at) + 1 or len(self._input)
             end = min(end, self._at + limit - len(line))
             line += self._input[self._at : end]
             self._at = end

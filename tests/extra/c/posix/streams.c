@@ -175,6 +175,27 @@ static void scans(void)
     fclose(both);
 }
 
+static void lines(void)
+{
+    char *line = NULL, long_text[400];
+    size_t size = 0;
+    long count;
+    memset(long_text, 'x', sizeof long_text);
+    long_text[390] = 0;
+    FILE *file = fopen("cf/work/l.txt", "w+");
+    fprintf(file, "one\n\n%s\ntwo;three;last", long_text);
+    rewind(file);
+    for (int i = 0; i < 3; i++) {
+        count = getline(&line, &size, file);
+        SAY("getline %ld %ld", count, (long)size);
+    }
+    while ((count = getdelim(&line, &size, ';', file)) >= 0)
+        SAY("getdelim %ld %s", count, quoted(line));
+    SAY("end %d", !!feof(file));
+    free(line);
+    fclose(file);
+}
+
 static void descriptors(void)
 {
     int number = open("cf/work/d.bin", O_RDWR | O_CREAT | O_TRUNC, 0644);
@@ -199,5 +220,6 @@ static void trial(void)
     buffers();
     positions();
     scans();
+    lines();
     descriptors();
 }
