@@ -35,7 +35,11 @@ std::uint32_t Publisher::getNumSubscribers() const
 
 bool Publisher::isLatched() const
 {
-    return *this && handle_->advertised->latch_;
+    if (!*this) // an assertion of roscpp, which its library contains however the node is built
+    {
+        roscfe::refuse("isLatched() of a publisher that has no topic", roscfe::g_node.name.c_str());
+    }
+    return handle_->advertised->latch_;
 }
 
 void Subscriber::shutdown()

@@ -61,6 +61,12 @@ def test_subscribers_publishers_and_timers_that_end_keep_no_memory(here: Alone) 
     assert int(line.split()[0]) < MOST_GROWTH
 
 
+def test_node_ends_that_asks_a_publisher_without_a_topic_whether_it_is_latched(here: Alone) -> None:
+    done = here.run(here.program(OWN / "latched.cpp"))
+    assert (done.returncode, done.stdout) == (3, "P| 1\n")
+    assert "isLatched() of a publisher that has no topic" in done.stderr
+
+
 @pytest.mark.parametrize(
     ("function", "text"),
     [
