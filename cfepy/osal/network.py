@@ -42,6 +42,12 @@ class Place(NamedTuple):
         """Whether it is on the loopback interface, the only interface."""
         return self.host in ("0.0.0.0", "::", "::1") or self.host.startswith("127.")
 
+    @property
+    def is_group(self) -> bool:
+        """Whether it is the broadcast address or a multicast address, to which Linux lets datagram sockets be bound."""
+        first = self.host.partition(".")[0]
+        return self.host == "255.255.255.255" or (first.isdecimal() and 224 <= int(first) < 240)
+
     def reached(self) -> Place:
         """Return the address as the peer sees it: a socket bound to all hosts answers from the loopback address."""
         if self.host != self.any_host:
@@ -346,7 +352,7 @@ class BoundEndpoints(Generic[Bound]):
         Returns:
             The address, or None if it is not on this network, or taken and not shared.
         """
-        if not place.is_here:
+        if not (place.is_here or (self._shares and place.is_group)):
             return None
         endpoint.anonymous = place.port == 0
         if endpoint.anonymous:

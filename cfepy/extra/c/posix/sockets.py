@@ -184,7 +184,7 @@ class PosixSocket(AnySocket):
         """Take an address."""
         if self._end.place is not None or self._listener.place is not None:
             raise failure(errno.EINVAL)
-        if not place.is_here:
+        if not (place.is_here or (place.is_group and self.kind == SOCK_DGRAM)):
             raise failure(errno.EADDRNOTAVAIL)
         self._take(place)
 

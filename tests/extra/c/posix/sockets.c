@@ -130,6 +130,15 @@ static void datagrams(void)
     Address wide = local(9);
     wide.sin_addr.s_addr = INADDR_BROADCAST;
     TRY(sendto(first, "x", 1, 0, TO(wide)));
+    int group = socket(AF_INET, SOCK_DGRAM, 0);
+    wide.sin_port = 0;
+    TRY(bind(group, TO(wide)));
+    name_of(group);
+    close(group);
+    group = socket(AF_INET, SOCK_DGRAM, 0);
+    wide.sin_addr.s_addr = htonl(0x0a010203);
+    TRY(bind(group, TO(wide)));
+    close(group);
     struct iovec pieces[2] = {{"mes", 3}, {"sage", 4}};
     shared.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
     struct msghdr message = {&shared, sizeof shared, pieces, 2, NULL, 0, 0};
