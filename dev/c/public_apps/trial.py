@@ -99,9 +99,23 @@ def _try_tree(mission: PublicMission, source: Path, options: list[str], scratch:
         own = [each for each in script if Path(_file(each)).stem == name]
         library = next(iter(folder.rglob(f"{name}.so")))
         if not own:
+            own = in_definitions(scratch / mission.repo.rpartition("/")[2] / mission.defs, name) if mission.defs else []
+        if not own:
             own = entries(made_startup([(name, functions_of(library), [])]).text)
         used = [each for each in libraries if Path(_file(each)).stem != name]
         yield _flight(mission, name, built, folder, [*used, *own[:1]], scratch)
+
+
+def in_definitions(folder: Path, name: str) -> list[StartupEntry]:
+    """Return the entries of an application in the startup scripts of a folder, also those behind the end of a script.
+
+    NOS3 moves some of them before the end when it is configured. An entry that is made up may have the name of a task.
+    """
+    found = []
+    for file in sorted(folder.rglob("*.scr")):
+        lines = [each for each in file.read_bytes().splitlines() if each.startswith(b"CFE_")]
+        found += [each for each in entries(b"\n".join(lines)) if Path(_file(each)).stem == name]
+    return found
 
 
 def _libraries(script: list[StartupEntry], folder: Path) -> list[StartupEntry]:

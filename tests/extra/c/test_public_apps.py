@@ -22,7 +22,7 @@ from dev.c.public_apps.results import (
     read_results,
     write_results,
 )
-from dev.c.public_apps.trial import try_mission
+from dev.c.public_apps.trial import in_definitions, try_mission
 from dev.corpus.sources import Sources
 from tests.extra.c.building import needs_compiler
 
@@ -84,6 +84,18 @@ def test_nasas_applications_do_not_count() -> None:
     mission = PublicMission("one", "a/b")
     assert [each for each in ("cf", "HK", "sample_lib", "probe") if mission.counts(each)] == ["probe"]
     assert PublicMission("one", "a/b", apps=("hk",)).counts("hk")
+
+
+def test_entry_of_an_application_comes_from_the_definitions(tmp_path: Path) -> None:
+    script = tmp_path / "defs/cpu1_cfe_es_startup.scr"
+    script.parent.mkdir()
+    script.write_text(
+        "CFE_APP, radio, R_Main, RADIO, 67, 32768, 0x0, 0;\n! end\n! more\nCFE_APP, cam, C_Main, CAM, 5, 99, 0, 0;\n!\n"
+    )
+    [entry] = in_definitions(tmp_path, "radio")
+    assert (entry.symbol, entry.name, entry.priority) == ("R_Main", "RADIO", 67)
+    assert [each.name for each in in_definitions(tmp_path, "cam")] == ["CAM"]
+    assert in_definitions(tmp_path, "other") == []
 
 
 def test_unknown_mission_is_reported() -> None:

@@ -21,6 +21,7 @@ from cfepy.extra.c.posix.descriptors import (
     O_NONBLOCK,
     O_TRUNC,
     O_WRONLY,
+    S_IFCHR,
     Facts,
     failure,
 )
@@ -44,6 +45,7 @@ _IS_ARM = platform.machine() == "aarch64"
 STAT = Struct("<QQIIIIQ8xqi4xq6q8x" if _IS_ARM else "<QQQIII4xQqqq6q24x")
 """struct stat."""
 DEVICE_NUMBER, OWNER = 1, 0
+DEVICE = Facts(S_IFCHR | 0o660)
 
 
 def open_path(c: CRuntime, function: str, path: str, flags: int, mode: int) -> int:
@@ -193,7 +195,8 @@ class PosixCallsOnFiles:
 
     def stat(self, path: str, at: int) -> int:
         self._c.kernel.preempt()
-        self._put(self._files.facts("stat", path), at)
+        is_device = self._c.devices.has_file(path)
+        self._put(DEVICE if is_device else self._files.facts("stat", path), at)
         return 0
 
     def stat_open(self, number: int, at: int) -> int:

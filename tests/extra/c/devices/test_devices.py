@@ -257,10 +257,14 @@ rospy.spin()
 """
 PORT = """
     #include <fcntl.h>
+    #include <sys/stat.h>
     #include <unistd.h>
     void TEST_Main(void)
     {
         char data[32] = "";
+        struct stat facts = {0};
+        SAY("stat %d", stat("/dev/ttyS1", &facts));
+        SAY("is a device %d", S_ISCHR(facts.st_mode));
         int port = open("/dev/ttyS1", O_RDWR);
         OS_TaskDelay(1000);
         SAY("write %d", (int)write(port, "position?", 9));
@@ -285,4 +289,5 @@ def test_node_is_a_device_by_two_topics(tmp_path: Path, kind: str, priority: int
     )
     with Mission(str(tmp_path), console=Console(quiet=True)) as flown:
         flown.run_for(4)
-        assert said("\n".join(flown.console.lines)) == ["write 9", "read 5 POSIT", "read 4 ION?"]
+        found = said("\n".join(flown.console.lines))
+    assert found == ["stat 0", "is a device 1", "write 9", "read 5 POSIT", "read 4 ION?"]
