@@ -99,7 +99,9 @@ def _events(lines: Sequence[str], app: str) -> Iterator[str]:
             yield f"event {found[1]}"
 
 
+_FAILURE = re.compile("CFault|fault at|cannot be loaded|Error loading|Could not|could not|not found|Exit|exit")
+
+
 def _is_failure(line: str, entry: StartupEntry) -> bool:
-    return bool(re.search(r"CFault|fault at|cannot be loaded|Could not|could not|not found|Exit|exit", line)) and (
-        entry.name in line or entry.file.rpartition("/")[2] in line or "CFault" in line
-    )
+    names_it = entry.name in line or entry.file.rpartition("/")[2] in line or "CFault" in line
+    return names_it and _FAILURE.search(line) is not None
