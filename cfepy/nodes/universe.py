@@ -33,7 +33,7 @@ from cfepy.nodes.stdlib.descriptors import SocketTable
 from cfepy.nodes.stdlib.locks import make_lock_types
 from cfepy.nodes.stdlib.replacements import for_nodes
 from cfepy.nodes.stdlib.streams import ConsoleStream, NoInput, TypedInput
-from cfepy.rtos import Task, TaskExit
+from cfepy.rtos import Task, TaskExit, is_end_of_task
 
 if TYPE_CHECKING:
     from cfepy.nodes.accesses import Accesses
@@ -507,6 +507,8 @@ def _status_of(universe: Universe, error: BaseException) -> int:
         return _exit_code(universe, error.code)
     if not isinstance(error, (Exception, NodeInterrupt)):
         raise error  # the end of the task, or a Ctrl-C of the host's user
+    if is_end_of_task(error):
+        raise TaskExit
     universe.error = error
     _show(universe, error)
     return 130 if type(error) is NodeInterrupt else 1  # not for classes derived from it, as in CPython

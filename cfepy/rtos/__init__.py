@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from cfepy.rtos.scheduler import SLICE_NS
     from cfepy.rtos.semaphore import Semaphore
     from cfepy.rtos.stall_signals import LastResort
-    from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit
+    from cfepy.rtos.task import FOREVER, PLACE, TIMEOUT, Task, TaskExit, is_end_of_task
     from cfepy.rtos.task_starters import StartersFirst
     from cfepy.rtos.wait_graph import Wait, circles, endless
     from cfepy.rtos.wait_list import WaitList
@@ -105,6 +105,7 @@ __all__ = [
     "circles",
     "endless",
     "has_greenlets",
+    "is_end_of_task",
     "kept_waiting_ns",
     "missed_notes",
     "task_kind",
@@ -176,6 +177,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
                 "TIMEOUT",
                 "Task",
                 "TaskExit",
+                "is_end_of_task",
             ),
             ".wait_graph": (
                 "Wait",

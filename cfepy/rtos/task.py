@@ -18,6 +18,17 @@ class TaskExit(BaseException):
     """Unwinds a task that ends or is killed. Only the kernel catches it."""
 
 
+def is_end_of_task(error: BaseException | None) -> bool:
+    """Return whether an error is a `TaskExit`, or was raised by code that ran while a task unwound.
+
+    The task's `finally` and `except` clauses may raise an error, such as the release of a lock that a condition did not
+    get back. On the target the task ends without running them.
+    """
+    while error is not None and not isinstance(error, TaskExit):
+        error = error.__context__
+    return error is not None
+
+
 class Timeout:
     """The type of `TIMEOUT`, the result of a wait that timed out."""
 

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.node_tracebacks import traceback_parts, traceback_text
-from cfepy.rtos import TIMEOUT, WaitList
+from cfepy.rtos import TIMEOUT, TaskExit, WaitList, is_end_of_task
 from cfepy.status import CfeError
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.subscription import DEFAULT_BUFF_SIZE, ENDS_OF_THREAD, NO_PIPE
@@ -367,6 +367,8 @@ class Service:
         except ServiceException as error:
             return False, f"service cannot process request: {error}".encode()
         except Exception as error:
+            if is_end_of_task(error):
+                raise TaskExit from error
             self.error_handler(error, *sys.exc_info())
             return False, f"error processing request: {error}".encode()
         except ENDS_OF_THREAD as error:

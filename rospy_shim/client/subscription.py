@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.interpreter.node_interrupt import NodeInterrupt
 from cfepy.nodes.node_tracebacks import traceback_text
+from cfepy.rtos import TaskExit, is_end_of_task
 from cfepy.status import CfeError
 from rospy_shim.client import connection_setup as connecting
 from rospy_shim.client.message import packer, unpacker
@@ -522,6 +523,8 @@ class Subscription(TopicSide):
 
     def _bad_callback(self, callback: Callable[..., Any], error: Exception) -> None:
         """Log an exception in a callback; the next message is delivered all the same."""
+        if is_end_of_task(error):
+            raise TaskExit from error
         where = error.__traceback__
         text = traceback_text(error.with_traceback(where.tb_next if where is not None else None))
         name = _ADDRESS.sub("0x0", str(callback))  # an address would differ in each run

@@ -21,7 +21,7 @@ from cfepy.nodes.made_modules import made
 from cfepy.nodes.node_tracebacks import traceback_text
 from cfepy.nodes.stdlib.futures import hash_by_serial
 from cfepy.nodes.stdlib.locks import END, INNER, MAX_WAIT_S, as_waiter
-from cfepy.rtos import TaskExit
+from cfepy.rtos import is_end_of_task
 from cfepy.schedules import ExploringKernel
 
 if TYPE_CHECKING:
@@ -227,6 +227,8 @@ def _body(
     try:
         Context().run(function, *args, **options)
     except (Exception, NodeInterrupt) as error:
+        if is_end_of_task(error):
+            return
         universe.thread_errors.append(error)
         universe.print_error(f"Exception ignored in thread started by: {function!r}\n{traceback_text(error)}")
 
@@ -238,7 +240,7 @@ def show_thread_error(universe: Universe, args: Any) -> None:
         universe: universe of the node.
         args: the argument of `threading.excepthook`.
     """
-    if issubclass(args.exc_type, (TaskExit, SystemExit)):
+    if issubclass(args.exc_type, SystemExit) or is_end_of_task(args.exc_value):
         return
     error = args.exc_value if args.exc_value is not None else args.exc_type()
     if not isinstance(error, (Exception, NodeInterrupt)):
@@ -259,7 +261,7 @@ def fix_threading(universe: Universe, module: Any) -> None:
     def make_quiet_invoke() -> Callable[[Any], None]:
         """The end of a task, by which a daemon thread ends with its program, is not an error of the node."""
         invoke: Callable[[Any], None] = make_invoke()
-        return lambda thread: None if isinstance(sys.exc_info()[1], TaskExit) else invoke(thread)
+        return lambda thread: None if is_end_of_task(sys.exc_info()[1]) else invoke(thread)
 
     def charged_is_set(event: Any) -> bool:
         kernel = universe.kernel

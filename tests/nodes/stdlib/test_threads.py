@@ -245,6 +245,24 @@ def test_thread_that_never_ran_ends_with_the_program(run):
     assert not program.kernel.tasks
 
 
+def test_error_of_a_thread_that_unwinds_is_not_shown(run):
+    program = run("""
+        import _thread, threading, time
+        never = threading.Event()
+        def work():
+            try:
+                never.wait()
+            except:
+                raise ValueError("unwound")
+        threading.Thread(target=work, daemon=True).start()
+        _thread.start_new_thread(work, ())
+        time.sleep(0.1)
+    """)
+    assert program.text == ""
+    assert program.universe.thread_errors == []
+    assert program.universe.exit_status == 0
+
+
 @pytest.mark.parametrize("first", [0, 1, 2])
 def test_tasks_of_a_node_can_be_ended_in_any_order(start, first):
     program = start("""

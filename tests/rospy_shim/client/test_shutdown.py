@@ -227,6 +227,31 @@ def test_end_of_the_program_runs_the_hooks(tmp_path: Path) -> None:
     assert printed(tmp_path, "rospy.init_node('probe')\nrospy.on_shutdown(lambda: print('hook'))\n") == ["hook"]
 
 
+def test_error_of_a_callback_or_handler_that_unwinds_is_not_logged(tmp_path: Path) -> None:
+    result = run(
+        tmp_path,
+        """
+import threading
+from std_srvs.srv import Empty
+rospy.init_node("probe")
+never = threading.Event()
+def work(_):
+    try:
+        never.wait()
+    except:
+        raise ValueError("unwound")
+rospy.Subscriber("words", String, work)
+rospy.Service("serve", Empty, work)
+words = rospy.Publisher("words", String, queue_size=1)
+threading.Thread(target=rospy.ServiceProxy("serve", Empty), daemon=True).start()
+rospy.sleep(0.2)
+words.publish("word")
+rospy.sleep(0.2)
+""",
+    )
+    assert not [line for line in result.lines if "unwound" in line]
+
+
 def test_own_signal_handler_sees_the_end(tmp_path: Path) -> None:
     lines = printed(
         tmp_path,
