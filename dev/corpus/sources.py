@@ -135,12 +135,21 @@ class Listed(Protocol):
         """The commit of each repository, by its name."""
 
 
-def add_fetch(actions: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Add the action `fetch` to a program."""
+Fetch = Callable[[argparse.Namespace, Any], int]
+"""Fetches the sources of a list. Gets the arguments `folder` and `mirrors`, and the list. Returns the exit status."""
+
+
+def add_fetch(actions: argparse._SubParsersAction[argparse.ArgumentParser], fetch: Fetch | None = None) -> None:
+    """Add the action `fetch` to a program.
+
+    Args:
+        actions: the program's actions.
+        fetch: fetches the sources; None for a list with one commit of each repository (`Listed`).
+    """
     parser = actions.add_parser("fetch", help="get the sources from GitHub, each repository at its commit")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--mirrors", type=Path, help="folder with bare repositories as owner+name/repo")
-    parser.set_defaults(action=_fetch)
+    parser.set_defaults(action=fetch or _fetch)
 
 
 def _fetch(arguments: argparse.Namespace, listed: Listed) -> int:
