@@ -12,13 +12,14 @@ from pathlib import PurePath
 from typing import NamedTuple
 
 from cfepy.interpreter.own_code import is_own_code
-from cfepy.rtos import DeadlockError, InjectedCrash, Task
+from cfepy.rtos import DeadlockError, InjectedCrash, Task, TaskExit
 
 _LINE = re.compile(r"\[(?P<node>[^\]\s]+)\] ?(?P<text>.*)")
 _FRAME = re.compile(r'\s+File "(?P<file>.+)", line (?P<line>\d+)')
 _PLACE_AT_END = re.compile(r"\([^\s()]+:\d+\)$")
 _BEGIN = "Traceback (most recent call last):"
 _ASKED_TO_END = "KeyboardInterrupt"  # Ctrl-C, which ends nodes and is not an error
+_END_OF_TASK = f"{TaskExit.__module__}.{TaskExit.__name__}"  # printed by code that runs while its task unwinds
 _CHAINED = ("During handling of the above exception", "The above exception was the direct cause")
 
 
@@ -83,6 +84,8 @@ class TracebackReader:
     def __init__(self) -> None:
         self.found: list[RaisedError] = []
         self._reading: dict[str, _Reading] = {}
+        self._last_end: dict[str, str] = {}  # by node: why its last traceback is not an error; empty if it is one
+        self._unwinding: set[str] = set()  # nodes whose next traceback is chained to the end of a task
 
     def take(self, line: str, now_ns: int, task: str = "") -> None:
         """Read a line of the console, with the virtual time and the task that wrote it."""
@@ -109,14 +112,30 @@ class TracebackReader:
             reading.place = f"{PurePath(frame['file']).name}:{frame['line']}"
         elif not text.startswith(" "):
             del self._reading[node]
-            if text.startswith(_ASKED_TO_END):
+            last_end = self._last_end[node] = self._end_of(node, text)
+            if last_end:
                 return
             what = f"{text} ({reading.place})" if reading.place else text
             cause = cause_of(text.partition(":")[0], what)
             self.found.append(RaisedError(node, what, now_ns, "\n".join(reading.lines), task, cause))
 
+    def _end_of(self, node: str, text: str) -> str:
+        """Return why a traceback is not an error: its task ends, or Ctrl-C; empty if it is an error."""
+        if node in self._unwinding or text.startswith(_END_OF_TASK):
+            self._unwinding.discard(node)
+            return _END_OF_TASK
+        return _ASKED_TO_END if text.startswith(_ASKED_TO_END) else ""
+
     def _forget_last(self, node: str) -> None:
-        """Drop the previous exception, because its handler raised the next one, which is the error."""
+        """Drop the previous exception, because its handler raised the next one, which is the error.
+
+        If the previous one was the end of the task, the next one is not an error either.
+        """
+        last_end = self._last_end.get(node, "")
+        if last_end == _END_OF_TASK:
+            self._unwinding.add(node)
+        if last_end:
+            return
         mine = [at for at, error in enumerate(self.found) if error.who == node]
         if mine:
             del self.found[mine[-1]]

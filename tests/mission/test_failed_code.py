@@ -5,6 +5,7 @@ from __future__ import annotations
 import rospy_shim
 from cfepy.mission import RaisedError, TracebackReader
 from cfepy.pilot import Failure, FailureKind
+from cfepy.rtos import TaskExit
 
 ONE = """
 Traceback (most recent call last):
@@ -70,3 +71,15 @@ def test_other_lines_are_not_tracebacks() -> None:
 
 def test_ctrl_c_that_ends_a_node_is_not_an_error() -> None:
     assert read(ONE.replace("ValueError: no", "KeyboardInterrupt")) == []
+
+
+def test_error_while_ctrl_c_ends_a_node_counts_and_leaves_earlier_ones() -> None:
+    chain = CHAIN.replace("ValueError: no", "KeyboardInterrupt")
+    assert [error.text for error in read(ONE + chain)] == ["ValueError: no (arm.py:12)", "KeyError: 'x' (arm.py:14)"]
+
+
+def test_end_of_a_task_and_errors_while_it_unwinds_are_not_errors() -> None:
+    end = f"{TaskExit.__module__}.{TaskExit.__name__}"
+    assert read(ONE.replace("ValueError: no", end)) == []
+    unwound = CHAIN.replace("ValueError: no", end)
+    assert [error.text for error in read(ONE + unwound + ONE)] == ["ValueError: no (arm.py:12)"] * 2
