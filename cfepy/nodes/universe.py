@@ -151,6 +151,7 @@ class Universe:
         self._tasks: dict[Task, None] = {}
         self._finished_cpu_ns = 0
         self._ending = False
+        self._has_left = False  # by `os._exit`, after which threads that unwind print nothing
         self._thread_ends: dict[int, list[Callable[[], None]]] = {}
         kept = {key: os.environ[key] for key in _KEPT_ENVIRONMENT if key in os.environ}
         self.file_points = file_points(kernel)
@@ -289,6 +290,9 @@ class Universe:
     def exit_now(self, status: int) -> NoReturn:
         """`os._exit`: the node ends here, with all its threads and without its exit hooks."""
         self.exit_status = status & EXIT_BITS
+        self.stdout.finish()
+        self.stderr.finish()
+        self._has_left = True
         self.end_threads()
         raise TaskExit
 
@@ -407,10 +411,12 @@ class Universe:
         stream.flush()
 
     def _write_line(self, line: str) -> None:
-        self._sink(f"[{self.name}] {line}")
+        if not self._has_left:
+            self._sink(f"[{self.name}] {line}")
 
     def _write_error_line(self, line: str) -> None:
-        self.last_words = line or self.last_words
+        if not self._has_left:
+            self.last_words = line or self.last_words
         self._write_line(line)
 
 

@@ -263,6 +263,25 @@ def test_error_of_a_thread_that_unwinds_is_not_shown(run):
     assert program.universe.exit_status == 0
 
 
+def test_threads_print_nothing_after_exit_by_another_thread(run):
+    program = run("""
+        import os, sys, threading, time, traceback
+        never = threading.Event()
+        def work():
+            try:
+                never.wait()
+            except:
+                traceback.print_exc()
+        threading.Thread(target=work).start()
+        time.sleep(0.1)
+        print("all is lost", file=sys.stderr, end="")
+        os._exit(3)
+    """)
+    assert program.text == "all is lost"
+    assert program.universe.exit_status == 3
+    assert program.universe.last_words == "all is lost"
+
+
 @pytest.mark.parametrize("first", [0, 1, 2])
 def test_tasks_of_a_node_can_be_ended_in_any_order(start, first):
     program = start("""
