@@ -12,7 +12,7 @@ from cfepy.extra.exploration.verdict import ENDED
 from cfepy.status import UsageError
 from dev.quality.public_races.races import AFTER, BEFORE, MISSIONS, PublicRace, PublicRaces, read_races
 from dev.quality.public_races.report import PAGE, page, read_results, write_results
-from dev.quality.public_races.trial import FIFO, MOST, Found, Result, found_of, policy_of, try_race
+from dev.quality.public_races.trial import FIFO, LEAST_MENDED, MOST, Found, Result, found_of, policy_of, try_race
 
 HASH = 40
 STARTUP = "CFE_APP, counting.py, __main__, COUNTING, 100, 16384, 0x0, 0;\n!\n"
@@ -148,7 +148,9 @@ def test_results_belong_to_the_list_and_are_kept(tmp_path: Path) -> None:
     races, results = read_races(), read_results()
     assert set(results) <= {race.name for race in races.races.values() if race.flies}
     for name, result in results.items():
-        assert result.schedules == MOST or result.found, name
+        assert result.found or result.schedules >= LEAST_MENDED, name
+        assert result.schedules <= MOST, name
+        assert result.mended >= LEAST_MENDED, name
         assert result.found or races.races[name].reason, name
     write_results(races, results, tmp_path / "results.json")
     assert read_results(tmp_path / "results.json") == results

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from dev.quality.public_races.races import PublicRace, PublicRaces
-from dev.quality.public_races.trial import FIFO, MOST, Found, Result
+from dev.quality.public_races.trial import FIFO, MOST, SHRINK_S, Found, Result
 
 FILE = Path(__file__).with_name("results.json")
 PAGE = Path(__file__).parents[3] / "docs/reference/generated/public_races.md"
@@ -43,6 +43,7 @@ def page(races: PublicRaces, results: Mapping[str, Result]) -> str:
     text = _HEAD.format(
         races=len(flown),
         most=MOST,
+        shrink=SHRINK_S,
         found=len(found),
         hundred=sum(each <= 100 for each in schedules),
         mended=sum(results[each.name].mended for each in flown),
@@ -118,15 +119,16 @@ python -m dev.quality.public_races run --sources ~/public_races
 `fetch` downloads each repository at both commits. The list is `dev/quality/public_races/races.yaml`. Repositories with
 a GPL or AGPL licence are not in it.
 
-The search uses the defaults of the command, with at most {most:,} schedules. It finds {found} of {races} races,
-{hundred} of them within 100 schedules. {alarms}, in {mended:,} schedules together.
+The search uses the defaults of the command, with at most {most:,} schedules, and shrinks each failure for at most
+{shrink} s. It finds {found} of {races} races, {hundred} of them within 100 schedules. {alarms}, in {mended:,} schedules
+together.
 
 The columns are:
 
 - "schedules": the number of schedules up to the first failure. 0 means that the default schedule `fifo` fails already.
 - "policy": the policy of the schedule that fails, with the depth of `pct`.
 - "shrunk": the preemptions that the shrunk schedule needs, and its other changes of order.
-- "mended": the schedules of the mended form.
+- "mended": the schedules of the mended form: at least 100, and as many as the mistake needed.
 
 | race | mistake | schedules | policy | shrunk | mended |
 |---|---|---|---|---|---|
@@ -150,10 +152,10 @@ _ALARMS = """
 """
 _GROUNDED = """
 
-## Races that cannot fly
+## Races that are not flown
 
-cfepy implements cFE, OSAL, the PSP and rospy itself. Races inside NASA's or ROS's code of these parts cannot be found
-by flying on cfepy.
+cfepy implements cFE, OSAL, the PSP, rospy and the master itself. So it cannot find races inside NASA's or ROS's code of
+these parts.
 
 | repository | report | mistake | reason |
 |---|---|---|---|

@@ -94,7 +94,7 @@ def _search(folder: Path, seconds: float, most: int, options: tuple[str, ...]) -
     command = ["explore", folder.name, "--for", str(seconds), "--seeds", str(most), "--until-failure", "--quiet"]
     command += ["--shrink-time", str(SHRINK_S), "--json", str(report), *options]
     done = subprocess.run([sys.executable, "-m", "cfepy", *command], cwd=folder.parent, capture_output=True, text=True)
-    if done.returncode > 1 or not report.is_file():
+    if done.returncode not in (0, 1) or not report.is_file():
         raise UsageError(f"`cfepy {' '.join(command)}` failed: {done.stderr[-500:]}", file=str(folder))
     data = json.loads(report.read_text(encoding="utf-8"))
     failures = data["failures"]

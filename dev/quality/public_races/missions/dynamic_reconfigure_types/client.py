@@ -6,4 +6,4 @@ import rospy
 rospy.init_node("client")
 client = dynamic_reconfigure.client.Client("server", timeout=2)
 client.get_parameter_descriptions(timeout=2)
-client.update_configuration({"speed": 2})
+client.update_configuration({"speed_9": 2})
