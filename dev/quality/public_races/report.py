@@ -47,14 +47,14 @@ def page(races: PublicRaces, results: Mapping[str, Result]) -> str:
         found=len(found),
         hundred=sum(each <= 100 for each in schedules),
         mended=sum(results[each.name].mended for each in flown),
-        alarms=f"{len(alarms)} of the mended forms fail" if alarms else "None of the mended forms fails",
+        alarms=f"Of the mended forms, {len(alarms)} failed" if alarms else "No mended form failed",
     )
     text += "\n".join(_row(each, results[each.name]) for each in flown)
     text += _CAUSES + "\n".join(_story(each, one) for each in found if (one := results[each.name].found))
     if missed:
         text += _MISSED + "\n".join(_missed(each, results[each.name]) for each in missed)
     if alarms:
-        text += _ALARMS + "\n".join(f"- `{each.name}`: {_plain(results[each.name].false_alarm)}" for each in alarms)
+        text += _ALARMS + "\n".join(_alarm(each, results[each.name].false_alarm) for each in alarms)
     if grounded:
         text += _GROUNDED + "\n".join(
             f"| {each.repo} | {each.report} | {each.text} | {each.reason} |" for each in grounded
@@ -90,7 +90,11 @@ def _missed(race: PublicRace, result: Result) -> str:
     also = f" With {options}, schedule {other.schedules} shows it." if other else ""
     if race.options and not other:
         also = f" {options} does not find it in {result.schedules} schedules either."
-    return f"- `{race.name}`: {race.reason}{also}"
+    return f"- `{race.name}`: {race.reason}.{also}"
+
+
+def _alarm(race: PublicRace, failure: str) -> str:
+    return f"- `{race.name}`: {_plain(failure)}{f'. {race.reason}' if race.reason else ''}."
 
 
 def _source(races: PublicRaces, race: PublicRace) -> str:
