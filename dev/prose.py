@@ -20,7 +20,7 @@ from dev.house.tree import ROOT
 
 TABLE = ROOT / "tests/prose.tsv"
 FOLDERS = (
-    *("cfepy", "rospy_shim", "ros_libraries", "apps", "dev", "benchmarks", "tests", "docs"),
+    *("cfepy", "rospy_shim", "rclpy_shim", "ros_libraries", "apps", "dev", "benchmarks", "tests", "docs"),
     *("missions", "ros_packages", "examples"),
 )
 RIDDLES = {

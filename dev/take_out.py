@@ -1,7 +1,8 @@
 """`python -m dev.take_out [NAME ...]`: take add-ons out of a copy of this checkout, one at a time, and fly the rest.
 
-A name is one of the folders of `cfepy/extra`, or `ros_libraries`; `all` is all of them at once. Without names, each is
-taken out in turn. The program tries the help, the check and the run of `lab`, the run of `capture`, and `cfepy.boot`.
+A name is one of the folders of `cfepy/extra`, or `ros_libraries` or `rclpy_shim`; `all` is all of them at once.
+Without names, each is taken out in turn. The program tries the help, the check and the run of `lab`, the run of
+`capture`, and `cfepy.boot`.
 It also checks that a removed command names its add-on. With `--tests` it also runs the quick tests of the rest.
 """
 
@@ -20,8 +21,8 @@ from typing import NamedTuple
 from cfepy.plugins import OWN
 from dev.house.tree import ROOT
 
-SHELF, ALL = "ros_libraries", "all"
-NAMES = (*(each.name for each in OWN), SHELF)
+SHELVES, ALL = ("ros_libraries", "rclpy_shim"), "all"
+NAMES = (*(each.name for each in OWN), *SHELVES)
 COMPUTER = ("rtos", "osal", "psp", "msg", "fs", "es", "sb", "evs", "time", "tbl")
 PYTEST = ("-m", "pytest", "-p", "no:cacheprovider")
 BOOT = "import cfepy\nwith cfepy.boot('lab') as flight:\n    flight.run_for(1.0)\n"
@@ -48,7 +49,7 @@ class Copy:
         self.names = names
         shutil.copytree(ROOT, folder, ignore=LEFT_OUT)
         for name in names:
-            shutil.rmtree(folder / name if name == SHELF else folder / "cfepy" / "extra" / name)
+            shutil.rmtree(folder / name if name in SHELVES else folder / "cfepy" / "extra" / name)
 
     def give(self, *words: str) -> subprocess.CompletedProcess[str]:
         """Give a command of this Python, which finds the copy and not the checkout."""

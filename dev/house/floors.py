@@ -24,6 +24,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("schedules", "types"),
     ("nodes",),
     ("rospy_shim", "apps"),
+    ("rclpy_shim",),
     ("mission",),
     ("ground",),
     ("monitors",),

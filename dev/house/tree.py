@@ -15,8 +15,14 @@ from pathlib import Path
 from typing import Literal
 
 ROOT = Path(__file__).parents[2]
-TOPS = ("cfepy", "rospy_shim", "ros_libraries", "apps")
-NODE_CODE = ("ros_libraries", "rospy_shim/rospy_modules", "rospy_shim/roslaunch/tools", "rospy_shim/stand_ins")
+TOPS = ("cfepy", "rospy_shim", "rclpy_shim", "ros_libraries", "apps")
+NODE_CODE = (
+    "ros_libraries",
+    "rclpy_shim/libraries",
+    "rospy_shim/rospy_modules",
+    "rospy_shim/roslaunch/tools",
+    "rospy_shim/stand_ins",
+)
 IMPORTERS = ("import_module", "__import__")
 
 When = Literal["at once", "late", "for types", "by name"]

@@ -33,7 +33,12 @@ class Form(Enum):
 
 
 def unpack_source(
-    spec: Spec, lookup: Callable[[str], Spec], class_of: Callable[[str], type], names: Namespace, form: Form
+    spec: Spec,
+    lookup: Callable[[str], Spec],
+    class_of: Callable[[str], type],
+    names: Namespace,
+    form: Form,
+    decoder_class: type[Decoder] | None = None,
 ) -> list[str]:
     """Return the source of a function that decodes messages of one type.
 
@@ -44,9 +49,10 @@ def unpack_source(
         names: receives the names in the source. The caller must add `_read_again`, which handles data that the fast
             code cannot read as genpy does.
         form: the function to write.
+        decoder_class: writes the parts; None takes `Decoder`, which unpacks messages of ROS 1.
     """
     out = CodeLines(depth=2)
-    decoder = _Decoder(out, lookup, class_of, names, form)
+    decoder = (decoder_class or Decoder)(out, lookup, class_of, names, form)
     decoder.fields(spec, "self")
     decoder.flush()
     again = _AGAIN[form.value]
@@ -59,8 +65,16 @@ def unpack_source(
     return [_HEADS[form.value], *first, "    try:", *out.lines, *tail]
 
 
-class _Decoder:
-    """Collects targets of one struct and, between the structs, moves the local variable `at` through the bytes."""
+class Decoder:
+    """Collects targets of one struct and, between the structs, moves the local variable `at` through the bytes.
+
+    Args:
+        out: receives the source lines.
+        lookup: specs of nested types.
+        class_of: classes of nested types.
+        names: receives the names in the source.
+        form: the function to write.
+    """
 
     def __init__(
         self,
@@ -112,6 +126,7 @@ class _Decoder:
         return count
 
     def fields(self, spec: Spec, owner: str) -> None:
+        """Decode all fields of the message that the local variable `owner` holds."""
         for field in spec.fields:
             target = f"{owner}.{field.attribute}"
             if field.is_array:
@@ -120,6 +135,7 @@ class _Decoder:
                 self.single(field.base, target)
 
     def single(self, base: str, target: str) -> None:
+        """Decode one value."""
         if base == "bool":
             self.fixed("?", target)
         elif base in PRIMITIVES:
@@ -132,6 +148,7 @@ class _Decoder:
             self.fields(self.lookup(base), self.instance(self.names.cls(base, self.class_of(base)), target))
 
     def time(self, base: str, target: str) -> None:
+        """Decode a time or a duration."""
         kind, code = _TIMES[base]
         time = self.instance(kind, target)
         self.fixed(2 * code, f"{time}.secs", f"{time}.nsecs")
@@ -154,12 +171,14 @@ class _Decoder:
         return name
 
     def octets(self, count: str, target: str, convert: str = "") -> None:
+        """Take bytes, and convert them by the expression that follows."""
         end = self.out.local("end")
         self.out.add(f"{end} = at + {count}")
         self.out.add(f"{target} = data[at:{end}]{convert}")
         self.out.add(f"at = {end}")
 
     def array(self, field: Field, target: str) -> None:
+        """Decode an array."""
         if field.base == "string":
             self.strings(field.length, target)
         elif field.base in _OCTETS:
@@ -171,6 +190,7 @@ class _Decoder:
             self.items(field, target)
 
     def strings(self, length: int | None, target: str) -> None:
+        """Decode an array of strings."""
         self.arrive()
         site, values, raw = self.names.strings_site(length), self.out.local(), self.out.local("raw")
         self.out.add(f"{values}, {raw} = {site}")
@@ -181,6 +201,7 @@ class _Decoder:
         self.out.add(f"    {target}, at = _read_strings({site}, data, at, {length})")
 
     def numbers(self, field: Field, target: str) -> None:
+        """Decode an array of numbers."""
         code = PRIMITIVES[field.base] if field.base != "bool" else "?"
         size = calcsize("<" + code)
         count = self.count() if field.length is None else str(field.length)
@@ -199,6 +220,7 @@ class _Decoder:
             self.ahead += size * field.length
 
     def numpy_array(self, code: str, count: str, size: int, target: str) -> None:
+        """Decode an array of numbers as numpy's."""
         self.arrive()
         end = self.out.local("end")
         self.out.add(f"{end} = at + {size} * {count}")

@@ -17,7 +17,14 @@ _TIME_CODES = {"time": "II", "duration": "ii"}
 _OCTETS = ("uint8", "char")
 
 
-def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, with_numpy: bool = False) -> list[str]:
+def pack_source(
+    spec: Spec,
+    lookup: Callable[[str], Spec],
+    names: Namespace,
+    *,
+    with_numpy: bool = False,
+    encoder_class: type[Encoder] | None = None,
+) -> list[str]:
     """Return the source of the function that encodes messages of one type.
 
     Args:
@@ -26,9 +33,10 @@ def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, 
         names: receives the names in the source. The caller must add `_write_again`, which handles a message that the
             fast code cannot write as genpy does.
         with_numpy: write `__pack_numpy__(self, numpy)`, where number arrays are numpy's.
+        encoder_class: writes the parts; None takes `Encoder`, which packs messages of ROS 1.
     """
     out = CodeLines(depth=2)
-    encoder = _Encoder(out, lookup, names, with_numpy)
+    encoder = (encoder_class or Encoder)(out, lookup, names, with_numpy)
     encoder.fields(spec, "self")
     head = "def __pack_numpy__(self, numpy):" if with_numpy else "def __pack__(self):"
     out.add(f"return {encoder.result()}")
@@ -36,8 +44,15 @@ def pack_source(spec: Spec, lookup: Callable[[str], Spec], names: Namespace, *, 
     return [head, "    try:", *out.lines, "    except Exception:", "        pass", f"    return {again}"]
 
 
-class _Encoder:
-    """Collects the parts that, joined, are the encoded message."""
+class Encoder:
+    """Collects the parts that, joined, are the encoded message.
+
+    Args:
+        out: receives the source lines.
+        lookup: specs of nested types.
+        names: receives the names in the source.
+        with_numpy: number arrays are numpy's.
+    """
 
     def __init__(self, out: CodeLines, lookup: Callable[[str], Spec], names: Namespace, with_numpy: bool) -> None:
         self.out, self.lookup, self.names, self.with_numpy = out, lookup, names, with_numpy
@@ -102,6 +117,7 @@ class _Encoder:
                 self.single(field.base, value)
 
     def single(self, base: str, value: str) -> None:
+        """Encode one value."""
         if base in PRIMITIVES:
             self.fixed(PRIMITIVES[base], value)
         elif base == "string":
@@ -114,6 +130,7 @@ class _Encoder:
             self.fields(self.lookup(base), self.local(value))
 
     def array(self, field: Field, value: str) -> None:
+        """Encode an array."""
         if field.base == "string":
             self.strings(field.length, value)
         elif field.base in _OCTETS:
@@ -124,6 +141,7 @@ class _Encoder:
             self.messages(field, self.local(value))
 
     def strings(self, length: int | None, value: str) -> None:
+        """Encode an array of strings."""
         site = self.names.strings_site(length)
         values, last, raw = self.local(value), self.out.local("last"), self.out.local("raw")
         self.out.add(f"{last}, {raw} = {site}")
@@ -132,6 +150,7 @@ class _Encoder:
         self.part(raw)
 
     def octets(self, length: int | None, value: str) -> None:
+        """Encode an array of octets."""
         octets = self.local(value)
         # A list must have the right length; bytes are cut or padded, as struct does it in genpy.
         convert = f"bytes({octets})" if length is None else f"{self.names.pack(f'{length}B')}(*{octets})"
@@ -143,6 +162,7 @@ class _Encoder:
             self.fixed(f"{length}s", octets)
 
     def numbers(self, field: Field, value: str) -> None:
+        """Encode an array of numbers."""
         code = PRIMITIVES[field.base]
         if self.with_numpy:
             numbers = self.local(value)
@@ -169,7 +189,7 @@ class _Encoder:
         self.out.add(f"for {item} in {values}:")
         self.out.depth += 1
         before = len(self.out.lines)
-        inner = _Encoder(self.out, self.lookup, self.names, self.with_numpy)
+        inner = type(self)(self.out, self.lookup, self.names, self.with_numpy)
         if field.base in _TIME_CODES:
             inner.fixed(_TIME_CODES[field.base], f"{item}.secs", f"{item}.nsecs")
         else:
