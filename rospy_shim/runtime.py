@@ -7,16 +7,17 @@ that ended is started again, left alone, or ends the whole run.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from cfepy.es import StartParams
 from cfepy.interpreter.cached import CachedProperty
 from cfepy.nodes import NodeConfig, ProcessNumbers, RosConfig, Universe, show_only
 from cfepy.rtos import InjectedCrash
+from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.client.modules import RosModules
 from rospy_shim.client.node import Node
@@ -28,6 +29,7 @@ from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
 from rospy_shim.parameters.app import ParameterApp
 from rospy_shim.types.msgs import make_module
 from rospy_shim.types.msgs.modules import MessageModule
+from rospy_shim.types.worlds import is_of_ros2
 
 if TYPE_CHECKING:
     from types import ModuleType
@@ -119,6 +121,35 @@ class ProcessMonitor:
         self._console.write(f"launch: {text}")
 
 
+class Ros2(Protocol):
+    """The world of nodes of ROS 2 (`rclpy_shim.world`), which stands above this package."""
+
+    @property
+    def library_paths(self) -> Sequence[Path]:
+        """Folders of the libraries."""
+
+    @property
+    def fallback_paths(self) -> Sequence[Path]:
+        """Folders of replacements for packages that may not be installed."""
+
+    @property
+    def node_class(self) -> type[Node]:
+        """Class of a program."""
+
+    def environment(self, ros1: Mapping[str, str]) -> dict[str, str]:
+        """Return the environment of a program, from that of a node of ROS 1."""
+
+    def command_line(self, config: NodeConfig) -> list[str]:
+        """Return the arguments of a program."""
+
+    def finder(self, program: Any) -> Callable[[str], Factory | None]:
+        """Return the finder of the program's modules."""
+
+
+def _no_ros2() -> Ros2:
+    raise UsageError("nodes of ROS 2 cannot run here; start them in a mission")
+
+
 class NodeEnd(NamedTuple):
     """The end of a node's program.
 
@@ -150,6 +181,7 @@ class RosRuntime:
         accesses: receives the accesses of their code to data, or None.
         traps: receives their loops that wait without a sleep, and similar traps.
         on_bad_end: called with the application of a node in Python whose program has just ended with an error.
+        make_ros2: returns the world of nodes of ROS 2, when the first one starts.
 
     Attributes:
         graph: publishers, subscribers and services.
@@ -174,6 +206,7 @@ class RosRuntime:
         accesses: Accesses | None = None,
         traps: list[object] | None = None,
         on_bad_end: Callable[[str], object] = lambda app: None,
+        make_ros2: Callable[[], Ros2] = _no_ros2,
     ) -> None:
         self.graph = Graph(config)
         self.switchboard = Switchboard(self.graph)
@@ -189,6 +222,7 @@ class RosRuntime:
         self._files = files
         self._accesses = accesses
         self._on_bad_end = on_bad_end
+        self._make_ros2 = make_ros2
         self.traps = self.graph.traps = [] if traps is None else traps
         if files is not None:
             files.stamps.now_ns = lambda: self._epoch_ns + kernel.now
@@ -263,19 +297,26 @@ class RosRuntime:
         node.universe.exit_status = CRASHED
         return CRASHED
 
+    @CachedProperty
+    def _ros2(self) -> Ros2:
+        """The world of nodes of ROS 2; only a run with some imports its modules."""
+        return self._make_ros2()
+
     def _make_node(self, script: Path, app_name: str, config: NodeConfig) -> Node:
+        ros2 = self._ros2 if is_of_ros2(script, config.ros) else None
         tasks = NodeTasks(self._cfe, self._kernel, lambda: next(self._task_numbers))
         cwd = config.cwd or script.parent
         home = str(cwd).removeprefix(self._config.root)
+        homes = {"HOME": home, "PWD": home}
         universe = Universe(
             self._kernel,
             name=config.name or app_name,
             script=script,
-            argv=_command_line(config),
-            env={**ENVIRONMENT, "HOME": home, "PWD": home, **config.env},
+            argv=_command_line(config) if ros2 is None else ros2.command_line(config),
+            env={**(ENVIRONMENT if ros2 is None else ros2.environment(ENVIRONMENT)), **homes, **config.env},
             cwd=cwd,
-            library_paths=[FOLDER],
-            fallback_paths=[STAND_INS],
+            library_paths=[FOLDER] if ros2 is None else ros2.library_paths,
+            fallback_paths=[STAND_INS] if ros2 is None else ros2.fallback_paths,
             seed=self._seed,
             epoch_ns=self._epoch_ns,
             call_cost_ns=self._call_ns,
@@ -293,14 +334,18 @@ class RosRuntime:
             on_thread_start=tasks.thread,
         )
         universe.pid = self._pids.take(universe.pid)
-        universe.make_hidden_objects = lambda: universe.importer.load("rospy.impl.masterslave")
-        node = Node(self._cfe, self.graph, universe, config, tasks, self._call_ns, self._publish_slot_ns)
+        if ros2 is None:
+            universe.make_hidden_objects = lambda: universe.importer.load("rospy.impl.masterslave")
+        node_class = Node if ros2 is None else ros2.node_class
+        node = node_class(self._cfe, self.graph, universe, config, tasks, self._call_ns, self._publish_slot_ns)
         universe.importer.path[1:1] = [*_python_path(universe), *map(str, node.packages.code_folders())]
-        find = _finder(
-            node,
-            {"xmlrpc.client": xmlrpc_client(node, self.switchboard), **library_parts(node), **self._starter(node)},
-        )
+        find = self._finder_of_ros1(node) if ros2 is None else ros2.finder(node)
         return node
+
+    def _finder_of_ros1(self, node: Node) -> Callable[[str], Factory | None]:
+        """Return the finder of the modules of a node of ROS 1."""
+        made = {"xmlrpc.client": xmlrpc_client(node, self.switchboard), **library_parts(node), **self._starter(node)}
+        return _finder(node, made)
 
     def _starter(self, node: Node) -> dict[str, Factory]:
         """Return the module by which a node starts other nodes; only a node that does so imports its dependencies."""

@@ -374,6 +374,14 @@ BRIDGE_FIELDS = ("publish", "subscribe", "clock")
 PACKET_FIELDS = ("packet", "raw")
 SWEEP_FIELDS = ("rate", "topics", "draw")
 
+
+def _version_of_ros(entry: Marked) -> int:
+    """Return the version of ROS that a node is written for."""
+    if entry.value not in (1, 2) or isinstance(entry.value, bool):
+        raise entry.fail(f"must be 1 or 2, not {entry.shown()}")
+    return int(entry.value)
+
+
 NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "name": Marked.text,
     "namespace": _namespace,
@@ -388,6 +396,7 @@ NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "respawn": Marked.flag,
     "respawn_delay": Marked.time,
     "required": Marked.flag,
+    "ros": _version_of_ros,
 }
 """The readers of the fields of a node, which return the values of `NodeConfig`."""
 

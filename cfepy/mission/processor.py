@@ -38,6 +38,7 @@ from cfepy.ports import Ports
 from cfepy.psp import BoardProfile, MemoryBudget, Psp, Retained, object_sizes
 from cfepy.rtos import Kernel, StallWatch
 from cfepy.sb import SbTask, SoftwareBus
+from cfepy.status import UsageError
 from cfepy.tbl import TableServices
 from cfepy.time import TimeServices
 from cfepy.writing.console import Console
@@ -46,7 +47,7 @@ if TYPE_CHECKING:
     from cfepy.mission.holdings import Holdings
     from cfepy.nodes import Overlay, Universe
     from rospy_shim.graph.graph import TopicRow
-    from rospy_shim.runtime import RosRuntime
+    from rospy_shim.runtime import Ros2, RosRuntime
 
 BOOT_PRIORITY = 0
 EVS_PRIORITY, SB_PRIORITY, ES_PRIORITY, TIME_PRIORITY, TBL_PRIORITY = 61, 64, 68, 60, 70
@@ -337,6 +338,7 @@ class Processor:
             accesses=machine.accesses,
             traps=machine.record.traps,
             on_bad_end=machine.on_bad_end,
+            make_ros2=_make_ros2,
         )
 
     @property
@@ -370,6 +372,21 @@ class Processor:
         # objects that `finally` blocks have created meanwhile, such as a socket on the network
         self.osal.delete_all_objects()
         self.loader.forget()
+
+
+def _make_ros2() -> Ros2:
+    """Return the world of nodes of ROS 2; a mission without any does not load it.
+
+    Raises:
+        UsageError: this installation has no rclpy_shim.
+    """
+    try:
+        from rclpy_shim.world import Ros2World
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0] != "rclpy_shim":
+            raise
+        raise UsageError("nodes of ROS 2 require rclpy_shim, which is missing in this installation") from None
+    return Ros2World()
 
 
 def _set_up_already() -> None:

@@ -30,7 +30,8 @@ class NodeConfig:
     packages are, None for the script. `respawn`: it is started again `respawn_delay_ns` after its end. `required`: its
     end ends the run. `compute` is the computing time of its callbacks for a message of a topic, and of its handler for
     a request of a service, by name, in ns of virtual CPU time. `on_disk`: it writes files on the computer, not into the
-    run's own files, as a tool of the user's.
+    run's own files, as a tool of the user's. `ros` is the version of ROS that it is written for, 1 or 2; None takes the
+    one that its package or its imports name.
     """
 
     app: str
@@ -50,6 +51,7 @@ class NodeConfig:
     keys: tuple[str | float, ...] | None = None
     on_disk: bool = False
     compute: Mapping[str, int] = field(default_factory=dict)
+    ros: int | None = None
 
     @property
     def is_of_startup_script(self) -> bool:

@@ -1,0 +1,19 @@
+"""The exceptions that nodes import from rclpy's C++ part."""
+
+from __future__ import annotations
+
+
+class RCLError(RuntimeError):
+    """An error of rcl."""
+
+
+class InvalidHandle(RuntimeError):
+    """An entity was used after its end."""
+
+
+class NodeNameNonExistentError(RCLError):
+    """There is no node with a name."""
+
+
+class UnsupportedEventTypeError(RCLError):
+    """The middleware does not support an event."""

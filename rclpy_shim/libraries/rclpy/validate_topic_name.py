@@ -1,0 +1,7 @@
+"""`validate_topic_name` (rclpy.validate_topic_name)."""
+
+from __future__ import annotations
+
+from rclpy._names import validate_topic_name
+
+__all__ = ["validate_topic_name"]

@@ -1,0 +1,170 @@
+"""`Program`: one ROS 2 program in its cFE application, with any number of nodes (rcl's context).
+
+It is a participant of the mission's graph, as a `Node` of rospy_shim is, and makes the entities of its nodes. Two
+programs may have nodes of the same name. The program appears on the graph under the name of its first node.
+"""
+
+from __future__ import annotations
+
+import signal
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from cfepy.interpreter.node_interrupt import NodeInterrupt
+from rclpy_shim.msgs import Interfaces
+from rclpy_shim.seam.matching import Quality
+from rclpy_shim.seam.services import ServiceClient, ServiceServer
+from rclpy_shim.seam.topics import Publisher, TopicReader
+from rclpy_shim.seam.waiting import Waiting
+from rospy_shim.client.node import Node
+from rospy_shim.types.msgs import OnDisk
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Mapping
+
+    from rclpy_shim.seam.waiting import Waitable
+
+Entity = Publisher | TopicReader | ServiceServer | ServiceClient
+
+
+class Program(Node):
+    """A ROS 2 program; the arguments are those of rospy_shim's `Node`.
+
+    Attributes:
+        waiting: the tasks that wait for work.
+        interfaces: message types of the program.
+    """
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.waiting = Waiting(self.kernel, self.cfe.sb, self.universe.name)
+        self.life.wait_lists.append(self.waiting.tasks)
+        self.interfaces = Interfaces([OnDisk(self.packages)], self.universe.environ)
+        self._entities: list[Entity] = []
+
+    # -- the graph ---------------------------------------------------------------------------------------------------
+
+    def open_node(self, full_name: str) -> None:
+        """Go on the graph with the first node of the program; further nodes share its entry."""
+        if self.initialized:
+            return
+        self.initialized = True
+        self.names.name = full_name
+        self.universe.name = full_name.lstrip("/")
+        self.graph.nodes.setdefault(full_name, self)
+
+    def leave_graph(self) -> None:
+        """Close all entities."""
+        for entity in self._entities[:]:
+            self.close(entity)
+        self.graph.forget_node(self)
+
+    def abandon(self) -> None:
+        """Remove everything from the graph and the bus after the end of the program."""
+        self.leave_graph()
+
+    def close(self, entity: Entity) -> None:
+        """Close an entity; closing it again has no effect."""
+        if entity in self._entities:
+            self._entities.remove(entity)
+            entity.close()
+
+    # -- entities ----------------------------------------------------------------------------------------------------
+
+    def add_publisher(self, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]) -> Publisher:
+        """Make a publisher.
+
+        Args:
+            name: resolved name of the topic.
+            data_class: message class.
+            quality: its quality of service.
+            warn: logs a warning in the name of the node.
+        """
+        made = Publisher(self, name, data_class, quality, warn)
+        self._entities.append(made)
+        made.connect()
+        return made
+
+    def add_subscription(
+        self, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]
+    ) -> TopicReader:
+        """Make a subscription; the arguments are those of `add_publisher`.
+
+        Raises:
+            CfeError: the bus has no room for another pipe or subscription.
+        """
+        made = TopicReader(self, name, data_class, quality, warn)
+        self._entities.append(made)
+        made.connect()
+        return made
+
+    def add_service(self, name: str, service_class: Any, depth: int, is_quiet: bool = False) -> ServiceServer:
+        """Offer a service; see `ServiceServer`."""
+        made = ServiceServer(self, name, service_class, depth, is_quiet)
+        self._entities.append(made)
+        return made
+
+    def add_client(self, name: str, service_class: Any, depth: int) -> ServiceClient:
+        """Make a client; see `ServiceClient`."""
+        made = ServiceClient(self, name, service_class, depth)
+        self._entities.append(made)
+        return made
+
+    # -- waiting and time --------------------------------------------------------------------------------------------
+
+    def wait(self, seen: int, waitables: Iterable[Waitable], timeout_ns: int | None) -> None:
+        """Wait for work; see `Waiting.wait`. Returns at once if the program is shut down."""
+        if not self.life.is_shutdown():
+            self.waiting.wait(seen, waitables, timeout_ns)
+
+    def now_ns(self) -> int:
+        """Return ROS's time in ns."""
+        self.universe.charge()
+        return self.clock.wall_ns()
+
+    def steady_ns(self) -> int:
+        """Return the time in ns since the computer was started."""
+        return self.kernel.now
+
+    def catch_signals(self, on_signal: Callable[[], object], numbers: Iterable[int]) -> None:
+        """Let signals shut rclpy down; a handler that was set before runs too. Only the main thread can do this."""
+        table = self.universe.signals
+        if self.kernel.current is not self.universe.main_task:
+            return
+        for number in numbers:
+            table.set(number, self._handler(on_signal, table.get(number)))
+
+    def _handler(self, on_signal: Callable[[], object], former: Any) -> Callable[[int, object], None]:
+        def handle(number: int, frame: object) -> None:
+            if former is not signal.default_int_handler:
+                on_signal()
+                if callable(former):
+                    former(number, frame)
+                return
+            main = self.universe.main_task
+            if main is None or main is self.kernel.current or not self.kernel.is_waiting(main):
+                on_signal()
+                raise NodeInterrupt
+            self.kernel.interrupt(main, NodeInterrupt())  # as a KeyboardInterrupt, before it sees the shutdown
+            on_signal()
+
+        return handle
+
+    def restore_signals(self, handlers: Mapping[int, Any]) -> None:
+        """Set handlers of signals again, by signal; only the main thread can do this."""
+        if self.kernel.current is self.universe.main_task:
+            for number, handler in handlers.items():
+                self.universe.signals.set(number, handler)
+
+    def module(self) -> ModuleType:
+        """Return the module `rclpy._seam` of the program."""
+        module = ModuleType("rclpy._seam")
+        vars(module).update(
+            program=self,
+            Quality=Quality,
+            now_ns=self.now_ns,
+            steady_ns=self.steady_ns,
+            ring=self.waiting.ring,
+            write=self.universe.stderr.write,
+        )
+        return module

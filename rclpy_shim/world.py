@@ -1,0 +1,124 @@
+"""The world of ROS 2 for one program of a mission: environment, command line, modules, and refusals.
+
+A mission's `RosRuntime` asks `Ros2World` when it starts a program of ROS 2; `rospy_shim.types.worlds` decides which
+programs those are. Packages that cfepy does not have for ROS 2 yet are refused by name.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rclpy_shim.seam.program import Program
+from rospy_shim.library_parts import STAND_INS
+
+if TYPE_CHECKING:
+    from cfepy.nodes import Factory, NodeConfig
+
+LIBRARIES = Path(__file__).parent / "libraries"
+SEAM = "rclpy._seam"
+ENVIRONMENT = {
+    "AMENT_PREFIX_PATH": "/opt/ros/jazzy",
+    "ROS_DISTRO": "jazzy",
+    "ROS_PYTHON_VERSION": "3",
+    "ROS_VERSION": "2",
+}
+"""The variables that the set-up file of ROS 2 sets."""
+OF_ROS_1 = ("ROS_ETC_DIR", "ROS_MASTER_URI", "ROS_ROOT")
+"""Variables of ROS 1 that a program of ROS 2 does not have."""
+NOT_YET = (
+    *("ament_index_python", "cv_bridge", "launch", "launch_ros", "message_filters", "rosbag2_py", "rosidl_runtime_py"),
+    *("sensor_msgs_py", "tf2_geometry_msgs", "tf2_py", "tf2_ros", "tf_transformations"),
+)
+"""Packages of ROS 2 that cfepy does not have yet; those of ROS 1 with these names do not fit."""
+RCLPY_NOT_YET = ("action", "event_handler", "lifecycle", "serialization", "wait_for_message", "waitable")
+"""Modules of rclpy that cfepy does not have yet."""
+
+
+class Ros2World:
+    """ROS 2 as a `RosRuntime` uses it.
+
+    Attributes:
+        library_paths: folders of the libraries.
+        fallback_paths: folders of replacements for packages that may not be installed.
+        node_class: class of a program.
+    """
+
+    library_paths = (LIBRARIES,)
+    fallback_paths = (STAND_INS,)
+    node_class = Program
+
+    def environment(self, ros1: Mapping[str, str]) -> dict[str, str]:
+        """Return the environment of a program.
+
+        Args:
+            ros1: the environment that a node of ROS 1 has.
+        """
+        return {**{name: value for name, value in ros1.items() if name not in OF_ROS_1}, **ENVIRONMENT}
+
+    def command_line(self, config: NodeConfig) -> list[str]:
+        """Return the arguments of a program, with its names, remappings and parameters after `--ros-args`."""
+        rules = [f"{source}:={target}" for source, target in config.remap.items()]
+        if config.name:
+            rules.append(f"__node:={config.name}")
+        if config.namespace != "/":
+            rules.append(f"__ns:={config.namespace}")
+        found = [word for rule in rules for word in ("-r", rule)]
+        for name, value in _flat(config.params).items():
+            found += ["-p", f"{name}:={_written(value)}"]
+        return [*config.args, *(["--ros-args", *found] if found else [])]
+
+    def finder(self, program: Program) -> Callable[[str], Factory | None]:
+        """Return the finder of the program's modules: the seam, message packages, and packages that are refused.
+
+        Packages near the program whose code is in a folder of their name (ament_python) are added to its path.
+        """
+        packages = program.packages
+        folders = [folder for name in packages.names() for folder in packages.folders(name)[:1]]
+        code = [str(each) for each in folders if (each / each.name / "__init__.py").is_file()]
+        program.universe.importer.path[1:1] = code
+
+        def find(name: str) -> Factory | None:
+            top, _, rest = name.partition(".")
+            if name == SEAM:
+                return lambda universe: program.module()
+            if top == "rclpy":
+                if rest.partition(".")[0] in RCLPY_NOT_YET:
+                    raise _refused(name)
+                return None
+            if top in NOT_YET and not program.universe.importer.has_own(top):
+                raise _refused(name)
+            if top == "rospy":
+                raise ImportError(
+                    "a program of ROS 2 cannot import rospy; use two nodes, or write `ros: 1` for it in mission.yaml",
+                    name=name,
+                )
+            if not rest and program.universe.importer.has_own(name):
+                return None
+            module = program.interfaces.module(name)
+            return None if module is None else lambda universe: module
+
+        return find
+
+
+def _refused(name: str) -> ImportError:
+    return ModuleNotFoundError(
+        f"cfepy does not have {name} for nodes of ROS 2 yet; docs/how_to/run_a_ros2_node.md lists what works", name=name
+    )
+
+
+def _flat(params: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for name, value in params.items():
+        if isinstance(value, Mapping):
+            found |= _flat(value, f"{prefix}{name}.")
+        else:
+            found[prefix + name] = value
+    return found
+
+
+def _written(value: Any) -> str:
+    import json
+
+    return json.dumps(value)
