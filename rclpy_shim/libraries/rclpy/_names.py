@@ -157,7 +157,7 @@ def validate_namespace(namespace: str) -> bool:
     if not namespace.startswith("/"):
         raise InvalidNamespaceException(namespace, "namespace must be absolute, it must lead with a '/'", 0)
     if namespace != "/":
-        _check(namespace, InvalidNamespaceException, "namespace")
+        _check(namespace, InvalidNamespaceException, "namespace", "'_', or '/'")
     return True
 
 
@@ -173,8 +173,6 @@ def validate_topic_name(name: str, *, is_service: bool = False) -> bool:
         raise kind(name, f"{word} must not be empty string", 0)
     if "~" in name[1:]:
         raise kind(name, f"{word} must not have tilde '~' unless it is the first character", name.index("~", 1))
-    if name.startswith("~") and name[1:2] not in ("", "/"):
-        raise kind(name, f"{word} must not have a tilde '~' that is not followed by a forward slash '/'", 1)
     _check(name, kind, word)
     return True
 
@@ -192,17 +190,17 @@ def validate_full_topic_name(name: str, *, is_service: bool = False) -> bool:
     return True
 
 
-def _check(name: str, kind: Any, word: str) -> None:
+def _check(name: str, kind: Any, word: str, others: str = "'_', '~', '{', or '}'") -> None:
     wrong = _WRONG.search(name)
     if wrong is not None:
-        text = f"{word} must not contain characters other than alphanumerics, '_', '~', '{{', or '}}'"
+        text = f"{word} must not contain characters other than alphanumerics, {others}"
         raise kind(name, text, wrong.start())
     if len(name) > 1 and name.endswith("/"):
-        raise kind(name, f"{word} must not end with a forward slash '/'", len(name) - 1)
+        raise kind(name, f"{word} must not end with a forward slash", len(name) - 1)
     if "//" in name:
         raise kind(name, f"{word} must not contain repeated '/'", name.index("//") + 1)
     if (number := re.search(r"(?:^|/)(\d)", name)) is not None:
-        raise kind(name, f"{word} tokens must not start with a number", number.start(1))
+        raise kind(name, f"{word} token must not start with a number", number.start(1))
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:

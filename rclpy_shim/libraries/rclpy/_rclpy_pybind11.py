@@ -15,5 +15,9 @@ class NodeNameNonExistentError(RCLError):
     """There is no node with a name."""
 
 
+class UnknownROSArgsError(RuntimeError):
+    """A command line has unknown arguments of ROS."""
+
+
 class UnsupportedEventTypeError(RCLError):
     """The middleware does not support an event."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from rclpy import _seam
 from rclpy._names import parse_arguments
+from rclpy._rclpy_pybind11 import UnknownROSArgsError
 from rclpy.logging import get_logging_severity_from_string, set_logger_level
 
 _defaults: list[Context] = []
@@ -18,7 +19,6 @@ class Context:
 
     def __init__(self) -> None:
         self._is_up = False
-        self._was_up = False
         self._hooks: list[Callable[[], object]] = []
         self.arguments: list[str] = []
 
@@ -42,10 +42,10 @@ class Context:
         self.arguments = list(sys.argv if args is None else args)
         said = parse_arguments(self.arguments)
         if said.refused:
-            raise RuntimeError(f"Found unknown ROS arguments: {said.refused}")
+            raise UnknownROSArgsError(said.refused)
         for name, level in said.log_levels.items():
             set_logger_level(name, get_logging_severity_from_string(level))
-        self._is_up = self._was_up = True
+        self._is_up = True
         _seam.program.life.add_shutdown_hook(lambda reason: self.try_shutdown())
 
     def ok(self) -> bool:
@@ -58,12 +58,8 @@ class Context:
         Raises:
             RuntimeError: it is not initialized, or is shut down.
         """
-        if not self._was_up:
-            raise RuntimeError("Context must be initialized before it can be shutdown")
         if not self._is_up:
-            from rclpy._rclpy_pybind11 import RCLError
-
-            raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+            raise RuntimeError("Context must be initialized before it can be shutdown")
         self.try_shutdown()
 
     def try_shutdown(self) -> None:

@@ -9,7 +9,7 @@ class NotInitializedException(Exception):
     """`rclpy.init` was not called."""
 
     def __init__(self, *args: object) -> None:
-        super().__init__("rclpy.init() has not been called", *args)
+        super().__init__("rclpy.init() has not been called" + "".join(f". msg:{each}" for each in args))
 
 
 class NoTypeSupportImportedException(Exception):
@@ -104,7 +104,7 @@ class ParameterUninitializedException(ParameterException):
     """A parameter was declared without a value."""
 
     def __init__(self, parameter_name: str, *args: object) -> None:
-        Exception.__init__(self, f"The parameter '{parameter_name}' is not initialized", *args)
+        super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name, *args)
 
 
 class InvalidParameterValueException(ParameterException):

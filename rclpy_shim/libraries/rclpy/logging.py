@@ -135,7 +135,7 @@ class RcutilsLogger:
     def _site(self, severity: LoggingSeverity, options: dict[str, Any], place: tuple[str, int]) -> _Site:
         unknown = sorted(set(options) - set(_OPTIONS))
         if unknown:
-            raise TypeError(f'parameter "{unknown[0]}" is not one of the recognized logging options "{_OPTIONS}"')
+            raise TypeError(f'parameter "{unknown[0]}" is not one of the recognized logging options "{list(_OPTIONS)}"')
         if "throttle_time_source_type" in options and "throttle_duration_sec" not in options:
             raise TypeError('required parameter "throttle_duration_sec" not specified')
         site = self._sites.get(place)

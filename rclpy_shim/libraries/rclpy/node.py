@@ -278,7 +278,7 @@ class Node(ParameterStore):
 
         Raises:
             InvalidTopicNameException: the name breaks ROS's rules.
-            NoTypeSupportImportedException, TypeError: a wrong type.
+            AttributeError, TypeError: a wrong type.
             NotImplementedError: an option that cfepy does not have yet.
         """
         _refuse(event_callbacks=event_callbacks, qos_overriding_options=qos_overriding_options)
@@ -314,7 +314,7 @@ class Node(ParameterStore):
 
         Raises:
             InvalidTopicNameException: the name breaks ROS's rules.
-            NoTypeSupportImportedException, TypeError: a wrong type.
+            AttributeError, TypeError: a wrong type.
             NotImplementedError: an option that cfepy does not have yet.
         """
         _refuse(
@@ -340,7 +340,7 @@ class Node(ParameterStore):
 
         Raises:
             InvalidServiceNameException: the name breaks ROS's rules.
-            NoTypeSupportImportedException: it is not a service class.
+            RuntimeError: it is not a service class.
         """
         _check_service_type(srv_type)
         full = self.resolve_service_name(srv_name)
@@ -368,7 +368,7 @@ class Node(ParameterStore):
 
         Raises:
             InvalidServiceNameException: the name breaks ROS's rules.
-            NoTypeSupportImportedException: it is not a service class.
+            RuntimeError: it is not a service class.
         """
         _check_service_type(srv_type)
         full = self.resolve_service_name(srv_name)
@@ -540,9 +540,10 @@ def _refuse(**options: Any) -> None:
 
 def _check_message_type(msg_type: Any) -> None:
     if not hasattr(msg_type, "get_fields_and_field_types"):
-        raise AttributeError(f"type object {msg_type!r} is not a message class. {_NOT_A_TYPE}")
+        name = getattr(msg_type, "__name__", msg_type)
+        raise AttributeError(f"type object '{name}' has no attribute '_TYPE_SUPPORT' {_NOT_A_TYPE}")
 
 
 def _check_service_type(srv_type: Any) -> None:
     if not hasattr(srv_type, "Request") or not hasattr(srv_type, "Response"):
-        raise AttributeError(f"type object {srv_type!r} is not a service class. {_NOT_A_TYPE}")
+        raise RuntimeError(f"The service type provided is not valid ({srv_type}), this might be a message or action")

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from array import array
-from enum import Enum
+from enum import IntEnum
 from typing import Any
 
 PARAMETER_SEPARATOR_STRING = "."
 _LOW, _HIGH = -(1 << 63), 1 << 63
 
 
-class _Type(Enum):
+class _Type(IntEnum):
     NOT_SET = 0
     BOOL = 1
     INTEGER = 2
@@ -59,6 +59,7 @@ class _Type(Enum):
         return found is self
 
 
+_Type.__name__, _Type.__qualname__ = "Type", "Parameter.Type"  # as it is shown
 _SINGLE = {bool: "BOOL", int: "INTEGER", float: "DOUBLE", str: "STRING"}
 _FIELDS = {
     _Type.BOOL: "bool_value",
@@ -113,16 +114,6 @@ class Parameter:
     def value(self) -> Any:
         """Its value."""
         return self._value
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Parameter):
-            return NotImplemented
-        return (self._name, self._type, self._value) == (other._name, other._type, other._value)
-
-    __hash__ = None  # type: ignore[assignment]  # as in rclpy
-
-    def __repr__(self) -> str:
-        return f"<rclpy.parameter.Parameter {self._name}={self._value!r}>"
 
     def get_parameter_value(self) -> Any:
         """Return its value as rcl_interfaces/ParameterValue."""

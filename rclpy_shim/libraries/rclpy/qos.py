@@ -18,7 +18,7 @@ class InvalidQoSProfileException(Exception):
     """A profile contradicts itself."""
 
     def __init__(self, *args: object) -> None:
-        Exception.__init__(self, "Invalid QoSProfile", *args)
+        super().__init__(*args)
 
 
 class QoSPolicyEnum(IntEnum):
@@ -93,8 +93,8 @@ class QoSProfile:
     """A profile: the policies of a publisher, a subscription, a service or a client."""
 
     __slots__ = (
-        *("avoid_ros_namespace_conventions", "deadline", "depth", "durability", "history", "lifespan", "liveliness"),
-        *("liveliness_lease_duration", "reliability"),
+        *("history", "depth", "reliability", "durability", "lifespan", "deadline", "liveliness"),
+        *("liveliness_lease_duration", "avoid_ros_namespace_conventions"),
     )
 
     def __init__(self, **policies: Any) -> None:
@@ -105,12 +105,12 @@ class QoSProfile:
                 `liveliness_lease_duration` and `avoid_ros_namespace_conventions`.
 
         Raises:
-            AssertionError: an unknown policy.
+            TypeError: an unknown policy.
             InvalidQoSProfileException: neither history nor depth is given, or KEEP_LAST without a depth.
         """
-        unknown = sorted(name for name in policies if name not in self.__slots__)
+        unknown = [name for name in policies if name not in self.__slots__]
         if unknown:
-            raise AssertionError(f"Invalid arguments passed to constructor: {unknown}")
+            raise TypeError(f"QoSProfile.__init__() got an unexpected keyword argument '{unknown[0]}'")
         history = policies.get("history")
         if history is None and "depth" not in policies:
             raise InvalidQoSProfileException("History and/or depth settings are required.")
@@ -142,11 +142,7 @@ class QoSProfile:
     __hash__ = None  # type: ignore[assignment]  # as in rclpy
 
     def __str__(self) -> str:
-        shown = []
-        for name in self.__slots__:
-            value = getattr(self, name)
-            shown.append(f"{name}={value.name if isinstance(value, Enum) else value}")
-        return f"QoSProfile({', '.join(shown)})"
+        return f"QoSProfile({', '.join(f'{name}={getattr(self, name)}' for name in self.__slots__)})"
 
     def quality(self) -> Any:
         """Return it as the seam has it.
@@ -214,5 +210,5 @@ def profile_of(value: QoSProfile | int) -> QoSProfile:
     if not isinstance(value, int):
         raise TypeError(f"Expected QoSProfile or int, but received {type(value)!r}")
     if value < 0:
-        raise ValueError("depth must be greater than or equal to zero")
+        raise ValueError("history depth must be greater than or equal to zero")
     return QoSProfile(depth=value)

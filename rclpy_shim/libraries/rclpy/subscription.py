@@ -85,6 +85,6 @@ def _takes_two(callback: Callable[..., Any]) -> bool:
             continue
         return count == 2
     raise RuntimeError(
-        "Subscription.__init__(): callback should be either be callable with one argument (to get only "
+        "Subscription.__init__(): callback should be either be callable with one argument(to get only "
         "the message) or two (to get message and message info)"
     )

@@ -98,7 +98,7 @@ class Time:
         except OverflowError as error:
             raise OverflowError("Addition leads to overflow in C storage.") from error
         except ValueError as error:
-            raise ValueError("Subtraction leads to negative time") from error
+            raise ValueError("Subtraction leads to negative time.") from error
 
     def _other(self, other: Time) -> int:
         if self._clock_type != other._clock_type:

@@ -26,7 +26,7 @@ class Timer:
     """Calls a function periodically; `Node.create_timer` makes one.
 
     Args:
-        callback: the function; it may take a `TimerInfo`.
+        callback: the function; with an argument annotated as `TimerInfo`, it gets the times of the call.
         callback_group: its group.
         timer_period_ns: period in ns.
         clock: its clock.
@@ -55,7 +55,7 @@ class Timer:
         self._is_canceled = not autostart
         self._last_ns = self._now()
         self.due_ns = self._last_ns + timer_period_ns
-        self._wants_info = callback is not None and _takes_one(callback)
+        self._wants_info = callback is not None and _wants_info(callback)
 
     def _now(self) -> int:
         return int(_seam.steady_ns())
@@ -190,12 +190,9 @@ class Rate:
             raise RuntimeError("Rate cannot sleep because it has been destroyed")
 
 
-def _takes_one(callback: Callable[..., Any]) -> bool:
+def _wants_info(callback: Callable[..., Any]) -> bool:
+    """Return True if the annotation of an argument is `TimerInfo`."""
     try:
-        signature = inspect.signature(callback)
-        signature.bind(object())
+        return any(each.annotation is TimerInfo for each in inspect.signature(callback).parameters.values())
     except (TypeError, ValueError):
         return False
-    kinds = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    needed = [each for each in signature.parameters.values() if each.kind in kinds]
-    return bool(needed) and needed[0].default is inspect.Parameter.empty
