@@ -122,7 +122,7 @@ class ProcessMonitor:
 
 
 class Ros2(Protocol):
-    """The world of nodes of ROS 2 (`rclpy_shim.world`), which stands above this package."""
+    """The world of nodes of ROS 2 (`rclpy_shim.ros2_world`), which stands above this package."""
 
     @property
     def library_paths(self) -> Sequence[Path]:
@@ -137,7 +137,7 @@ class Ros2(Protocol):
         """Class of a program."""
 
     def environment(self, ros1: Mapping[str, str]) -> dict[str, str]:
-        """Return the environment of a program, from that of a node of ROS 1."""
+        """Return the environment of a program, from the one of a node of ROS 1."""
 
     def command_line(self, config: NodeConfig) -> list[str]:
         """Return the arguments of a program."""

@@ -163,7 +163,7 @@ def test_libraries_are_imported_only_as_code_of_nodes(tree: Tree) -> None:
     """
     libraries = ROOT / "ros_libraries"
     others = {folder.name for folder in libraries.iterdir()} | {path.stem for path in TOOLS.glob("*.py")}
-    others |= {"rospy", "genpy", "lz4", "zstandard", "numpy", "yaml"}
+    others |= {"rclpy", "rospy", "genpy", "lz4", "zstandard", "numpy", "yaml"}
     for module in tree.node_code.values():
         if module.where.startswith("rospy_shim/stand_ins"):
             continue

@@ -381,7 +381,7 @@ def _make_ros2() -> Ros2:
         UsageError: this installation has no rclpy_shim.
     """
     try:
-        from rclpy_shim.world import Ros2World
+        from rclpy_shim.ros2_world import Ros2World
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] != "rclpy_shim":
             raise

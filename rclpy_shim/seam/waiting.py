@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Protocol
 
 from cfepy.rtos import FOREVER, TIMEOUT, WaitList
+from rospy_shim.client.node import Node
 from rospy_shim.types.transport import WHOLE, sequence_of
 
 if TYPE_CHECKING:
@@ -96,3 +97,16 @@ class Waiting:
         if len(found) > pipe.depth and pipe.keeps_newest and found[0][0][2] & WHOLE == WHOLE:
             self._bus.discard(pipe, [found.pop(0)])
         self._bus.put_back(pipe, found)
+
+
+class WaitingNode(Node):
+    """A participant of the graph whose tasks wait in one place; it takes the arguments of `Node`.
+
+    Attributes:
+        waiting: the waiting tasks, which the shutdown wakes.
+    """
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        self.waiting = Waiting(self.kernel, self.cfe.sb, self.universe.name)
+        self.life.wait_lists.append(self.waiting.tasks)

@@ -113,7 +113,7 @@ def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | N
 
 
 def create_node(node_name: str, **options: Any) -> Node:
-    """Make a node; the options are those of `Node`."""
+    """Make a node; it takes the options of `Node`."""
     return Node(node_name, **options)
 
 

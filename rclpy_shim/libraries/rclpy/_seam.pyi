@@ -1,4 +1,4 @@
-"""The module that each program gets from `rclpy_shim.seam.program`."""
+"""The module that each program gets from `rclpy_shim.seam.ros2_program`."""
 
 from typing import Any
 

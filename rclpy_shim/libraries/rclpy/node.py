@@ -46,12 +46,12 @@ class Node(ParameterStore):
     Args:
         node_name: its name, unless the command line has another one.
         context: its context; None takes the default one.
-        cli_args: arguments for this node alone, before those of the program.
+        cli_args: arguments for this node alone, before the program's.
         namespace: its namespace; None is the root.
         use_global_arguments: take the program's arguments, too.
         enable_rosout: accepted; there is no topic /rosout of ROS 2 yet.
         start_parameter_services: offer the services for its parameters.
-        parameter_overrides: values that replace those of the command line.
+        parameter_overrides: values that replace the command line's.
         allow_undeclared_parameters: parameters need not be declared.
         automatically_declare_parameters_from_overrides: declare all parameters that the command line names.
         options: accepted if they are None or False.

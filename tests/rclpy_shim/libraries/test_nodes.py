@@ -334,7 +334,7 @@ def test_missing_parts_are_refused_by_name(tmp_path: Path) -> None:
     lines = printed(
         """
 import importlib
-for name in ("tf2_ros", "rclpy.action", "launch", "rospy", "nothing"):
+for name in ("tf2_ros", "rclpy.action", "launch", "example_interfaces.action", "rospy", "nothing"):
     attempt(importlib.import_module, name)
 from rclpy.executors import MultiThreadedExecutor
 attempt(MultiThreadedExecutor)
@@ -345,7 +345,7 @@ attempt(MultiThreadedExecutor)
         *(
             f"ModuleNotFoundError | cfepy does not have {name} for nodes of ROS 2 yet; docs/how_to/run_a_ros2_node.md"
             " lists what works"
-            for name in ("tf2_ros", "rclpy.action", "launch")
+            for name in ("tf2_ros", "rclpy.action", "launch", "example_interfaces.action")
         ),
         "ImportError | a program of ROS 2 cannot import rospy; use two nodes, or write `ros: 1` for it in mission.yaml",
         "ModuleNotFoundError | No module named 'nothing'",

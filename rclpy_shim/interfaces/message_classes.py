@@ -1,8 +1,8 @@
-"""Message and service classes of ROS 2, as rosidl's generator writes them, made in memory from an `Interface`.
+"""Message and service classes of ROS 2, as rosidl's generator writes them, made in memory from an `RosInterface`.
 
 A message class has rosidl's public interface (`get_fields_and_field_types`, `__slots__`, properties that check and
 convert, constants) and the members that a publisher needs: `_type`, `_md5sum`, `_full_text`, `__pack__` and
-`__unpack__`. The latter three are those of the ROS 1 type with the same bytes, so both worlds share a topic.
+`__unpack__`. The latter three belong to the ROS 1 type with the same bytes, so both worlds share a topic.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from array import array
 from collections.abc import Callable
 from typing import Any, ClassVar, NamedTuple, NoReturn
 
-from rclpy_shim.msgs.codec import pack_lines, unpack_lines
-from rclpy_shim.msgs.field_rules import check_of, converter, default_maker, shown_type
-from rclpy_shim.msgs.interface_text import HEADER, SEQ, Interface, InterfaceField
+from rclpy_shim.interfaces.codec import pack_lines, unpack_lines
+from rclpy_shim.interfaces.field_rules import check_of, converter, default_maker, shown_type
+from rclpy_shim.interfaces.interface_text import HEADER, SEQ, InterfaceField, RosInterface
 from rospy_shim.types.msgs.namespace import CodeLines, Namespace
 from rospy_shim.types.msgs.spec import Field, Spec
 
@@ -95,7 +95,7 @@ def slot_of(name: str) -> str:
     return f"_{name}_" if name in _TAKEN else f"_{name}"
 
 
-def bus_spec(interface: Interface) -> Spec:
+def bus_spec(interface: RosInterface) -> Spec:
     """Return the definition for the codec, whose attributes are the slots of the class."""
     fields = [Field(SEQ, f"_{SEQ}", "uint32", False, None)] if interface.full_name == HEADER else []
     for each in interface.fields:
@@ -105,7 +105,7 @@ def bus_spec(interface: Interface) -> Spec:
 
 
 def build_message_class(
-    interface: Interface, lookup: Callable[[str], Spec], class_of: Callable[[str], type], parts: TypeParts
+    interface: RosInterface, lookup: Callable[[str], Spec], class_of: Callable[[str], type], parts: TypeParts
 ) -> Any:
     """Make the class of a message type.
 
@@ -160,7 +160,7 @@ def _check_names(message: RosMessage, given: dict[str, Any]) -> None:
         raise AssertionError(f"Invalid arguments passed to constructor: {', '.join(wrong)}")
 
 
-def _constructor(interface: Interface, names: Namespace, class_of: Callable[[str], type]) -> Callable[..., None]:
+def _constructor(interface: RosInterface, names: Namespace, class_of: Callable[[str], type]) -> Callable[..., None]:
     out = CodeLines(depth=1)
     out.add('self._check_fields = kwargs["check_fields"] if "check_fields" in kwargs else _checked')
     out.add("if self._check_fields:")
@@ -198,7 +198,7 @@ def _unreadable(full_name: str) -> Callable[..., NoReturn]:
     return refuse
 
 
-def _unwritable(interface: Interface, checks: dict[str, Callable[[Any], None]]) -> Callable[[Any], NoReturn]:
+def _unwritable(interface: RosInterface, checks: dict[str, Callable[[Any], None]]) -> Callable[[Any], NoReturn]:
     def refuse(message: Any) -> NoReturn:
         for field in interface.fields:
             checks[field.name](getattr(message, field.name))

@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 
 from cfepy.status import UsageError
-from rclpy_shim.msgs.interface_text import Interface, parse_interface
+from rclpy_shim.interfaces.interface_text import RosInterface, parse_interface
 
 
-def parsed(text: str) -> Interface:
+def parsed(text: str) -> RosInterface:
     return parse_interface(text, "demo_msgs/Demo", "Demo.msg")
 
 

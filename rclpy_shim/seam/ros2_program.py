@@ -1,4 +1,4 @@
-"""`Program`: one ROS 2 program in its cFE application, with any number of nodes (rcl's context).
+"""`Ros2Program`: one ROS 2 program in its cFE application, with any number of nodes (rcl's context).
 
 It is a participant of the mission's graph, as a `Node` of rospy_shim is, and makes the entities of its nodes. Two
 programs may have nodes of the same name. The program appears on the graph under the name of its first node.
@@ -11,12 +11,11 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 from cfepy.interpreter.node_interrupt import NodeInterrupt
-from rclpy_shim.msgs import Interfaces
+from rclpy_shim.interfaces import Interfaces
 from rclpy_shim.seam.matching import Quality
-from rclpy_shim.seam.services import ServiceClient, ServiceServer
-from rclpy_shim.seam.topics import Publisher, TopicReader
-from rclpy_shim.seam.waiting import Waiting
-from rospy_shim.client.node import Node
+from rclpy_shim.seam.service_ends import ServiceClient, ServiceServer
+from rclpy_shim.seam.topic_ends import TopicReader, TopicWriter
+from rclpy_shim.seam.waiting import WaitingNode
 from rospy_shim.types.msgs import OnDisk
 
 if TYPE_CHECKING:
@@ -24,21 +23,18 @@ if TYPE_CHECKING:
 
     from rclpy_shim.seam.waiting import Waitable
 
-Entity = Publisher | TopicReader | ServiceServer | ServiceClient
+Entity = TopicWriter | TopicReader | ServiceServer | ServiceClient
 
 
-class Program(Node):
-    """A ROS 2 program; the arguments are those of rospy_shim's `Node`.
+class Ros2Program(WaitingNode):
+    """A ROS 2 program; it takes the arguments of rospy_shim's `Node`.
 
     Attributes:
-        waiting: the tasks that wait for work.
         interfaces: message types of the program.
     """
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
-        self.waiting = Waiting(self.kernel, self.cfe.sb, self.universe.name)
-        self.life.wait_lists.append(self.waiting.tasks)
         self.interfaces = Interfaces([OnDisk(self.packages)], self.universe.environ)
         self._entities: list[Entity] = []
 
@@ -71,7 +67,7 @@ class Program(Node):
 
     # -- entities ----------------------------------------------------------------------------------------------------
 
-    def add_publisher(self, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]) -> Publisher:
+    def add_publisher(self, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]) -> TopicWriter:
         """Make a publisher.
 
         Args:
@@ -80,7 +76,7 @@ class Program(Node):
             quality: its quality of service.
             warn: logs a warning in the name of the node.
         """
-        made = Publisher(self, name, data_class, quality, warn)
+        made = TopicWriter(self, name, data_class, quality, warn)
         self._entities.append(made)
         made.connect()
         return made
@@ -88,7 +84,7 @@ class Program(Node):
     def add_subscription(
         self, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]
     ) -> TopicReader:
-        """Make a subscription; the arguments are those of `add_publisher`.
+        """Make a subscription; it takes the arguments of `add_publisher`.
 
         Raises:
             CfeError: the bus has no room for another pipe or subscription.

@@ -14,8 +14,14 @@ from types import ModuleType
 from typing import Any
 
 from cfepy.status import UsageError
-from rclpy_shim.msgs.classes import TypeParts, build_message_class, build_service_class, bus_spec, module_name
-from rclpy_shim.msgs.interface_text import Interface, parse_interface
+from rclpy_shim.interfaces.interface_text import RosInterface, parse_interface
+from rclpy_shim.interfaces.message_classes import (
+    TypeParts,
+    build_message_class,
+    build_service_class,
+    bus_spec,
+    module_name,
+)
 from rospy_shim.types.msgs import Library, Shipped, Source, shipped
 from rospy_shim.types.msgs.definition_sources import Definition, Definitions, Kind, split_service
 from rospy_shim.types.msgs.spec import Spec, hash_text, md5_text, parse
@@ -42,7 +48,7 @@ class InterfaceTexts:
     def __init__(self, sources: Sequence[Source]) -> None:
         self._sources = sources
         self._packages: dict[tuple[str, Kind], Definitions] = {}
-        self._parsed: dict[str, Interface] = {}
+        self._parsed: dict[str, RosInterface] = {}
 
     def names(self, package: str, kind: Kind) -> list[str]:
         """Return the names of the messages or services of a package, sorted; empty if there are none."""
@@ -52,7 +58,7 @@ class InterfaceTexts:
         """Return the names of all packages."""
         return {name for source in self._sources for name in source.packages()}
 
-    def interface(self, full_name: str) -> Interface:
+    def interface(self, full_name: str) -> RosInterface:
         """Return the definition of a message, or of a part of a service.
 
         Raises:

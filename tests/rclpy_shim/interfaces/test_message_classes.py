@@ -10,7 +10,7 @@ import numpy
 import pytest
 
 from cfepy.status import UsageError
-from rclpy_shim.msgs import Interfaces
+from rclpy_shim.interfaces import Interfaces
 from rospy_shim.types.msgs import message_class, shipped
 from rospy_shim.types.msgs.definition_sources import Definition, Texts
 
@@ -45,12 +45,12 @@ def test_positional_arguments_are_refused(interfaces: Interfaces) -> None:
         interfaces.message_class("std_msgs/String")("hello")
 
 
-def test_repr_is_that_of_rosidl(interfaces: Interfaces) -> None:
+def test_repr_is_as_in_rosidl(interfaces: Interfaces) -> None:
     message = interfaces.message_class("std_msgs/Header")(frame_id="map")
     assert repr(message) == ("std_msgs.msg.Header(stamp=builtin_interfaces.msg.Time(sec=0, nanosec=0), frame_id='map')")
 
 
-def test_types_and_slots_are_those_of_rosidl(interfaces: Interfaces) -> None:
+def test_types_and_slots_are_as_in_rosidl(interfaces: Interfaces) -> None:
     cls = interfaces.message_class("sensor_msgs/PointField")
     assert cls.get_fields_and_field_types() == {
         "name": "string",
@@ -150,7 +150,7 @@ def test_types_with_other_fields_have_another_md5sum(interfaces: Interfaces, nam
     assert interfaces.message_class(name)._md5sum != shipped().md5sum(name)
 
 
-def test_bytes_are_those_of_ros_1(interfaces: Interfaces) -> None:
+def test_bytes_are_as_in_ros_1(interfaces: Interfaces) -> None:
     pose = interfaces.message_class("geometry_msgs/PoseStamped")()
     pose.header.stamp.sec, pose.header.stamp.nanosec, pose.header.frame_id = 5, 7, "map"
     pose.pose.position.x = 1.5

@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rclpy_shim.seam.program import Program
+from rclpy_shim.seam.ros2_program import Ros2Program
 from rospy_shim.library_parts import STAND_INS
 
 if TYPE_CHECKING:
@@ -32,8 +32,6 @@ NOT_YET = (
     *("sensor_msgs_py", "tf2_geometry_msgs", "tf2_py", "tf2_ros", "tf_transformations"),
 )
 """Packages of ROS 2 that cfepy does not have yet; those of ROS 1 with these names do not fit."""
-RCLPY_NOT_YET = ("action", "event_handler", "lifecycle", "serialization", "wait_for_message", "waitable")
-"""Modules of rclpy that cfepy does not have yet."""
 
 
 class Ros2World:
@@ -47,7 +45,7 @@ class Ros2World:
 
     library_paths = (LIBRARIES,)
     fallback_paths = (STAND_INS,)
-    node_class = Program
+    node_class = Ros2Program
 
     def environment(self, ros1: Mapping[str, str]) -> dict[str, str]:
         """Return the environment of a program.
@@ -69,14 +67,14 @@ class Ros2World:
             found += ["-p", f"{name}:={_written(value)}"]
         return [*config.args, *(["--ros-args", *found] if found else [])]
 
-    def finder(self, program: Program) -> Callable[[str], Factory | None]:
+    def finder(self, program: Ros2Program) -> Callable[[str], Factory | None]:
         """Return the finder of the program's modules: the seam, message packages, and packages that are refused.
 
         Packages near the program whose code is in a folder of their name (ament_python) are added to its path.
         """
         packages = program.packages
-        folders = [folder for name in packages.names() for folder in packages.folders(name)[:1]]
-        code = [str(each) for each in folders if (each / each.name / "__init__.py").is_file()]
+        folders = [(name, folder) for name in packages.names() for folder in packages.folders(name)[:1]]
+        code = [str(folder) for name, folder in folders if (folder / name / "__init__.py").is_file()]
         program.universe.importer.path[1:1] = code
 
         def find(name: str) -> Factory | None:
@@ -84,7 +82,7 @@ class Ros2World:
             if name == SEAM:
                 return lambda universe: program.module()
             if top == "rclpy":
-                if rest.partition(".")[0] in RCLPY_NOT_YET:
+                if rest and not (LIBRARIES / "rclpy" / f"{rest}.py").is_file():
                     raise _refused(name)
                 return None
             if top in NOT_YET and not program.universe.importer.has_own(top):
@@ -96,6 +94,8 @@ class Ros2World:
                 )
             if not rest and program.universe.importer.has_own(name):
                 return None
+            if rest == "action" and program.interfaces.module(top) is not None:
+                raise _refused(name)
             module = program.interfaces.module(name)
             return None if module is None else lambda universe: module
 

@@ -1,7 +1,7 @@
-"""ROS 2's .msg text to an `Interface`: fields with defaults and bounds, and constants, by the rules of rosidl.
+"""ROS 2's .msg text to an `RosInterface`: fields with defaults and bounds, and constants, by the rules of rosidl.
 
 ROS 2 has more than ROS 1: default values, bounded strings and arrays, `wstring`, names with a package for all types of
-other packages. `Interface.bus_text` is the same definition in ROS 1's words. It describes the bytes on the Software
+other packages. `RosInterface.bus_text` is the same definition in ROS 1's words. It describes the bytes on the Software
 Bus, which are the same in both worlds.
 """
 
@@ -71,7 +71,7 @@ class InterfaceConstant(NamedTuple):
     value: Any
 
 
-class Interface(NamedTuple):
+class RosInterface(NamedTuple):
     """A parsed definition."""
 
     full_name: str
@@ -98,7 +98,7 @@ def _constant_text(constant: InterfaceConstant) -> str:
     return str(int(constant.value)) if constant.base == "bool" else str(constant.value)
 
 
-def parse_interface(text: str, full_name: str, file: str, first_line: int = 1) -> Interface:
+def parse_interface(text: str, full_name: str, file: str, first_line: int = 1) -> RosInterface:
     """Parse the text of a .msg file, or of a part of a .srv file.
 
     Args:
@@ -135,7 +135,7 @@ def parse_interface(text: str, full_name: str, file: str, first_line: int = 1) -
                 raise ValueError(f"a message must have at most {MESSAGE_FIELDS:,} fields; split it")
         except ValueError as error:
             raise UsageError(str(error), file=file, line=number) from None
-    return Interface(full_name, tuple(fields.values()), tuple(constants.values()))
+    return RosInterface(full_name, tuple(fields.values()), tuple(constants.values()))
 
 
 def _split(line: str) -> tuple[str, str, str, bool]:

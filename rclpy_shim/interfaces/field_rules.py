@@ -12,8 +12,8 @@ from collections import UserList, UserString
 from collections.abc import Callable, Sequence, Set
 from typing import Any
 
-from rclpy_shim.msgs.codec import is_numeric
-from rclpy_shim.msgs.interface_text import FLOATS, INTEGERS, PRIMITIVES, STRINGS, InterfaceField
+from rclpy_shim.interfaces.codec import is_numeric
+from rclpy_shim.interfaces.interface_text import FLOATS, INTEGERS, PRIMITIVES, STRINGS, InterfaceField
 from rospy_shim.types.msgs.spec import PRIMITIVES as CODES
 
 Check = Callable[[Any], None]

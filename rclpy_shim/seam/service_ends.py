@@ -1,6 +1,6 @@
 """Services and clients of ROS 2 on the services of the mission's graph.
 
-The packets are those of rospy's services, so nodes of both worlds can call each other. A service has a pipe for its
+The packets have the form of rospy's services, so nodes of both worlds can call each other. A service has a pipe for its
 requests, a client one for the answers. An executor takes both. As in ROS 2, an answer comes only when the callback
 returns, and a request that is sent while there is no server is lost.
 """
@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from cfepy.status import CfeError
+from rclpy_shim.seam.waiting import WaitingNode
 from rospy_shim.client.message import packer, unpacker
 from rospy_shim.client.service import (
     ANSWER_LEAD,
@@ -25,7 +26,6 @@ from rospy_shim.client.subscription import NO_LIMIT, NO_PIPE, POLL
 from rospy_shim.graph.graph import ServiceCall
 
 if TYPE_CHECKING:
-    from rclpy_shim.seam.program import Program
     from rospy_shim.graph.graph import ServiceEntry
 
 PACE_NS = 100_000  # period at which a client looks for room for its request
@@ -43,7 +43,7 @@ class PipeOfService:
         depth: number of messages.
     """
 
-    def __init__(self, program: Program, label: str, depth: int) -> None:
+    def __init__(self, program: WaitingNode, label: str, depth: int) -> None:
         self._program = program
         self._label = label
         self._depth = depth
@@ -114,7 +114,7 @@ class ServiceServer:
         ServiceException: the program offers it already.
     """
 
-    def __init__(self, program: Program, name: str, service_class: Any, depth: int, is_quiet: bool = False) -> None:
+    def __init__(self, program: WaitingNode, name: str, service_class: Any, depth: int, is_quiet: bool = False) -> None:
         self.__node__ = program
         self.resolved_name = name
         self.service_class = service_class
@@ -208,7 +208,7 @@ class ServiceClient:
         depth: number of answers that may wait.
     """
 
-    def __init__(self, program: Program, name: str, service_class: Any, depth: int) -> None:
+    def __init__(self, program: WaitingNode, name: str, service_class: Any, depth: int) -> None:
         self._program = program
         self.name = name
         self.service_class = service_class

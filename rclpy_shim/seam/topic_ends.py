@@ -1,8 +1,8 @@
 """Publishers and subscriptions of ROS 2 on the topics of the mission's graph.
 
 A publisher is a `Link` and a subscription a `Subscription` of rospy_shim, so nodes of both worlds see each other. The
-differences are here: a subscription has no task, since an executor takes its messages. Its pipe is as deep as its QoS
-says and drops the oldest message. A publisher keeps as many messages for late subscriptions as its depth.
+differences are here: a subscription has no task, since an executor takes its messages. Its pipe has the depth of its
+QoS and drops the oldest message. A publisher keeps as many messages for late subscriptions as its depth.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.status import CfeError
 from rclpy_shim.seam.matching import Quality, mismatch
+from rclpy_shim.seam.waiting import WaitingNode
 from rospy_shim.client import connection_setup as connecting
 from rospy_shim.client.link import Link
 from rospy_shim.client.subscription import NO_LIMIT, POLL, WHOLE, Subscription
@@ -20,7 +21,6 @@ from rospy_shim.types.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, is_for
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from rclpy_shim.seam.program import Program
     from rospy_shim.graph.graph import Header
 
 NO_SENDING = (
@@ -33,7 +33,7 @@ NO_RECEIVING = (
 )
 
 
-class Publisher(Link):
+class TopicWriter(Link):
     """The publishing side of a topic (rcl_publisher_t).
 
     Args:
@@ -45,7 +45,7 @@ class Publisher(Link):
     """
 
     def __init__(
-        self, program: Program, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]
+        self, program: WaitingNode, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]
     ) -> None:
         super().__init__(program, name, data_class)
         self.quality = quality
@@ -115,7 +115,7 @@ class TopicReader(Subscription):
     """
 
     def __init__(
-        self, program: Program, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]
+        self, program: WaitingNode, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]
     ) -> None:
         super().__init__(program, name, data_class)
         self.quality = quality
@@ -146,7 +146,7 @@ class TopicReader(Subscription):
         bus.subscribe_ex(topic.msg_id, self._pipe, 0, NO_LIMIT)
         topic.add_subscription(self)
         for link in list(topic.links):
-            if not (isinstance(link, Publisher) and part_if_unequal(link, self)):
+            if not (isinstance(link, TopicWriter) and part_if_unequal(link, self)):
                 connecting.begin(link, self, delays.get(link, 0), late=True)
 
     def _size_pipe(self) -> None:
@@ -240,7 +240,7 @@ class TopicReader(Subscription):
                 pass  # a task of another application closes it; ES deletes the pipe with the application
 
 
-def part_if_unequal(link: Publisher, subscription: TopicReader) -> bool:
+def part_if_unequal(link: TopicWriter, subscription: TopicReader) -> bool:
     """Keep two sides apart whose qualities of service do not match, and warn on both sides.
 
     Returns:
