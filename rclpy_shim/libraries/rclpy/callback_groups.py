@@ -9,7 +9,13 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Base of the groups."""
+    """Base of the groups.
+
+    Attributes:
+        is_awaited: an executor waits until a callback of the group has ended.
+    """
+
+    is_awaited = False
 
     def __init__(self) -> None:
         self.entities: list[Any] = []

@@ -19,6 +19,7 @@ class Context:
 
     def __init__(self) -> None:
         self._is_up = False
+        self._was_signalled = False
         self._hooks: list[Callable[[], object]] = []
         self.arguments: list[str] = []
 
@@ -45,7 +46,7 @@ class Context:
             raise UnknownROSArgsError(said.refused)
         for name, level in said.log_levels.items():
             set_logger_level(name, get_logging_severity_from_string(level))
-        self._is_up = True
+        self._is_up, self._was_signalled = True, False
         _seam.program.life.add_shutdown_hook(lambda reason: self.try_shutdown())
 
     def ok(self) -> bool:
@@ -53,11 +54,14 @@ class Context:
         return self._is_up and not _seam.program.life.is_shutdown()
 
     def shutdown(self) -> None:
-        """Shut the context down and call its hooks.
+        """Shut the context down and call its hooks. After a signal that has done so, the first call has no effect.
 
         Raises:
             RuntimeError: it is not initialized, or is shut down.
         """
+        if self._was_signalled:
+            self._was_signalled = False
+            return
         if not self._is_up:
             raise RuntimeError("Context must be initialized before it can be shutdown")
         self.try_shutdown()
@@ -71,6 +75,11 @@ class Context:
         for hook in hooks:
             hook()
         _seam.ring()
+
+    def shut_down_by_signal(self) -> None:
+        """Shut the context down because of a signal."""
+        self._was_signalled = self._is_up
+        self.try_shutdown()
 
     def on_shutdown(self, callback: Callable[[], object]) -> None:
         """Add a function that is called at the shutdown.

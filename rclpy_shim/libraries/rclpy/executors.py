@@ -7,6 +7,7 @@ is ready at one look is run before it looks again.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 from rclpy import _seam
@@ -151,7 +152,7 @@ class Executor:
 
     def _spin_once(self, left_ns: int | None, condition: Callable[[], bool]) -> None:
         try:
-            task, entity, node = self.wait_for_ready_callbacks(left_ns, condition)
+            task, entity, node = self._next_work(left_ns, condition)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
         self._run(task, entity, node)
@@ -161,27 +162,39 @@ class Executor:
         if not task.done():
             self._tasks.append((task, entity, node))
             return
-        if entity is not None:
-            entity.callback_group.ending_execution(entity)
         error = task.exception()
         if error is not None:
             raise error
 
     # -- looking for work --------------------------------------------------------------------------------------------
 
-    def wait_for_ready_callbacks(self, left_ns: int | None, condition: Callable[[], bool]) -> Work:
-        """Wait for work.
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: float | None = None,
+        nodes: list[Any] | None = None,
+        condition: Callable[[], bool] = lambda: False,
+    ) -> Work:
+        """Wait for work, which an executor of the program's own runs by calling the task.
 
         Args:
-            left_ns: longest time in ns; None for no limit.
+            timeout_sec: longest time in s; None or a negative one waits without limit.
+            nodes: must be None, for the nodes of this executor.
             condition: ends the wait when it is true.
 
         Returns:
-            The work, which has been taken from its entity.
+            The task, its entity and its node. The work has been taken from its entity.
 
         Raises:
             ShutdownException, ExternalShutdownException, TimeoutException, ConditionReachedException: there is none.
+            NotImplementedError: `nodes` is given.
         """
+        if nodes is not None:
+            raise NotImplementedError("cfepy does not have executors that wait for some of their nodes yet")
+        end = _end_of(timeout_sec)
+        return self._next_work(None if end is None else end - _seam.steady_ns(), condition)
+
+    def _next_work(self, left_ns: int | None, condition: Callable[[], bool]) -> Work:
+        """Wait for work, at most so many ns; see `wait_for_ready_callbacks`."""
         end = None if left_ns is None else _seam.steady_ns() + left_ns
         while True:
             if self._is_shut_down:
@@ -207,18 +220,23 @@ class Executor:
         times = [timer.due_ns for node in self._nodes for timer in node.timers if self._may_run(timer)]
         if end is not None:
             times.append(end)
-        waitables = [
-            each
-            for node in self._nodes
-            for kind in (node.subscriptions, node.guards, node.clients, node.services)
-            for each in kind
-            if each.callback_group.can_execute(each)
-        ]
+        waitables = []
+        for node in self._nodes:
+            for kind in (node.subscriptions, node.guards, node.clients, node.services):
+                for each in kind:
+                    if each.callback_group.can_execute(each):
+                        waitables.append(each)
+                    else:
+                        each.callback_group.is_awaited = True
         _seam.program.wait(seen, waitables, min(times) - now if times else None)
 
     @staticmethod
     def _may_run(timer: Any) -> bool:
-        return not timer.is_canceled() and bool(timer.callback_group.can_execute(timer))
+        if timer.is_canceled():
+            return False
+        may_run = bool(timer.callback_group.can_execute(timer))
+        timer.callback_group.is_awaited |= not may_run
+        return may_run
 
     def _ready_task(self) -> Work | None:
         for index, (task, _, _) in enumerate(self._tasks):
@@ -233,8 +251,17 @@ class Executor:
             task = self._take(entity)
             if task is not None:
                 entity.callback_group.beginning_execution(entity)
+                task.on_end = partial(self._end_work, entity)
                 return task, entity, node
         return None
+
+    @staticmethod
+    def _end_work(entity: Any) -> None:
+        """Note the end of a callback; others of its group may run now, which only other threads wait for."""
+        entity.callback_group.ending_execution(entity)
+        if entity.callback_group.is_awaited:
+            entity.callback_group.is_awaited = False
+            _seam.ring()
 
     def _look(self) -> Iterator[tuple[Any, Any]]:
         """Return the entities with work, in the order of their turns."""

@@ -27,7 +27,7 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
     wanted = {SignalHandlerOptions.SIGINT: signal.SIGINT, SignalHandlerOptions.SIGTERM: signal.SIGTERM}
     numbers = [number for option, number in wanted.items() if options & option and number not in _installed]
     _installed.update({number: signal.getsignal(number) for number in numbers})
-    _seam.program.catch_signals(lambda: get_default_context().try_shutdown(), numbers)
+    _seam.program.catch_signals(lambda: get_default_context().shut_down_by_signal(), numbers)
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:

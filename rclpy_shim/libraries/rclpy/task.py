@@ -130,6 +130,7 @@ class Task(Future):
         self._handler = handler(*self._args, **self._kwargs) if inspect.iscoroutinefunction(handler) else handler
         self._awaited: Any = None
         self._is_running = False
+        self.on_end: Callable[[], object] | None = None  # called once, at the end
 
     def __call__(self) -> None:
         """Run the function, or the coroutine until it waits."""
@@ -150,6 +151,9 @@ class Task(Future):
             self.set_exception(error)
         finally:
             self._is_running = False
+            if self.on_end is not None and not self._is_pending():
+                ended, self.on_end = self.on_end, None
+                ended()
 
     def cancel(self) -> None:
         """Cancel it; a coroutine is closed."""

@@ -352,3 +352,32 @@ attempt(MultiThreadedExecutor)
         "NotImplementedError | cfepy does not have the MultiThreadedExecutor for nodes of ROS 2 yet; use a"
         " SingleThreadedExecutor",
     ]
+
+
+def test_executor_of_the_program_runs_callbacks_in_other_threads(tmp_path: Path) -> None:
+    lines = printed(
+        """
+import threading
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import Executor
+class Threads(Executor):
+    def spin_once(self, timeout_sec=None):
+        handler, entity, node = self.wait_for_ready_callbacks(timeout_sec=timeout_sec)
+        threading.Thread(target=handler).start()
+n = rclpy.create_node("n")
+def work(name):
+    print("begin", name)
+    time.sleep(0.25)
+    print("end", name)
+one, other = MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+n.create_timer(0.1, lambda: work("a"), one)
+n.create_timer(0.1, lambda: work("b"), other)
+n.create_guard_condition(lambda: work("c"), one).trigger()
+executor = Threads()
+executor.add_node(n)
+for turn in range(3):
+    executor.spin_once()
+""",
+        tmp_path,
+    )
+    assert lines[:5] == ["begin c", "begin b", "end c", "begin a", "end b"]

@@ -36,6 +36,7 @@ TALKER_2 = """
         rclpy.spin(node)
     except KeyboardInterrupt:
         print("interrupted", rclpy.ok())
+    rclpy.shutdown()
 """
 LISTENER_1 = """
     import rospy
