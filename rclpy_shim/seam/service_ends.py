@@ -26,6 +26,8 @@ from rospy_shim.client.subscription import NO_LIMIT, NO_PIPE, POLL
 from rospy_shim.graph.graph import ServiceCall
 
 if TYPE_CHECKING:
+    from collections.abc import Sized
+
     from rospy_shim.graph.graph import ServiceEntry
 
 PACE_NS = 100_000  # period at which a client looks for room for its request
@@ -48,6 +50,7 @@ class PipeOfService:
         self._label = label
         self._depth = depth
         self._pipe = NO_PIPE
+        self._items: Sized = ()  # the packets in the pipe
 
     @property
     def number(self) -> int:
@@ -68,13 +71,13 @@ class PipeOfService:
         pipe = bus.find_pipe(self._pipe)
         if pipe is not None:
             pipe.keeps_newest = True
+            self._items = pipe.items
             self._program.waiting.adopt(pipe)
         bus.subscribe_ex(msg_id, self._pipe, 0, NO_LIMIT)
 
     def is_filled(self) -> bool:
         """Return True if a packet waits."""
-        pipe = self._program.cfe.sb.find_pipe(self._pipe)
-        return pipe is not None and bool(pipe.items)
+        return bool(self._items)
 
     def has_room(self, packet: bytes) -> bool:
         """Return True if the pipe exists and takes a packet."""
@@ -90,7 +93,7 @@ class PipeOfService:
 
     def close(self) -> None:
         """Delete the pipe."""
-        number, self._pipe = self._pipe, NO_PIPE
+        number, self._pipe, self._items = self._pipe, NO_PIPE, ()
         pipe = self._program.cfe.sb.find_pipe(number)
         if pipe is not None:
             self._program.waiting.release(pipe)

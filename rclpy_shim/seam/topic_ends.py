@@ -19,7 +19,7 @@ from rospy_shim.client.subscription import NO_LIMIT, POLL, WHOLE, Subscription
 from rospy_shim.types.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, is_for_another
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Sized
 
     from rospy_shim.graph.graph import Header
 
@@ -122,6 +122,7 @@ class TopicReader(Subscription):
         self.warn = warn
         self.program = program
         self.queue_size = None if quality.keeps_all else quality.depth
+        self._items: Sized = ()  # the packets in the pipe
         self.has_begun = quality.is_kept  # then publishers give the messages that they keep
 
     def connect(self) -> None:
@@ -138,7 +139,9 @@ class TopicReader(Subscription):
         bus, waiting = self._bus, self.program.waiting
         self._pipe = bus.create_pipe(self._depth(), self.node.task_name(self.name))
         self._size_pipe()
-        waiting.adopt(bus.find_pipe(self._pipe))
+        pipe = bus.find_pipe(self._pipe)
+        waiting.adopt(pipe)
+        self._items = pipe.items
         delays = {link: connecting.delay_of(link, self) for link in topic.links}
         for link, delay in delays.items():
             if delay:
@@ -178,8 +181,7 @@ class TopicReader(Subscription):
 
     def ready(self) -> bool:
         """Return True if a message, or a part of one, waits."""
-        pipe = self._find_pipe()
-        return bool(self._backlog) or (pipe is not None and bool(pipe.items))
+        return bool(self._items or self._backlog)
 
     def take(self) -> tuple[Any, Header] | None:
         """Take the oldest message (rcl_take).
@@ -224,6 +226,7 @@ class TopicReader(Subscription):
         """Leave the graph and delete the pipe."""
         topic, self.topic = self.topic, None
         self.closed = True
+        self._items, self._backlog = (), []
         if topic is not None:
             topic.remove_subscription(self)
             topic.leave()

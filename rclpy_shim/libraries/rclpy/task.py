@@ -126,8 +126,9 @@ class Task(Future):
     ) -> None:
         super().__init__(executor=executor)
         self._args, self._kwargs = tuple(args or ()), dict(kwargs or {})
-        self._is_coroutine = inspect.iscoroutine(handler) or inspect.iscoroutinefunction(handler)
-        self._handler = handler(*self._args, **self._kwargs) if inspect.iscoroutinefunction(handler) else handler
+        is_function = _is_coroutine_function(handler)
+        self._is_coroutine = is_function or inspect.iscoroutine(handler)
+        self._handler = handler(*self._args, **self._kwargs) if is_function else handler
         self._awaited: Any = None
         self._is_running = False
         self.on_end: Callable[[], object] | None = None  # called once, at the end
@@ -170,3 +171,9 @@ class Task(Future):
         if self._is_running or not self._is_pending():
             return False
         return not isinstance(self._awaited, Future) or self._awaited.done()
+
+
+def _is_coroutine_function(handler: Any) -> bool:
+    """Return True for a coroutine function; the usual case of a function or method needs no search."""
+    code = getattr(handler, "__code__", None)
+    return bool(code.co_flags & inspect.CO_COROUTINE) if code is not None else inspect.iscoroutinefunction(handler)
