@@ -30,7 +30,7 @@ class DeviceConfig(NamedTuple):
         port: the UDP port that is the device, on the mission's network; 0 if there is none.
         target: host and port that get the datagrams.
         topic: the ROS topic whose messages are bytes to read; "" if it is no topic.
-        sends: the ROS topic that gets what is written; "" for none.
+        sends: the ROS topic that gets the written bytes; "" for none.
         kind: the type of both topics.
     """
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from cfepy.extra.c.devices import Device, DevicePorts
+from cfepy.extra.c.devices import Device, DevicePorts, TopicDevice
 from cfepy.extra.c.loading import CompiledLoader
 from cfepy.extra.c.runtime import CRuntime
 from cfepy.mission import DataRace, DeviceConfig, Overwrite
@@ -30,8 +30,6 @@ def compiled_loader(processor: Processor, polling_ns: int, start_ros: Callable[[
     watch = machine.stall_watch
 
     def topic_device(config: DeviceConfig) -> Device:
-        from cfepy.extra.c.topic_devices import TopicDevice  # few missions have one
-
         return TopicDevice(config, lambda: processor.begin_ros().outside)
 
     with watch.paused():  # the engine may have to be compiled first

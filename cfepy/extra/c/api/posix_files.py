@@ -25,7 +25,7 @@ from cfepy.extra.c.posix.descriptors import (
     Facts,
     failure,
 )
-from cfepy.extra.c.posix.files import OpenFolder
+from cfepy.extra.c.posix.file_tree import OpenFolder
 from cfepy.osal import OS_TIME_TICK_RESOLUTION_NS
 from cfepy.units import NS_PER_S
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from cfepy.extra.c.api.posix_calls import PosixCalls
 from cfepy.extra.c.crashes import CFault
+from cfepy.extra.c.posix.descriptor_waits import await_descriptors
 from cfepy.extra.c.posix.descriptors import (
     MOST,
     POLLERR,
@@ -19,7 +20,7 @@ from cfepy.extra.c.posix.descriptors import (
     Descriptor,
     failure,
 )
-from cfepy.extra.c.posix.waiting import await_descriptors
+from cfepy.extra.c.posix.open_sockets import POLLWRBAND, SOCK_DGRAM, PosixSocket
 from cfepy.rtos import FOREVER
 from cfepy.units import NS_PER_MS, NS_PER_S, NS_PER_US
 
@@ -32,13 +33,13 @@ if TYPE_CHECKING:
 POLLFD = Struct("<ihh")
 PAIR = Struct("<qq")
 """struct timeval and struct timespec."""
-POLLRDNORM, POLLRDBAND, POLLWRNORM, POLLWRBAND = 0x40, 0x80, 0x100, 0x200
+POLLRDNORM, POLLWRNORM = 0x40, 0x100
 CAUSES = (POLLIN | POLLHUP | POLLERR, POLLOUT | POLLERR, POLLPRI)
 """The events that count for reading, writing and exceptions in select."""
 _WORD = 64
 
 
-class Waits:
+class PosixWaits:
     """The functions that wait for descriptors.
 
     Args:
@@ -147,12 +148,14 @@ def _result(descriptor: Descriptor | None, number: int, events: int) -> int:
     if descriptor is None:
         return POLLNVAL
     now = descriptor.events
-    now |= POLLRDNORM * bool(now & POLLIN) | (POLLWRNORM | descriptor.more_events) * bool(now & POLLOUT)
+    now |= POLLRDNORM * bool(now & POLLIN) | POLLWRNORM * bool(now & POLLOUT)
+    if isinstance(descriptor, PosixSocket) and descriptor.kind == SOCK_DGRAM and now & POLLOUT:
+        now |= POLLWRBAND
     return now & (events | POLLERR | POLLHUP)
 
 
 def declare(api: Declarations, c: CRuntime) -> None:
-    calls, waits = PosixCalls(api, c), Waits(c)
+    calls, waits = PosixCalls(api, c), PosixWaits(c)
     calls.add("select", "$ipppp", waits.select)
     calls.add("pselect", "$ipppp", waits.select_precisely)
     calls.add("poll", "$pQi", waits.poll)

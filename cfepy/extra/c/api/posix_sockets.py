@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 import errno
-from functools import cached_property
 from struct import Struct
 from typing import TYPE_CHECKING
 
 from cfepy.extra.c.api.posix_calls import PosixCalls
 from cfepy.extra.c.api.posix_files import IOVEC
 from cfepy.extra.c.crashes import CFault
-from cfepy.extra.c.posix.addresses import AF_INET, AF_INET6, read_place, write_place
-from cfepy.extra.c.posix.can_sockets import AF_CAN, CAN_RAW, CanBuses, CanSocket
 from cfepy.extra.c.posix.descriptors import O_NONBLOCK, failure
-from cfepy.extra.c.posix.sockets import MSG_TRUNC, SOCK_DGRAM, SOCK_STREAM, AnySocket, PosixSocket
+from cfepy.extra.c.posix.inet_addresses import AF_INET, AF_INET6, read_place, write_place
+from cfepy.extra.c.posix.open_sockets import (
+    AF_CAN,
+    CAN_RAW,
+    MSG_TRUNC,
+    SOCK_DGRAM,
+    SOCK_STREAM,
+    AnySocket,
+    CanBuses,
+    CanSocket,
+    PosixSocket,
+)
 from cfepy.osal import Place
 from cfepy.rtos import FOREVER
 from cfepy.units import NS_PER_S, NS_PER_US
@@ -45,16 +53,19 @@ class PosixSocketCalls:
         self._c = c
         self._memory = c.memory
         self._table = c.descriptors
+        self._known_buses: CanBuses | None = None
 
-    @cached_property
     def _buses(self) -> CanBuses:
-        return CanBuses(self._c.devices.buses())
+        """Return the CAN buses, made when they are first needed."""
+        if self._known_buses is None:
+            self._known_buses = CanBuses(self._c.devices.buses())
+        return self._known_buses
 
     def make(self, domain: int, kind: int, protocol: int) -> int:
         self._c.kernel.preempt()
         flags, plain = kind & O_NONBLOCK, kind & TYPE_BITS
         if (domain, plain, protocol) == (AF_CAN, SOCK_RAW, CAN_RAW):
-            return self._table.add(CanSocket(self._c.kernel, self._memory, self._buses, flags))
+            return self._table.add(CanSocket(self._c.kernel, self._memory, self._buses(), flags))
         if domain not in (AF_INET, AF_INET6):
             self._c.console.write(f"{self._app()}: socket() of family {domain} is not available; errno is EAFNOSUPPORT")
             raise failure(errno.EAFNOSUPPORT)
@@ -90,7 +101,7 @@ class PosixSocketCalls:
         return read_place(self._memory, at, size, found.is_ip6)
 
     def index_of(self, name: str) -> int:
-        return self._buses.index(name)
+        return self._buses().index(name)
 
     # -- addresses and connections -----------------------------------------------------------------------------------
 

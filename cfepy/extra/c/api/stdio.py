@@ -1,6 +1,6 @@
 """fopen, fread, fprintf, fscanf and related functions of stdio, on files and on the standard streams.
 
-A FILE has an address of its own, and code that reads its fields (such as an inlined getc_unlocked) finds empty buffers
+A FILE has an address of its own. Code that reads its fields (such as an inlined getc_unlocked) finds empty buffers
 there, and calls. The standard streams are handles.
 """
 
@@ -15,8 +15,17 @@ from cfepy.extra.c.api.posix_files import open_path
 from cfepy.extra.c.api.streams import STDERR, STDIN, STDOUT, Streams
 from cfepy.extra.c.arena import pages
 from cfepy.extra.c.crashes import CFault
-from cfepy.extra.c.posix.descriptors import O_RDONLY, O_WRONLY, Console, DescriptorTable
-from cfepy.extra.c.posix.file_streams import EOF, FULL, NONE, FileStream, flags_of
+from cfepy.extra.c.posix.descriptors import (
+    EOF,
+    FULL,
+    NONE,
+    O_RDONLY,
+    O_WRONLY,
+    DescriptorTable,
+    FileStream,
+    StandardStream,
+    flags_of,
+)
 from cfepy.reading.texts import to_bytes
 
 if TYPE_CHECKING:
@@ -36,7 +45,7 @@ SCANS = ("fscanf", "__isoc99_fscanf", "__isoc23_fscanf", "vfscanf", "__isoc99_vf
 SCANS_STDIN = ("scanf", "__isoc99_scanf", "__isoc23_scanf", "vscanf", "__isoc99_vscanf", "__isoc23_vscanf")
 
 
-class ConsoleStream(FileStream):
+class PrintedStream(FileStream):
     """stdout or stderr: bytes go to the console, which shows whole lines.
 
     Args:
@@ -46,7 +55,7 @@ class ConsoleStream(FileStream):
     """
 
     def __init__(self, number: int, handle: int, streams: Streams) -> None:
-        super().__init__(number, Console(lambda data: streams.write(handle, data)), O_WRONLY)
+        super().__init__(number, StandardStream(lambda data: streams.write(handle, data)), O_WRONLY)
         self._handle = handle
         self._streams = streams
 
@@ -68,9 +77,9 @@ class FileStreams:
         self._c = c
         self._slots = Slots(c, FILE_BYTES)
         self._table: DescriptorTable = c.descriptors
-        self._open: dict[int, FileStream] = {STDIN: FileStream(0, Console(), O_RDONLY)}
+        self._open: dict[int, FileStream] = {STDIN: FileStream(0, StandardStream(), O_RDONLY)}
         for handle in (STDOUT, STDERR):
-            self._open[handle] = ConsoleStream(handle, handle, c.streams)
+            self._open[handle] = PrintedStream(handle, handle, c.streams)
         for number, handle in enumerate((STDIN, STDOUT, STDERR)):
             self._table.add(self._open[handle].descriptor, number)
         self._scanned: dict[FileStream, tuple[bytes, int, int, int]] = {}  # input, its copy, position, record

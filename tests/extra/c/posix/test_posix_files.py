@@ -38,7 +38,7 @@ def test_fortified_program_prints_the_same_in_flight(tmp_path: Path, name: str) 
     compare(tmp_path, name, *FORTIFIED)
 
 
-def test_files_are_those_of_osal(tmp_path: Path) -> None:
+def test_files_are_shared_with_osal(tmp_path: Path) -> None:
     source = r"""
         #include <stdio.h>
         #include <fcntl.h>

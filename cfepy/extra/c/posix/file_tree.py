@@ -23,6 +23,9 @@ from cfepy.extra.c.posix.descriptors import (
     O_WRONLY,
     S_IFDIR,
     S_IFREG,
+    SEEK_CUR,
+    SEEK_END,
+    SEEK_SET,
     Descriptor,
     Facts,
     failure,
@@ -31,13 +34,12 @@ from cfepy.osal import OS_FILESTAT_MODE_READ, OS_FILESTAT_MODE_WRITE, FileNode, 
 from cfepy.reading.texts import to_bytes
 
 LONGEST_PATH, LONGEST_NAME = 4096, 256
-SEEK_SET, SEEK_CUR, SEEK_END = 0, 1, 2
 R_OK, W_OK, X_OK = 4, 2, 1
 _OWNER_READS, _OWNER_WRITES = 0o400, 0o200
 FOLDER = Facts(S_IFDIR | 0o755, 4096)
 
 
-class Found(NamedTuple):
+class FoundPath(NamedTuple):
     """The object at a path.
 
     Attributes:
@@ -74,7 +76,7 @@ class PosixFiles:
         self.now = now
         self._tell = tell
 
-    def find(self, function: str, path: str) -> Found:
+    def find(self, function: str, path: str) -> FoundPath:
         """Return the object at a path, which may be absent.
 
         Args:
@@ -108,20 +110,20 @@ class PosixFiles:
         if not found.is_folder:
             raise failure(errno.ENOENT)
 
-    def _at(self, function: str, path: str, parts: list[str], must_be_folder: bool) -> Found:
+    def _at(self, function: str, path: str, parts: list[str], must_be_folder: bool) -> FoundPath:
         whole = "/" + "/".join(parts)
         if not parts:
-            return Found(whole, None, None, True, must_be_folder)
+            return FoundPath(whole, None, None, True, must_be_folder)
         place = self.files.place_of(whole)
         if place is None:
             if any(each.startswith(f"{whole}/") for each in self.files.mount_points()):
-                return Found(whole, None, None, True, must_be_folder)
+                return FoundPath(whole, None, None, True, must_be_folder)
             self._tell(function, path)
             raise failure(errno.ENOENT)
         node = place.node()
         if node is not None and must_be_folder:
             raise failure(errno.ENOTDIR)
-        return Found(whole, place, node, node is None and place.volume.is_folder(place.path), must_be_folder)
+        return FoundPath(whole, place, node, node is None and place.volume.is_folder(place.path), must_be_folder)
 
     # -- opening -----------------------------------------------------------------------------------------------------
 
@@ -166,7 +168,7 @@ class PosixFiles:
                 node.modified_ns = self.now()
         return OpenFile(self, found, node, flags)
 
-    def _check_parent(self, found: Found) -> None:
+    def _check_parent(self, found: FoundPath) -> None:
         assert found.place is not None
         volume, path, _ = found.place
         if not path or not volume.is_folder(path.rpartition("/")[0]):
@@ -185,7 +187,7 @@ class PosixFiles:
         found = self.existing(function, path)
         return self.facts_of(found, found.node)
 
-    def facts_of(self, found: Found, node: FileNode | None) -> Facts:
+    def facts_of(self, found: FoundPath, node: FileNode | None) -> Facts:
         """Return the result of stat for an object."""
         if node is None:
             return Facts(FOLDER.mode, FOLDER.size, 0, found.number)
@@ -194,7 +196,7 @@ class PosixFiles:
         )
         return Facts(S_IFREG | mode, len(node.data), node.modified_ns, found.number)
 
-    def existing(self, function: str, path: str) -> Found:
+    def existing(self, function: str, path: str) -> FoundPath:
         """Return the object at a path.
 
         Raises:
@@ -290,7 +292,7 @@ class PosixFiles:
         self._check_parent(target)
         volume.rename_folder(source.place.path, target.place.path)
 
-    def names(self, found: Found) -> list[str]:
+    def names(self, found: FoundPath) -> list[str]:
         """Return the names in a folder, sorted."""
         if found.place is not None:
             return found.place.volume.names(found.place.path)
@@ -311,7 +313,7 @@ class OpenFile(Descriptor):
 
     is_regular = True
 
-    def __init__(self, files: PosixFiles, found: Found, node: FileNode, flags: int) -> None:
+    def __init__(self, files: PosixFiles, found: FoundPath, node: FileNode, flags: int) -> None:
         super().__init__(flags)
         self._files = files
         self._found = found
@@ -399,7 +401,7 @@ class OpenFolder(Descriptor):
         position: the number of names that were read.
     """
 
-    def __init__(self, files: PosixFiles, found: Found) -> None:
+    def __init__(self, files: PosixFiles, found: FoundPath) -> None:
         super().__init__(O_RDONLY)
         self._files = files
         self._found = found
@@ -423,7 +425,7 @@ class OpenFolder(Descriptor):
     def facts(self) -> Facts:
         return self._files.facts_of(self._found, None)
 
-    def next_name(self) -> tuple[str, Found] | None:
+    def next_name(self) -> tuple[str, FoundPath] | None:
         """Return the next name and its object, or None at the end; "." and ".." come first."""
         if self._names is None:
             self._names = [".", "..", *self._files.names(self._found)]
@@ -435,7 +437,7 @@ class OpenFolder(Descriptor):
         try:
             return name, self._files.find("readdir", inside)
         except OSError:  # it was removed meanwhile
-            return name, Found(inside, None, None, False, False)
+            return name, FoundPath(inside, None, None, False, False)
 
     def rewind(self) -> None:
         """Begin again, with the names of now."""
