@@ -18,8 +18,8 @@ from cfepy.extra.c.lifetimes import Ends, Openings, ThreadLocals
 from cfepy.extra.c.linking import LIBRARIES, Exports, LinkedWith, host_library, refused_names, wanted_names
 from cfepy.extra.c.memory import CMemory, Constants
 from cfepy.extra.c.packets import PacketImages
-from cfepy.extra.c.posix.descriptors import Descriptor, DescriptorTable
 from cfepy.extra.c.posix.file_tree import PosixFiles
+from cfepy.extra.c.posix.open_descriptors import Descriptor, DescriptorTable
 from cfepy.extra.c.races import CompiledRaceWatch
 from cfepy.extra.c.source_places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.extra.c.stacks import LEAST, Stacks

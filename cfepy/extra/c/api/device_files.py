@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from cfepy.extra.c.api.posix_calls import FAILED, PosixCalls
 from cfepy.extra.c.devices import I2C, Device, DevicePorts
-from cfepy.extra.c.posix.descriptors import O_RDWR, POLLIN, POLLOUT, Descriptor, failure
+from cfepy.extra.c.posix.open_descriptors import O_RDWR, POLLIN, POLLOUT, Descriptor, failure
 from cfepy.units import NS_PER_MS
 
 if TYPE_CHECKING:

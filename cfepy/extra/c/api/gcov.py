@@ -11,7 +11,7 @@ import os
 from typing import TYPE_CHECKING
 
 from cfepy.extra.c.crashes import CFault
-from cfepy.extra.c.posix.descriptors import O_ACCMODE, Descriptor, failure
+from cfepy.extra.c.posix.open_descriptors import O_ACCMODE, Descriptor, failure
 
 if TYPE_CHECKING:
     from cfepy.extra.c.calls import Declarations

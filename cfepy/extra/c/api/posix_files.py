@@ -14,7 +14,8 @@ from cfepy.extra.c.api.gcov import has_host_folder, make_host_folder
 from cfepy.extra.c.api.posix_calls import PosixCalls, Slots
 from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.memory import chars
-from cfepy.extra.c.posix.descriptors import (
+from cfepy.extra.c.posix.file_tree import OpenFolder
+from cfepy.extra.c.posix.open_descriptors import (
     CHANGEABLE,
     MOST,
     O_CREAT,
@@ -25,7 +26,6 @@ from cfepy.extra.c.posix.descriptors import (
     Facts,
     failure,
 )
-from cfepy.extra.c.posix.file_tree import OpenFolder
 from cfepy.osal import OS_TIME_TICK_RESOLUTION_NS
 from cfepy.units import NS_PER_S
 

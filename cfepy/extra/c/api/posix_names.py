@@ -11,8 +11,8 @@ from struct import Struct
 from typing import TYPE_CHECKING
 
 from cfepy.extra.c.api.posix_calls import PosixCalls, Slots
-from cfepy.extra.c.posix.descriptors import failure
 from cfepy.extra.c.posix.inet_addresses import AF_INET, AF_INET6, AF_UNSPEC, host_of_text, packed
+from cfepy.extra.c.posix.open_descriptors import failure
 from cfepy.osal import Place
 from cfepy.reading.texts import to_bytes
 

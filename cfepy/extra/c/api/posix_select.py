@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from cfepy.extra.c.api.posix_calls import PosixCalls
 from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.posix.descriptor_waits import await_descriptors
-from cfepy.extra.c.posix.descriptors import (
+from cfepy.extra.c.posix.open_descriptors import (
     MOST,
     POLLERR,
     POLLHUP,

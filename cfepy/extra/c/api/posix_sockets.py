@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from cfepy.extra.c.api.posix_calls import PosixCalls
 from cfepy.extra.c.api.posix_files import IOVEC
 from cfepy.extra.c.crashes import CFault
-from cfepy.extra.c.posix.descriptors import O_NONBLOCK, failure
 from cfepy.extra.c.posix.inet_addresses import AF_INET, AF_INET6, read_place, write_place
+from cfepy.extra.c.posix.open_descriptors import O_NONBLOCK, failure
 from cfepy.extra.c.posix.open_sockets import (
     AF_CAN,
     CAN_RAW,

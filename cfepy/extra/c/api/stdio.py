@@ -15,7 +15,7 @@ from cfepy.extra.c.api.posix_files import open_path
 from cfepy.extra.c.api.streams import STDERR, STDIN, STDOUT, Streams
 from cfepy.extra.c.arena import pages
 from cfepy.extra.c.crashes import CFault
-from cfepy.extra.c.posix.descriptors import (
+from cfepy.extra.c.posix.open_descriptors import (
     EOF,
     FULL,
     NONE,

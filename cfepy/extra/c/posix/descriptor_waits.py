@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from cfepy.extra.c.posix.descriptors import Descriptor
+from cfepy.extra.c.posix.open_descriptors import Descriptor
 from cfepy.osal import Endpoint
 from cfepy.rtos import FOREVER, Kernel, WaitList
 from cfepy.units import NS_PER_MS

@@ -11,7 +11,7 @@ import zlib
 from collections.abc import Callable
 from typing import NamedTuple
 
-from cfepy.extra.c.posix.descriptors import (
+from cfepy.extra.c.posix.open_descriptors import (
     O_ACCMODE,
     O_APPEND,
     O_CREAT,

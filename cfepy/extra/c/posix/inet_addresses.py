@@ -7,7 +7,7 @@ import ipaddress
 from struct import Struct
 
 from cfepy.extra.c.memory import CMemory
-from cfepy.extra.c.posix.descriptors import failure
+from cfepy.extra.c.posix.open_descriptors import failure
 from cfepy.osal import Place
 
 AF_UNSPEC, AF_UNIX, AF_INET, AF_INET6, AF_CAN = 0, 1, 2, 10, 29

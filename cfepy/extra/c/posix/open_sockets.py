@@ -11,7 +11,7 @@ from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.devices import Device
 from cfepy.extra.c.memory import CMemory
 from cfepy.extra.c.posix.descriptor_waits import await_descriptors
-from cfepy.extra.c.posix.descriptors import (
+from cfepy.extra.c.posix.open_descriptors import (
     O_NONBLOCK,
     O_RDWR,
     POLLERR,
