@@ -201,7 +201,8 @@ def _list(item: Schema) -> Schema:
 
 def _device() -> Schema:
     port = {"type": "integer", "minimum": 1, "maximum": device_config.MOST_PORT}
-    return record(device_config.DEVICE_FIELDS, {"python": TEXT, "udp": port, "to": SCALAR})
+    shapes = {"python": TEXT, "udp": port, "topic": TEXT, "to": SCALAR, "type": one_of(device_config.TOPIC_TYPES)}
+    return record(device_config.DEVICE_FIELDS, shapes)
 
 
 def _files() -> Schema:
@@ -224,6 +225,7 @@ def _node() -> Schema:
         "respawn": FLAG,
         "respawn_delay": TIME,
         "required": FLAG,
+        "ros": {"enum": [1, 2]},
     }
     return record(mission_file.NODE_FIELDS, shapes, described_in("reference/mission_file.md", "### A node"))
 

@@ -29,7 +29,7 @@ class Found:
         switches: preemptions left after shrinking.
         changes: other changes of order left after shrinking.
         failure: the failure, as the command names it.
-        cause: the cause, as the command tells it; empty if it names none.
+        cause: the cause, as the command names it; empty without one.
     """
 
     schedules: int
@@ -102,7 +102,7 @@ def _search(folder: Path, seconds: float, most: int, options: tuple[str, ...]) -
 
 
 def found_of(failure: dict[str, Any], schedules: int) -> Found:
-    """Return what counts of a failure in the JSON of `cfepy explore`."""
+    """Return the recorded parts of a failure in the JSON of `cfepy explore`."""
     shrunk = failure["shrunk"] or {"preemptions": 0, "moves": []}
     switches = shrunk["preemptions"]
     return Found(

@@ -1,4 +1,4 @@
-"""A client's queue in rosbridge is finished while messages come. What comes later must not be sent."""
+"""A client's queue in rosbridge is finished while messages come. Later messages must not be sent."""
 
 import sys
 
