@@ -42,6 +42,7 @@ OPENERS = {
     "cfepy/rtos/cpus.py": "/proc",
     "cfepy/rtos/cpu_time.py": "/proc",
     "cfepy/extra/debugger/gdb.py": "/proc",
+    "cfepy/extra/c/api/posix_files.py": "files of the mission, for applications in C",
     "cfepy/extra/c/toolchain/compiler.py": "/proc",
     "cfepy/interpreter/compiled.py": "cfepy's own sources",
     "cfepy/extra/c/engine.py": "cfepy's own sources",
