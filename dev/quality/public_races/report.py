@@ -130,6 +130,7 @@ together.
 The columns are:
 
 - "schedules": the number of schedules up to the first failure. 0 means that the default schedule `fifo` fails already.
+  "> N" means that none of N schedules failed, and that the search ended there.
 - "policy": the policy of the schedule that fails, with the depth of `pct`.
 - "shrunk": the preemptions that the shrunk schedule needs, and its other changes of order.
 - "mended": the schedules of the mended form: at least 100, and as many as the mistake needed.
