@@ -105,7 +105,10 @@ def compiled_folders(packages: Packages, package: str, node_type: str) -> tuple[
 
 
 def _is_built(folder: Path, package: str, node_type: str) -> bool:
-    """Return True if the CMakeLists.txt of a package, or one further down in its folder, contains the name."""
+    """Return True if the CMakeLists.txt of a package, or one further down in its folder, builds a node.
+
+    It does if it contains the name, or makes names of programs from the names of files, one of which has this name.
+    """
     word = re.compile(rf"(?<![\w.-]){re.escape(node_type)}(?![\w.-])")
     for file in folder.rglob("CMakeLists.txt") if not node_type.endswith(".py") else ():
         try:
@@ -113,6 +116,8 @@ def _is_built(folder: Path, package: str, node_type: str) -> bool:
         except OSError:
             continue
         if word.search(text.replace("${PROJECT_NAME}", package)):
+            return True
+        if _NAMED_BY_FILES.search(text) and any(each.suffix in CPP_SUFFIXES for each in folder.rglob(f"{node_type}.*")):
             return True
     return False
 
@@ -128,6 +133,8 @@ def _offers(folder: Path, nodelet: str) -> bool:
     return any(word.search(text) for text in texts)
 
 
+CPP_SUFFIXES = (".cpp", ".cc", ".cxx", ".c++", ".C")
+_NAMED_BY_FILES = re.compile(r"add_executable\s*\(\s*\$\{(?!PROJECT_NAME\})")
 _EXPORTED = re.compile(r'<nodelet\s+plugin\s*=\s*"\$\{prefix\}/([^"]+)"')
 
 

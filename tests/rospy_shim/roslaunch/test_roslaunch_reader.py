@@ -11,7 +11,7 @@ import pytest
 from cfepy.reading.mistakes import Mistakes
 from cfepy.status import UsageError
 from rospy_shim.parameters.values import DateTime
-from rospy_shim.roslaunch.launch_plan import plan_of
+from rospy_shim.roslaunch.launch_plan import compiled_folders, plan_of
 from rospy_shim.roslaunch.model import Launch
 from rospy_shim.roslaunch.reader import read
 from rospy_shim.types.msgs import Packages
@@ -268,3 +268,14 @@ def test_results_of_a_test_stay_in_their_folder(tmp_path: Path) -> None:
     assert {each.parent for each in files} == {tmp_path / "results"}
     assert len(set(files)) == len(names)
     assert max(len(each.name) for each in files) < 255
+
+
+def test_program_named_after_its_source_file_by_cmake_is_built(tmp_path: Path) -> None:
+    (tmp_path / "package.xml").write_text("<package><name>robots</name></package>", encoding="utf-8")
+    loop = "foreach(file ${FILES})\nget_filename_component(name ${file} NAME_WE)\nadd_executable(${name} ${file})\n"
+    (tmp_path / "CMakeLists.txt").write_text(f"file(GLOB FILES node/*.cpp)\n{loop}endforeach()\n", encoding="utf-8")
+    (tmp_path / "node").mkdir()
+    (tmp_path / "node/arm.cpp").touch()
+    packages = Packages(tmp_path / "x.launch", {})
+    assert compiled_folders(packages, "robots", "arm")
+    assert not compiled_folders(packages, "robots", "leg")
