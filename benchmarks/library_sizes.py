@@ -16,7 +16,14 @@ from pathlib import Path
 
 from benchmarks.message_sizes import COMPILERS
 from cfepy.extra.c import headers_folder
-from cfepy.extra.convert.build import HEAP_SOURCE, core_flags, library_folder, library_includes, profile_flags
+from cfepy.extra.convert.build import (
+    HEAP_SOURCE,
+    BuildOptions,
+    core_flags,
+    library_folder,
+    library_includes,
+    profile_flags,
+)
 from cfepy.extra.convert.cpp_sources import collect, message_types
 from cfepy.extra.convert.message_headers import Profile, write_headers
 from rospy_shim.types.msgs import shipped
@@ -39,7 +46,12 @@ def sizes(sources: Sequence[Path], profile: Profile, compiler: Sequence[str], fo
     messages = folder / "messages"
     write_headers(message_types(collect(sources, library_includes()).missing, shipped()), messages, profile, shipped())
     include = [f"-I{each}" for each in (messages, *library_includes())] + ["-isystem", str(headers_folder())]
-    flags = [*FLAGS, *profile_flags(profile), *core_flags(profile), f"-DROSCFE_ARENA_BYTES={ARENA}"]
+    flags = [
+        *FLAGS,
+        *profile_flags(BuildOptions(profile)),
+        *core_flags(BuildOptions(profile)),
+        f"-DROSCFE_ARENA_BYTES={ARENA}",
+    ]
     objects = []
     for source in sources:
         objects.append(folder / f"{source.stem}.o")

@@ -22,7 +22,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from cfepy.extra.convert import Profile
-from cfepy.extra.convert.build import LANGUAGE, library_includes, profile_flags
+from cfepy.extra.convert.build import LANGUAGE, BuildOptions, library_includes, profile_flags
 from cfepy.extra.convert.cpp_package import CppPackage, Program
 from cfepy.extra.convert.message_headers import write_headers
 from cfepy.extra.convert.node_check import check_program
@@ -289,7 +289,15 @@ class Damaging:
     def _compiles(self, file: Path, includes: list[Path], profile: Profile) -> bool:
         """Return whether the plain compiler accepts a file."""
         folders = [f"-I{each}" for each in (*includes, *library_includes())]
-        command = ["g++", LANGUAGE[0], *profile_flags(profile), "-w", "-fsyntax-only", *folders, str(file)]
+        command = [
+            "g++",
+            LANGUAGE[0],
+            *profile_flags(BuildOptions(profile)),
+            "-w",
+            "-fsyntax-only",
+            *folders,
+            str(file),
+        ]
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, check=False)
         return done.returncode == 0
 

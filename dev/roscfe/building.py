@@ -15,7 +15,7 @@ from cfepy.reading.resources import shipped
 
 CPP = os.environ.get("CXX", "c++").split()
 ROSCFE = shipped("roscfe")
-INCLUDE = (f"-I{ROSCFE / 'include'}", f"-I{ROSCFE / 'boost'}")
+INCLUDE = tuple(f"-I{ROSCFE / name}" for name in ("include", "threads", "boost"))
 STRICT_FLAGS = ("-std=c++17", "-Wall", "-Wextra", "-Werror")
 FLIGHT_FLAGS = (*STRICT_FLAGS, "-fno-exceptions", "-fno-rtti")
 

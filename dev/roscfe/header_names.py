@@ -90,10 +90,8 @@ NAMES = [
 ]
 """Names that nodes use. A macro has no colon."""
 MACROS = _MACROS.split()
-_THREADS = "a node with threads is refused"
 _SMALL = "the small Boost does not have it; a node that includes its header gets this computer's Boost"
 REASONS = {
-    **dict.fromkeys(("boost::thread", "boost::condition_variable", "boost::shared_mutex"), _THREADS),
     **dict.fromkeys(("boost::tuple", "boost::unordered_map"), _SMALL),
     "ros::ServiceCallbackHelper": "a class of roscpp's own implementation",
     "ros::master::getNodes": "the nodes of a mission are known to cfepy alone",

@@ -1,4 +1,4 @@
-// Callbacks that run while the node waits: what other threads would do in ROS.
+// Asynchronous spinners, and callbacks that run while the node waits: what other threads would do in ROS.
 #include <algorithm>
 
 #include "core/core.h"
@@ -15,7 +15,12 @@ void AsyncSpinner::start()
     if (!started_)
     {
         started_ = true;
-        roscfe::start_async(queue_ != nullptr ? queue_ : &roscfe::g_node.queue);
+        CallbackQueue *queue = queue_ != nullptr ? queue_ : &roscfe::g_node.queue;
+        thread_              = roscfe::start_spinner != nullptr ? roscfe::start_spinner(queue) : nullptr;
+        if (thread_ == nullptr)
+        {
+            roscfe::start_async(queue);
+        }
     }
 }
 
@@ -24,7 +29,15 @@ void AsyncSpinner::stop()
     if (started_)
     {
         started_ = false;
-        roscfe::stop_async(queue_ != nullptr ? queue_ : &roscfe::g_node.queue);
+        if (thread_ != nullptr)
+        {
+            roscfe::stop_spinner(thread_);
+            thread_ = nullptr;
+        }
+        else
+        {
+            roscfe::stop_async(queue_ != nullptr ? queue_ : &roscfe::g_node.queue);
+        }
     }
 }
 

@@ -10,6 +10,7 @@ from dev.roscfe.building import CPP
 
 ROSCFE = Path(__file__).parents[2] / "roscfe"
 HEADERS = ROSCFE / "include"
+THREADS = ROSCFE / "threads"
 BOOST = ROSCFE / "boost"
 STRICT = ["-fno-exceptions", "-fno-rtti", "-Wall", "-Wextra", "-Werror"]
 """How the library itself is compiled."""
@@ -32,7 +33,7 @@ def compiled(
         headers: folders of headers.
     """
     program = folder / name
-    includes = [f"-I{path}" for path in headers]
+    includes = [f"-I{path}" for path in (*headers, THREADS)]
     command = [*CPP, "-std=c++17", *includes, *options, "-o", str(program), *map(str, sources)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

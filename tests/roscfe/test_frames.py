@@ -193,10 +193,10 @@ def test_no_memory_is_allocated_in_flight(sanitizers: list[str], tmp_path: Path)
     assert done.returncode == 0, done.stderr
     printed = done.stdout.splitlines()
     assert printed[0].startswith("news: 0, ")
-    assert printed[1] == f"forgotten early: {4 * 5000 - 2048}"  # all except the capacity of the buffer
-    assert printed[2] == "oldest: 1 0"  # 2048 samples are 5.12 s of four frames
+    assert printed[1] == f"forgotten early: {4 * 5000 - 1600}"  # all except the capacity of the buffer
+    assert printed[2] == "oldest: 1 0"  # 1600 samples are 4 s of four frames
     assert printed[3] == "cut: 142 of 142 refused"
-    assert "The buffer of transforms is full: 2048 samples" in done.stderr
+    assert "The buffer of transforms is full: 1600 samples" in done.stderr
     assert "runtime error" not in done.stderr
 
 

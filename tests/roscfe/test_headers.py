@@ -2,20 +2,37 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 from pathlib import Path
 
 import pytest
 
 from cfepy.extra.convert.build import BOOST_REFUSED
+from cfepy.extra.convert.cpp_sources import collect
 from cfepy.extra.convert.message_headers import Profile, write_headers
 from dev.roscfe.building import FLIGHT_FLAGS, ROSCFE, STRICT_FLAGS, compile_program, complaints, needs_cpp
 from dev.roscfe.random_messages import LIBRARY, all_types, capacities
 
 pytestmark = [pytest.mark.slow, needs_cpp]
-BOOST = sorted((ROSCFE / "boost").rglob("*.hpp"))
+BOOST = sorted(
+    str(each.relative_to(ROSCFE / name)) for name in ("boost", "threads") for each in (ROSCFE / name).rglob("*.hpp")
+)
+NO_THREADS = (
+    "interruption",
+    "thread_only",
+    "thread_group",
+    "condition_variable",
+    "condition",
+    "barrier",
+    "shared_mutex",
+)
+"""Headers of Boost that only nodes for the host have."""
 LACKING = ("asio", "variant", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
 NO_SERIALIZER = "specialise ros::serialization::Serializer for it"
+DECLARED = re.compile(r"^(?:template <.*>\n)?[\w:<>*& ]+?[ *&](\w+)\(", re.MULTILINE)
+"""A function of the library, whose declaration begins a line."""
+USED = re.compile(r"\broscfe::(\w+)\(")
 DEPTHS = """
 #include <depth_image_proc/depth_traits.h>
 #include <cstdio>
@@ -42,11 +59,14 @@ struct Own { int a; };
 """
 
 
-@pytest.mark.parametrize("header", BOOST, ids=lambda path: path.stem)
-def test_header_of_boost_compiles_alone_or_is_refused(tmp_path: Path, header: Path) -> None:
-    said = complaints(tmp_path, f"#include <{header.relative_to(ROSCFE / 'boost')}>\n" * 2)
-    if header.name in BOOST_REFUSED:
+@pytest.mark.parametrize("header", BOOST)
+def test_header_of_boost_compiles_alone_or_is_refused(tmp_path: Path, header: str) -> None:
+    said = complaints(tmp_path, f"#include <{header}>\n" * 2, "-DROSCFE_PROFILE_STRICT")
+    if Path(header).name in BOOST_REFUSED:
         assert "[library-outside]" in said
+    elif Path(header).stem in NO_THREADS:
+        assert "[thread]" in said
+        assert not complaints(tmp_path, f"#include <{header}>\n" * 2, base=STRICT_FLAGS)
     else:
         assert not said
 
@@ -68,6 +88,19 @@ def test_unsupported_header_of_boost_is_refused(tmp_path: Path, name: str) -> No
 )
 def test_header_of_messages_compiles_alone(tmp_path: Path, name: str, base: tuple[str, ...]) -> None:
     assert not complaints(tmp_path, f'#include "{name}.h"\n' * 2, base=base)
+
+
+def test_header_includes_the_declarations_of_the_functions_that_it_calls() -> None:
+    """A node may include it alone, and a template that calls a function needs its declaration before."""
+    folder = ROSCFE / "include"
+    declared: dict[str, set[Path]] = {}
+    for header in sorted((folder / "roscfe").rglob("*.h")):
+        for name in DECLARED.findall(header.read_text(encoding="utf-8")):
+            declared.setdefault(name, set()).add(header)
+    for header in sorted(folder.rglob("*.h")):
+        reached = collect([header], [folder, ROSCFE / "threads", ROSCFE / "boost"]).contents
+        for name in USED.findall(header.read_text(encoding="utf-8")):
+            assert not declared.get(name, set()).isdisjoint(reached) or name not in declared, (header, name)
 
 
 def test_depths_are_millimeters_or_meters(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.convert.build import OWN_CPP_LIBRARY, WITH_ARENA, profile_flags
+from cfepy.extra.convert.build import OWN_CPP_LIBRARY, WITH_ARENA, BuildOptions, profile_flags
 from cfepy.extra.convert.message_headers import Profile
 from dev.roscfe.building import ROSCFE, STRICT_FLAGS, compile_objects, link_program, needs_cpp
 
@@ -41,7 +41,7 @@ def profile(request: pytest.FixtureRequest) -> Profile:
 def run(profile: Profile, tmp_path_factory: pytest.TempPathFactory) -> Run:
     """Return a function that runs a case and returns its output lines."""
     made = tmp_path_factory.mktemp("heap") / "heap"
-    base = [*STRICT_FLAGS, *NO_WARNINGS, *profile_flags(profile), "-O1"]
+    base = [*STRICT_FLAGS, *NO_WARNINGS, *profile_flags(BuildOptions(profile)), "-O1"]
     objects = compile_objects(made, [ROSCFE / "src/heap.cpp", ROSCFE / "src/throwing.cpp"], base=base)
     objects += compile_objects(made.with_name("case"), [PROGRAM], base=base)
     link_program(made, objects, *WITH_ARENA, *OWN_CPP_LIBRARY)

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.c import headers_folder
-from cfepy.extra.convert.build import library_folder, library_includes, profile_flags
+from cfepy.extra.convert.build import BuildOptions, library_folder, library_includes, profile_flags
 from cfepy.extra.convert.cpp_sources import collect, message_types
 from cfepy.extra.convert.message_headers import Profile, write_headers
 from dev.roscfe.building import CPP, needs_cpp
@@ -52,7 +52,7 @@ def flags(folder: Path, profile: Profile) -> list[str]:
     write_headers(types, folder, profile, LIBRARY)
     includes = [f"-I{each}" for each in library_includes()]
     system = ["-isystem", str(folder), "-isystem", str(headers_folder())]
-    return ["-std=c++17", *includes, *system, *profile_flags(profile)]
+    return ["-std=c++17", *includes, *system, *profile_flags(BuildOptions(profile))]
 
 
 @pytest.mark.parametrize("profile", [Profile.HOST, Profile.STRICT])
@@ -91,12 +91,13 @@ def test_cppcheck_has_no_finding() -> None:
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_only_locks_of_boost_know_threads() -> None:
-    """A node is one task: but for Boost's locks, the library has no state that threads of the host could share."""
+def test_only_some_parts_know_threads() -> None:
+    """Threads of a node take turns, so the other parts have no state that two tasks use at once."""
     found = {
         str(each.relative_to(library_folder()))
-        for name in ("src", "include", "boost")
+        for name in ("src", "include")
         for each in (library_folder() / name).rglob("*.*")
         if THREADS.search(each.read_text(encoding="utf-8"))
     }
-    assert found == {"boost/boost/thread/mutex.hpp", "boost/boost/thread/recursive_mutex.hpp"}
+    parts = {f"src/posix/{name}" for name in ("turns.cpp", "threads.cpp", "std_threads.cpp")}
+    assert found == {*parts, "include/roscfe/thread_waits.h"}

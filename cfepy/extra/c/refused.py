@@ -54,6 +54,10 @@ BY_REASON: dict[str, tuple[str, ...]] = {
         *("fgetwc", "fgetws", "fputwc", "fputws", "fwide", "fwprintf", "fwscanf", "getwchar", "putwc", "putwchar"),
         *("ungetwc", "vfwprintf", "vfwscanf", "vwprintf", "vwscanf", "wcsftime", "wprintf", "wscanf"),
     ),
+    "the only language is C's": (
+        *("bind_textdomain_codeset", "bindtextdomain", "dgettext", "gettext", "iconv", "iconv_close", "iconv_open"),
+        *("__strftime_l", "__wcscoll_l", "__wcsftime_l", "__wcsxfrm_l", "mbsnrtowcs", "wcsnrtombs"),
+    ),
     "texts in UTF-16 and UTF-32 are not available; the locale C has single bytes": (
         *("c16rtomb", "c32rtomb", "mbrtoc16", "mbrtoc32"),
     ),

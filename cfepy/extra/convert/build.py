@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import hashlib
 import os
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from pathlib import Path
 
@@ -59,20 +60,23 @@ ALLOCATING = (
     *("aligned_alloc", "posix_memalign", "memalign"),
 )
 """libc functions that the arena replaces, in profiles that have one."""
-LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic", DROP_UNUSED)
+THREADS = "src/posix/threads.cpp"
+"""The source of the interface library with POSIX's threads for nodes of the host profile."""
+LINK = ("-shared", "-Wl,--wrap=" + ",--wrap=".join(WRAPPED), "-Wl,-Bsymbolic", "-Wl,--exclude-libs,ALL", DROP_UNUSED)
 BOOST_REFUSED = ("config.hpp", "version.hpp")
 """Headers of the small Boost that refuse headers of the real Boost that were found by chance."""
 BOOST_IN_PART = ("boost/thread.hpp", "boost/thread/thread.hpp", "boost/foreach.hpp", "boost/circular_buffer.hpp")
-"""Headers that the small Boost has only for one task. A node for the host gets the computer's."""
+"""Headers that bring more of Boost along than the small one has. A node for the host gets the computer's."""
 WHOLE, NOT_WHOLE = ("-Wl,--whole-archive",), ("-Wl,--no-whole-archive",)
 """On cfepy a node has all parts of the library, since a part may be called by the library alone."""
 WITH_ARENA = ("-Wl,--wrap=" + ",--wrap=".join(ALLOCATING),)
-OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc", "-Wl,--exclude-libs,ALL")
+OWN_CPP_LIBRARY = ("-static-libstdc++", "-static-libgcc")
 SYSTEM_ROS = ("/opt/ros/", "/usr/include/ros/", "/usr/local/include/ros/")
 BASIC_FOLDERS = ("src", "core", "posix")
 """Folders of the interface library whose sources do not depend on the headers that a node uses."""
 HEAP_SOURCE = "heap.cpp"
 """The source of the interface library that contains the arena."""
+_EXCEPTIONS = re.compile(r"\b(?:try|catch|throw|typeid|dynamic_cast|dynamic_pointer_cast)\b")
 MOST_AT_ONCE = 2
 """Compilers that run at the same time."""
 
@@ -93,7 +97,7 @@ def library_includes(real_boost: bool = False) -> list[Path]:
         real_boost: whether to use the computer's Boost instead of the small one.
     """
     folder = library_folder()
-    return [folder / "include", *([] if real_boost else [folder / "boost"])]
+    return [folder / "include", folder / "threads", *([] if real_boost else [folder / "boost"])]
 
 
 def needs_real_boost(sources: SourceSet, profile: Profile) -> bool:
@@ -105,8 +109,19 @@ def needs_real_boost(sources: SourceSet, profile: Profile) -> bool:
     """
     folder = library_folder() / "boost"
     refused = {folder / "boost" / name for name in BOOST_REFUSED}
-    refused |= {folder / name for name in BOOST_IN_PART if profile is Profile.HOST}
+    in_part = {each / name for each in (folder, library_folder() / "threads") for name in BOOST_IN_PART}
+    refused |= in_part if profile is Profile.HOST else set()
     return any(each.startswith("boost/") for each in sources.missing) or not refused.isdisjoint(sources.contents)
+
+
+def uses_exceptions(sources: SourceSet) -> bool:
+    """Return True if sources of a node throw or catch, or ask for types at run time.
+
+    Args:
+        sources: also headers; those of the library do not count.
+    """
+    folder = library_folder()
+    return any(_EXCEPTIONS.search(text) for file, text in sources.texts.items() if not file.is_relative_to(folder))
 
 
 def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path]:
@@ -131,6 +146,13 @@ def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path
         needed = found
 
 
+@cache
+def posix_threads() -> frozenset[str]:
+    """Return the functions of POSIX's threads that the library has for nodes of the host profile."""
+    text = (library_folder() / THREADS).read_text(encoding="utf-8")
+    return frozenset(re.findall(r"^\S.*?\b((?:pthread|sem|sched)_\w+)\(", text, re.MULTILINE))
+
+
 def provided_packages() -> set[str]:
     """Return the packages whose headers the library has, such as roscpp. Their own sources are not compiled."""
     known = {"roscpp", "rostime", "rosconsole", "roscpp_serialization", "roscpp_traits", "xmlrpcpp", "cpp_common"}
@@ -145,11 +167,18 @@ class BuildOptions:
         profile: the permitted features of the node.
         capacities: of its messages, in the strict profile.
         arena_bytes: size of its heap, in the profiles pool and strict.
+        exceptions: whether a node of the profile pool is built with exceptions; see `uses_exceptions`.
     """
 
     profile: Profile = Profile.HOST
     capacities: Capacities = field(default_factory=Capacities)
     arena_bytes: int = ARENA_BYTES
+    exceptions: bool = False
+
+    @property
+    def has_exceptions(self) -> bool:
+        """Whether the node is built with exceptions and run-time type information."""
+        return self.profile is Profile.HOST or (self.profile is Profile.POOL and self.exceptions)
 
     def flags_of(self, source: Path) -> list[str]:
         """Return the flags that only one source of the interface library gets."""
@@ -199,9 +228,9 @@ class NodeBuild:
     def __init__(self, program: Program, entry: NodeEntry, library: Library, options: BuildOptions) -> None:
         self._program = program
         self._entry = entry
-        self._options = options
         self._types = library
         sources = collect(program.sources, [*program.includes, *library_includes()])
+        self._options = replace(options, exceptions=uses_exceptions(sources))
         self._real_boost = needs_real_boost(sources, self._options.profile)
         if self._real_boost:
             sources = collect(program.sources, [*program.includes, *library_includes(real_boost=True)])
@@ -224,7 +253,7 @@ class NodeBuild:
         main.write_text(main_header(entry.takes_arguments), encoding="utf-8")
         start = scratch / f"{entry.app.lower()}_entry.cpp"
         start.write_text(entry.text(), encoding="utf-8")
-        flags = [*LANGUAGE, *PLAIN, *profile_flags(self._options.profile)]
+        flags = [*LANGUAGE, *PLAIN, *profile_flags(self._options)]
         own = [*flags, *(f"-D{each}" for each in program.definitions), "-include", str(main)]
         made_for_it = (messages.name, configurations.name, main_header(entry.takes_arguments))
         units = []
@@ -260,15 +289,14 @@ class NodeBuild:
 # -- the library -------------------------------------------------------------------------------------------------------
 
 
-def profile_flags(profile: Profile) -> list[str]:
-    """Return the flags of a profile."""
-    exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
-    return [f"-DROSCFE_PROFILE_{profile.name}", *exceptions]
+def profile_flags(options: BuildOptions) -> list[str]:
+    """Return the flags of a node's sources."""
+    return [f"-DROSCFE_PROFILE_{options.profile.name}", *(() if options.has_exceptions else WITHOUT_EXCEPTIONS)]
 
 
-def core_flags(profile: Profile) -> Sequence[str]:
-    """Return a profile's flags for the library's own sources, which keep exceptions for nodes of the host profile."""
-    return WITHOUT_TYPES if profile is Profile.HOST else WITHOUT_EXCEPTIONS
+def core_flags(options: BuildOptions) -> Sequence[str]:
+    """Return the flags of the library's own sources, which exceptions of a node pass through."""
+    return WITHOUT_TYPES if options.has_exceptions else WITHOUT_EXCEPTIONS
 
 
 def link_flags(profile: Profile) -> list[str]:
@@ -326,11 +354,10 @@ def core_units(options: BuildOptions, real_boost: bool, library: Library, used: 
         library: of message types.
         used: as of `library_sources`.
     """
-    profile = options.profile
     files, includes = library_sources(used, real_boost), library_includes(real_boost)
     messages = messages_folder(message_types(collect(files, includes).missing, library), library, options)
     sources = collect(files, [messages, *includes])
-    flags = [*LANGUAGE, *PLAIN, *profile_flags(profile), *core_flags(profile), *STRICT_WARNINGS]
+    flags = [*LANGUAGE, *PLAIN, *profile_flags(options), *core_flags(options), *STRICT_WARNINGS]
     folder = library_folder()
     return [
         CompileUnit(

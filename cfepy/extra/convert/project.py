@@ -21,13 +21,14 @@ from typing import Any
 from cfepy.extra.convert.build import (
     HEAP_SOURCE,
     LANGUAGE,
-    WITHOUT_EXCEPTIONS,
     BuildOptions,
     core_flags,
     library_folder,
     library_includes,
     library_sources,
     link_flags,
+    profile_flags,
+    uses_exceptions,
 )
 from cfepy.extra.convert.capacities import capacities_of
 from cfepy.extra.convert.conversion import Conversion, ConvertedNode
@@ -64,7 +65,8 @@ def project_files(made: Conversion, config: CppNodesConfig, folder: Path) -> dic
         UsageError: a field without a capacity.
     """
     files: dict[str, bytes] = {}
-    options = BuildOptions(Profile(config.profile), capacities_of(config, made.library), config.arena_bytes)
+    thrown = any(uses_exceptions(node.sources) for node in made.nodes)
+    options = BuildOptions(Profile(config.profile), capacities_of(config, made.library), config.arena_bytes, thrown)
     files |= _library(made, options)
     for node in made.nodes:
         files |= _application(node)
@@ -121,7 +123,6 @@ def _cmake_of_library(sources: Iterable[str], options: BuildOptions) -> str:
     arena = options.flags_of(Path(HEAP_SOURCE))
     words = " ".join(each[2:] for each in arena)
     definitions = f"\n    target_compile_definitions(${{ROSCFE_LIBRARY}} PRIVATE {words})" if arena else ""
-    exceptions = () if profile is Profile.HOST else WITHOUT_EXCEPTIONS
     flags = [*LANGUAGE, f"-DROSCFE_PROFILE_{profile.name}"]
     linked = " ".join(link_flags(profile)[1:])  # CMake adds -shared
     listed, hosted = (
@@ -138,7 +139,7 @@ get_filename_component(ROSCFE_FOLDER ${{ROSCFE_DIR}} DIRECTORY)
 get_filename_component(ROSCFE_FOLDER ${{ROSCFE_FOLDER}} NAME)
 set(ROSCFE_LIBRARY roscfe_${{ROSCFE_FOLDER}})
 set(ROSCFE_FLAGS {" ".join(flags)})
-set(ROSCFE_NODE_FLAGS {" ".join(exceptions)})
+set(ROSCFE_NODE_FLAGS {" ".join(profile_flags(options)[1:])})
 
 # Options that a mission gives all languages, though they are of C alone.
 get_property(ROSCFE_OPTIONS DIRECTORY PROPERTY COMPILE_OPTIONS)
@@ -154,11 +155,11 @@ if(NOT TARGET ${{ROSCFE_LIBRARY}})
         )
     endif()
     target_include_directories(${{ROSCFE_LIBRARY}}
-        PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
+        PUBLIC ${{ROSCFE_DIR}}/include ${{ROSCFE_DIR}}/threads ${{ROSCFE_DIR}}/boost ${{ROSCFE_DIR}}/msg)
     target_include_directories(${{ROSCFE_LIBRARY}}
         SYSTEM PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_INCLUDE_DIRECTORIES>)
     target_compile_definitions(${{ROSCFE_LIBRARY}} PRIVATE $<TARGET_PROPERTY:core_api,INTERFACE_COMPILE_DEFINITIONS>)
-    target_compile_options(${{ROSCFE_LIBRARY}} PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(profile))}){definitions}
+    target_compile_options(${{ROSCFE_LIBRARY}} PRIVATE ${{ROSCFE_FLAGS}} {" ".join(core_flags(options))}){definitions}
 endif()
 
 # roscfe_node(NAME MAIN_HEADER ENTRY SOURCE...): a node that is an application of cFE.

@@ -16,6 +16,7 @@ from cfepy.extra.convert.build import (
     WITH_ARENA,
     WITHOUT_TYPES,
     WRAPPED,
+    BuildOptions,
     library_includes,
     library_sources,
     profile_flags,
@@ -69,8 +70,8 @@ class Alone:
         types = message_types(collect([*nodes, *self.sources], includes).missing, LIBRARY)
         write_headers(types, messages, profile, LIBRARY, capacities())
         self._flags = [f"-I{messages}", f"-I{FOLDER}", "-isystem", str(headers_folder())]
-        self._flags += [*profile_flags(profile), *flags]
-        self._library = self._objects(self.sources, [*STRICT_FLAGS, *WITHOUT_TYPES, *own_flags])
+        self._flags += [*profile_flags(BuildOptions(profile)), *flags]
+        self._library = self._objects(self.sources, ["-fvisibility=hidden", *STRICT_FLAGS, *WITHOUT_TYPES, *own_flags])
         stand_in = [FOLDER / "cfe_stand_in.cpp", FOLDER.parent / "cfe_messages.cpp"]
         self._stand_in = self._objects(stand_in, FLIGHT_FLAGS, "stand_in")
         self._nodes: dict[tuple[Path, ...], list[Path]] = {}

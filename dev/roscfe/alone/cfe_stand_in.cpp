@@ -261,6 +261,18 @@ void CFE_ES_ExitApp(uint32 status)
     end(status == CFE_ES_RunStatus_APP_EXIT ? 0 : 3);
 }
 
+// A program alone has one task.
+CFE_Status_t CFE_ES_CreateChildTask(CFE_ES_TaskId_t *, const char *, CFE_ES_ChildTaskMainFuncPtr_t,
+                                    CFE_ES_StackPointer_t, size_t, CFE_ES_TaskPriority_Atom_t, uint32)
+{
+    return CFE_ES_ERR_CHILD_TASK_CREATE;
+}
+
+void CFE_ES_ExitChildTask(void)
+{
+    end(3);
+}
+
 void CFE_ES_PerfLogAdd(uint32, uint32) {}
 
 CFE_Status_t CFE_ES_WriteToSysLog(const char *format, ...)
@@ -502,6 +514,26 @@ int32 OS_CondVarLock(osal_id_t)
 }
 
 int32 OS_CondVarUnlock(osal_id_t)
+{
+    return OS_SUCCESS;
+}
+
+int32 OS_CondVarWait(osal_id_t)
+{
+    return OS_ERROR; // there is one task, which nobody could wake
+}
+
+int32 OS_CondVarBroadcast(osal_id_t)
+{
+    return OS_SUCCESS;
+}
+
+osal_id_t OS_TaskGetId(void)
+{
+    return 0x00010001;
+}
+
+int32 OS_TaskGetInfo(osal_id_t, OS_task_prop_t *)
 {
     return OS_SUCCESS;
 }

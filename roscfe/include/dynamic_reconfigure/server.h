@@ -7,6 +7,8 @@
 #include <cxxabi.h>
 #endif
 
+#include <boost/thread/recursive_mutex.hpp>
+
 #include "dynamic_reconfigure/Reconfigure.h"
 #include "roscfe/configuration.h"
 
@@ -19,10 +21,13 @@ class Server
   public:
     typedef boost::function<void(ConfigType &, std::uint32_t level)> CallbackType;
 
-    explicit Server(const ros::NodeHandle &node = ros::NodeHandle("~")) : node_(node) { begin(); }
-    // With a mutex of the node's, which nothing contends for: all callbacks run in one task.
-    template <class Mutex>
-    explicit Server(Mutex &, const ros::NodeHandle &node = ros::NodeHandle("~")) : node_(node), warns_(false)
+    explicit Server(const ros::NodeHandle &node = ros::NodeHandle("~")) : node_(node), mutex_(own_mutex_)
+    {
+        begin();
+    }
+    // With a mutex of the node's, which is held while the callback runs.
+    explicit Server(boost::recursive_mutex &mutex, const ros::NodeHandle &node = ros::NodeHandle("~"))
+        : node_(node), mutex_(mutex), warns_(false)
     {
         begin();
     }
@@ -32,11 +37,16 @@ class Server
     // It is called at once with all levels.
     void setCallback(const CallbackType &callback)
     {
+        const Lock lock(mutex_);
         callback_ = callback;
         call(config_, ~std::uint32_t(0));
         update(config_);
     }
-    void clearCallback() { callback_ = CallbackType(); }
+    void clearCallback()
+    {
+        const Lock lock(mutex_);
+        callback_ = CallbackType();
+    }
 
     // The node's own changes: they are told, and the callback is not called.
     void updateConfig(const ConfigType &config)
@@ -72,6 +82,8 @@ class Server
     }
 
   private:
+    typedef boost::recursive_mutex::scoped_lock Lock;
+
     void begin()
     {
         ConfigType::visit(roscfe::configuration::SetLeast(), least_);
@@ -97,6 +109,7 @@ class Server
 
     void update(const ConfigType &config)
     {
+        const Lock lock(mutex_);
         config_ = config;
         config_.__toServer__(node_);
         updates_.publish(roscfe::configuration::message_of(config_));
@@ -133,6 +146,7 @@ class Server
 
     bool set(Reconfigure::Request &request, Reconfigure::Response &response)
     {
+        const Lock lock(mutex_);
         ConfigType changed = config_;
         changed.__fromMessage__(request.config);
         changed.__clamp__();
@@ -143,16 +157,18 @@ class Server
         return true;
     }
 
-    ros::NodeHandle    node_;
-    ConfigType         config_;
-    ConfigType         least_;
-    ConfigType         most_;
-    ConfigType         otherwise_;
-    CallbackType       callback_;
-    ros::ServiceServer service_;
-    ros::Publisher     updates_;
-    ros::Publisher     description_;
-    bool               warns_ = true; // without a mutex of the node's, of its own changes
+    ros::NodeHandle         node_;
+    ConfigType              config_;
+    ConfigType              least_;
+    ConfigType              most_;
+    ConfigType              otherwise_;
+    CallbackType            callback_;
+    ros::ServiceServer      service_;
+    ros::Publisher          updates_;
+    ros::Publisher          description_;
+    boost::recursive_mutex  own_mutex_;
+    boost::recursive_mutex &mutex_;
+    bool                    warns_ = true; // without a mutex of the node's, of its own changes
 };
 
 } // namespace dynamic_reconfigure

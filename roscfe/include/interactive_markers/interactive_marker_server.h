@@ -25,7 +25,7 @@ class InteractiveMarkerServer
     typedef visualization_msgs::InteractiveMarkerFeedbackConstPtr FeedbackConstPtr;
     typedef boost::function<void(const FeedbackConstPtr &)>       FeedbackCallback;
 
-    static const std::uint8_t DEFAULT_FEEDBACK_CB = 255;
+    static constexpr std::uint8_t DEFAULT_FEEDBACK_CB = 255; // also has a place in memory, for a reference to it
 
     InteractiveMarkerServer(const std::string &topic_ns, const std::string &server_id = "", bool = false)
     {

@@ -1,4 +1,4 @@
-// Spinners. A node has one task on cFE, so callbacks of all of them run one after the other.
+// Spinners. Threads of a node take turns on cFE, so callbacks of all of them run one after the other.
 #ifndef ROS_SPINNER_H
 #define ROS_SPINNER_H
 
@@ -32,7 +32,8 @@ class MultiThreadedSpinner : public SingleThreadedSpinner
     explicit MultiThreadedSpinner(std::uint32_t = 0) {}
 };
 
-// While it is started, callbacks run whenever the node waits: in Rate::sleep, Duration::sleep, waitForShutdown.
+// While it is started, callbacks run in a thread of their own, or, in nodes that have none, whenever the node waits: in
+// Rate::sleep, Duration::sleep, waitForShutdown.
 class AsyncSpinner
 {
   public:
@@ -47,6 +48,7 @@ class AsyncSpinner
 
   private:
     CallbackQueue *queue_;
+    void *         thread_  = nullptr;
     bool           started_ = false;
 };
 

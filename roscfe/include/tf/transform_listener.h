@@ -8,6 +8,12 @@
 
 #include <string>
 
+#if defined(ROSCFE_PROFILE_HOST) // these three come with ROS's header, and nodes rely on it
+#include "boost/thread/condition_variable.hpp"
+#include "boost/thread/shared_mutex.hpp"
+#include "boost/thread/thread_only.hpp"
+#endif
+
 #include "ros/callback_queue.h"
 #include "ros/ros.h"
 #include "tf/tf.h"

@@ -24,7 +24,7 @@
 #endif
 #ifndef ROSCFE_TF_SAMPLES
 #if defined(ROSCFE_PROFILE_POOL) || defined(ROSCFE_PROFILE_STRICT)
-#define ROSCFE_TF_SAMPLES 2048
+#define ROSCFE_TF_SAMPLES 1600 // a block of 131,072 bytes
 #else
 #define ROSCFE_TF_SAMPLES 16384
 #endif

@@ -134,6 +134,27 @@ const CFE_SB_Buffer_t *wait_for_packet(std::int32_t wait_ms)
     return CFE_SB_ReceiveBuffer(&buffer, g_node.pipe, wait_ms) == CFE_SUCCESS ? buffer : nullptr;
 }
 
+bool is_threaded()
+{
+    return has_threads != nullptr && has_threads();
+}
+
+// With threads, one of them takes packets over, and the others only wait.
+bool wait_for_threads(std::int64_t until_ns)
+{
+    queue_timers();
+    if (until_ns != kForever && now_ns() >= until_ns)
+    {
+        let_others_run();
+        return false;
+    }
+    const NextTimer timer = next_timer != nullptr ? next_timer() : NextTimer();
+    const bool is_first = timer.ns != kForever && (until_ns == kForever || timer.ns < until_ns);
+    wait_in_turn(is_first ? timer.ns : until_ns);
+    queue_timers();
+    return true;
+}
+
 // What a program waits for before it is a node; messages do not concern it.
 bool wait_without_pipe(std::int64_t until_ns)
 {
@@ -165,6 +186,20 @@ void open_bus()
     {
         open_ground();
     }
+    if (receive_in_thread != nullptr)
+    {
+        receive_in_thread();
+    }
+}
+
+const CFE_SB_Buffer_t *wait_in_pipe()
+{
+    return wait_for_packet(CFE_SB_PEND_FOREVER);
+}
+
+void take_packet(const CFE_SB_Buffer_t *buffer)
+{
+    dispatch(buffer);
 }
 
 bool listen(std::uint16_t msg_id)
@@ -175,6 +210,10 @@ bool listen(std::uint16_t msg_id)
 
 bool pump(std::int64_t until_ns, bool exactly)
 {
+    if (is_threaded())
+    {
+        return wait_for_threads(until_ns);
+    }
     if (!g_node.has_pipe)
     {
         return wait_without_pipe(until_ns);
@@ -219,7 +258,11 @@ bool pump(std::int64_t until_ns, bool exactly)
 
 void take_over_now()
 {
-    if (g_node.started && !g_node.ended && !g_dispatching)
+    if (is_threaded())
+    {
+        let_others_run();
+    }
+    else if (g_node.started && !g_node.ended && !g_dispatching)
     {
         take_over();
     }

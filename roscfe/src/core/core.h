@@ -107,6 +107,10 @@ void wait_until(std::int64_t until_ns);
 // Take over what waits in the pipe, unless that is under way.
 void take_over_now();
 
+// For a thread that does nothing else: wait for a packet, which is null when there is no pipe any more, and take it over.
+const CFE_SB_Buffer_t *wait_in_pipe();
+void                   take_packet(const CFE_SB_Buffer_t *buffer);
+
 bool listen(std::uint16_t msg_id);
 
 // A packet under way: memory of the Software Bus behind a header of its own. Null when there is none, which an event says.
@@ -178,6 +182,16 @@ ROSCFE_HOOK bool receive_raw(Subscription &subscription, const std::uint8_t *pac
 ROSCFE_HOOK void open_ground();
 ROSCFE_HOOK bool take_command(std::uint16_t msg_id, const CFE_SB_Buffer_t *buffer, std::size_t size);
 ROSCFE_HOOK void mark_work(bool begins);
+
+// turns.cpp: threads of the node, one of which runs at a time.
+ROSCFE_HOOK bool has_threads();                       // there are others than the main thread
+ROSCFE_HOOK void wait_in_turn(std::int64_t until_ns); // others run until something changes, or a time
+ROSCFE_HOOK void let_others_run();                    // those that want to
+ROSCFE_HOOK void receive_in_thread();                 // from now on, if there are threads
+
+// spinners.cpp: asynchronous spinners that are threads. Without it their callbacks run while the node waits.
+ROSCFE_HOOK void *start_spinner(ros::CallbackQueue *queue); // null when there is no task for it
+ROSCFE_HOOK void  stop_spinner(void *spinner);
 
 // services.cpp, timers.cpp, exact_waits.cpp, async.cpp, sim_time.cpp, parameters.cpp, private_parameters.cpp, master.cpp
 // and logging.cpp.

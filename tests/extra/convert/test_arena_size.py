@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cfepy.extra.convert.message_headers import Profile
 from cfepy.extra.convert.node_check import SourcePlace, SubscriptionMemory, arena_size
-from cfepy.extra.convert.node_check.arena_size import GRAIN, OF_LIBRARY, OF_NODE
+from cfepy.extra.convert.node_check.arena_size import GRAIN, OF_LIBRARY, OF_NODE, OF_TRANSFORMS
 
 PLACE = SourcePlace(Path("node.cpp"), 1)
 
@@ -32,3 +32,9 @@ def test_arena_holds_each_block_of_a_subscription() -> None:
 def test_size_says_its_reasons() -> None:
     text = "arena of 8,192 bytes: 0 for subscriptions, 4,096 for the library, 4,096 for the node's own code"
     assert str(arena_size([], Profile.STRICT)) == text
+
+
+def test_size_has_room_for_a_buffer_of_transforms() -> None:
+    with_transforms, without = (arena_size([], Profile.POOL, each) for each in (True, False))
+    assert with_transforms.total - without.total == OF_TRANSFORMS
+    assert "184,320 for a buffer of transforms" in str(with_transforms)

@@ -91,11 +91,32 @@ def test_each_rule_is_met(tmp_path: Path, line: str, rule: str, column: int) -> 
         "void f() { tcgetattr(0, &raw); }",
         "void f() { socket(AF_INET, SOCK_DGRAM, 0); }",
         'void f() { system("reboot"); }',
-        "std::condition_variable changed;",
     ],
 )
 def test_unsupported_call_refuses_a_node_in_the_host_profile(tmp_path: Path, line: str) -> None:
     assert len(look(tmp_path, f"{MAIN}{line}", Profile.HOST).at(Level.ERROR)) == 1
+
+
+@pytest.mark.parametrize("line", ["std::condition_variable changed;", "void f() { std::thread(g).detach(); }"])
+def test_thread_refuses_a_node_of_one_task(tmp_path: Path, line: str) -> None:
+    levels = {
+        profile: [len(look(tmp_path, f"{MAIN}{line}", profile).at(level)) for level in (Level.ERROR, Level.WARNING)]
+        for profile in Profile
+    }
+    assert levels == {Profile.HOST: [0, 1], Profile.POOL: [1, 0], Profile.STRICT: [1, 0]}
+
+
+@pytest.mark.parametrize(
+    ("line", "rule"),
+    [
+        ("void f() { throw 1; }", "throw"),
+        ("void f() { try { g(); } catch (...) { } }", "catch"),
+        ("void f(A *a) { dynamic_cast<B *>(a); }", "rtti"),
+    ],
+)
+def test_exception_refuses_a_node_only_in_the_strict_profile(tmp_path: Path, line: str, rule: str) -> None:
+    assert [each.rule for each in look(tmp_path, f"{MAIN}{line}", Profile.POOL).at(Level.WARNING)] == [rule]
+    assert [each.rule for each in look(tmp_path, f"{MAIN}{line}", Profile.STRICT).at(Level.ERROR)] == [rule]
 
 
 @pytest.mark.parametrize(
@@ -164,7 +185,7 @@ def test_own_headers_are_read(tmp_path: Path) -> None:
 def test_a_level_is_the_profiles(tmp_path: Path) -> None:
     text = f"void f() {{ throw 1; }}\n{MAIN}"
     assert not look(tmp_path, text, Profile.HOST).findings
-    assert look(tmp_path, text, Profile.POOL).is_refused
+    assert look(tmp_path, text, Profile.STRICT).is_refused
 
 
 def test_names_have_types_and_places(tmp_path: Path) -> None:

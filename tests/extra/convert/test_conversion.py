@@ -113,14 +113,14 @@ def test_a_node_that_the_check_refuses_is_not_converted(
     source = package / "src/sender.cpp"
     source.write_text(
         source.read_text(encoding="utf-8")
-        + "#include <thread>\nstatic void spare() { std::thread(spare).detach(); }\n",
+        + '#include <cstdlib>\nstatic void spare() { std::system("reboot"); spare(); }\n',
         encoding="utf-8",
     )
     words = ["convert", str(package / "launch/ping.launch"), "-o", str(tmp_path / "made")]
     assert main(words) == 1
     err = capsys.readouterr().err
     assert "sender.cpp:" in err
-    assert "[thread]" in err
+    assert "[process]" in err
     assert "/arm/left is not converted: 1 error, see above; --no-check converts it all the same" in err
     said = json.loads((tmp_path / "made/report.json").read_text(encoding="utf-8"))
     assert [each["node"] for each in said["nodes"]] == ["/arm/ear"]

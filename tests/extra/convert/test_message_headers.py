@@ -148,7 +148,7 @@ def test_definition_equals_the_connection_header(tmp_path: Path) -> None:
     ("header", "host", "pool"),
     [
         *(("bind", False, False), ("thread/mutex", False, False), ("version", True, True), ("config", True, True)),
-        *(("asio", True, True), ("thread", True, False)),
+        *(("asio", True, True), ("thread", True, False), ("thread/barrier", False, False)),
     ],
 )
 def test_header_of_boost_selects_the_small_or_the_installed_boost(

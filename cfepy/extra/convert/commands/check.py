@@ -69,7 +69,7 @@ def _print(reports: Sequence[CheckReport], profile: Profile) -> None:
                 f"{memory.total:,} bytes"
             )
         if profile is not Profile.HOST:
-            print(f"{report.name}: {arena_size(report.memory, profile)}")
+            print(f"{report.name}: {arena_size(report.memory, profile, report.has_transforms)}")
     refused = sum(each.is_refused for each in reports)
     nodes = f"{len(reports)} node{'s' if len(reports) > 1 else ''}"
     print(f"{profile.value}: {nodes}, {refused} refused; {', '.join(counts) or 'nothing'} found")

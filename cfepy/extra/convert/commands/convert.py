@@ -81,7 +81,7 @@ class _Judge:
     def __call__(self, program: Program) -> str:
         """Return why a program is not converted; empty if it can be."""
         report = check_program(program, Profile(self._config.profile), dict(os.environ), self._config)
-        self._arenas[report.name] = arena_size(report.memory, report.profile)
+        self._arenas[report.name] = arena_size(report.memory, report.profile, report.has_transforms)
         errors = report.at(Level.ERROR)
         tell([each.line(Level.ERROR) for each in errors])
         count = f"{len(errors)} error{'s' if len(errors) > 1 else ''}"

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 
-from cfepy.extra.convert.build import library_folder, library_includes
+from cfepy.extra.convert.build import BuildOptions, library_folder, library_includes
 from cfepy.extra.convert.capacities import Capacities, capacities_of
 from cfepy.extra.convert.cpp_package import Program
 from cfepy.extra.convert.message_headers import Profile, write_headers
@@ -25,6 +25,8 @@ from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 
 LONGEST_PACKET = 32768
 """Bytes of a packet on NASA's Software Bus (CFE_MISSION_SB_MAX_SB_MSG_SIZE)."""
+OF_TRANSFORMS = ("tf/transform_listener.h", "tf2_ros/transform_listener.h", "tf2_ros/buffer.h", "tf2/buffer_core.h")
+"""Headers of what has a buffer of transforms."""
 KEPT = 4
 """Messages that a node may hold in addition to the waiting ones."""
 
@@ -56,6 +58,7 @@ def check_program(
     sources = ProgramSources(program.sources, program.includes, Library([OnDisk(packages)], base=shipped()))
     sources.make_configurations(report, program)
     sources.look(report)
+    report.has_transforms = any(map(sources.included_at, OF_TRANSFORMS))
     if report.is_refused and not compile_refused:
         return report
     with tempfile.TemporaryDirectory(prefix="cfepy-check-") as folder:
@@ -82,7 +85,8 @@ def _compile(
     for name, text in sources.generated.items():
         write_contained(messages, f"/{name}", text.encode())
     folders = [*program.includes, messages, *library_includes(real_boost), refusals]
-    compiler = Compiler(report.profile, folders, program.definitions)
+    options = BuildOptions(report.profile, exceptions=sources.use_exceptions)
+    compiler = Compiler(options, folders, program.definitions)
     accepted = True
     calls: list[tuple[Diagnostic, SourcePlace]] = []
     known = [each for each in program.sources if each in sources.files]

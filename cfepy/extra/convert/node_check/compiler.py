@@ -14,7 +14,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from cfepy.extra.c import CompilerError, call_bounded, cpp_compiler
-from cfepy.extra.convert.build import ALLOCATING, DROP_UNUSED, SECTIONS, WRAPPED, profile_flags
+from cfepy.extra.convert.build import (
+    ALLOCATING,
+    DROP_UNUSED,
+    SECTIONS,
+    WRAPPED,
+    BuildOptions,
+    posix_threads,
+    profile_flags,
+)
 from cfepy.extra.convert.message_headers import Profile
 from cfepy.extra.convert.node_check.findings import CheckReport, SourcePlace
 from cfepy.extra.convert.node_check.headers import SYSTEM, is_of_ros
@@ -77,18 +85,19 @@ class Compiler:
     """Calls the compiler for the sources of one program.
 
     Args:
-        profile: profile of the build.
+        options: of the build.
         folders: of the include path, the first searched first.
         definitions: the compiler's -D, without -D.
     """
 
-    def __init__(self, profile: Profile, folders: Sequence[Path], definitions: Iterable[str] = ()) -> None:
+    def __init__(self, options: BuildOptions, folders: Sequence[Path], definitions: Iterable[str] = ()) -> None:
         self.command = [*cpp_compiler(), "-std=c++17", "-fPIC", "-fvisibility=hidden", *SECTIONS]
         self.command += ["-g1", "-DROSCFE_IS_CHECKED"]
-        self.command += ["-fdiagnostics-format=json", "-fdiagnostics-column-unit=byte", *profile_flags(profile)]
+        self.command += ["-fdiagnostics-format=json", "-fdiagnostics-column-unit=byte", *profile_flags(options)]
         self.command += [f"-D{each}" for each in definitions]
         self.command += [word for place in folders for word in ("-I", str(place))]
         self.objects: list[Path] = []
+        self._profile = options.profile
 
     def compile(self, source: Path, scratch: Path, while_waiting: Callable[[], object] = lambda: None) -> Compiled:
         """Compile a file.
@@ -134,7 +143,8 @@ class Compiler:
         Raises:
             UsageError: binutils are not installed.
         """
-        return ending_calls(_call(["nm", "-u", "-l", *map(str, self.objects)])[1], (*WRAPPED, *ALLOCATING))
+        replaced = (*WRAPPED, *ALLOCATING, *(posix_threads() if self._profile is Profile.HOST else ()))
+        return ending_calls(_call(["nm", "-u", "-l", *map(str, self.objects)])[1], replaced)
 
     def sizes(self, types: Sequence[str], scratch: Path) -> dict[str, int]:
         """Return the bytes of messages, by type; empty if the compiler does not report them."""

@@ -102,6 +102,7 @@ class CheckReport:
         findings: sorted by place, each once.
         names: names in the ROS graph that it uses.
         memory: of its subscriptions; empty when it does not compile.
+        has_transforms: whether it has a buffer of transforms.
         files: its sources and own headers that were read.
         unparsed: places that were left to the compiler, because the parser does not expand macros.
     """
@@ -111,6 +112,7 @@ class CheckReport:
     findings: list[RuleFinding] = field(default_factory=list)
     names: list[GraphName] = field(default_factory=list)
     memory: list[SubscriptionMemory] = field(default_factory=list)
+    has_transforms: bool = False
     files: list[Path] = field(default_factory=list)
     unparsed: int = 0
 

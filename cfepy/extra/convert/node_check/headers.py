@@ -17,7 +17,7 @@ from cfepy.extra.convert.source_names import includes_of, without_comments
 from cfepy.reading.input_files import text_limited
 from cfepy.reading.input_limits import CPP_BYTES
 
-OURS, OUR_BOOST = library_includes()
+OURS, *OUR_BOOST = library_includes()
 SYSTEM = Path("/usr/include")
 _NAMES = {
     "c++": "algorithm any array atomic bitset cassert ccomplex cctype cerrno cfenv cfloat charconv chrono cinttypes "
@@ -175,7 +175,7 @@ def is_ours(name: str) -> bool:
 
 def is_small_boost(name: str) -> bool:
     """Return True if a header of Boost is in the small one of the interface library."""
-    return is_file(OUR_BOOST / name)
+    return any(is_file(folder / name) for folder in OUR_BOOST)
 
 
 def has_boost(name: str, profile: Profile) -> bool:

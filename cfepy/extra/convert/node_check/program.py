@@ -106,6 +106,11 @@ class ProgramSources:
                 report.add("configuration", include.place, str(error))
                 self.generated[include.name] = refusal(error.text, "configuration")
 
+    @property
+    def use_exceptions(self) -> bool:
+        """Whether a file throws or catches, or asks for types at run time."""
+        return any(met.rule in ("throw", "catch", "rtti") for file in self.files.values() for met in file.met)
+
     def takes_real_boost(self, profile: Profile) -> bool:
         """Return True if the program is built with this computer's Boost, because the small one lacks parts."""
         if profile is not Profile.HOST or not is_file(SYSTEM / "boost" / "version.hpp"):

@@ -139,21 +139,22 @@ RULES: dict[str, CheckRule] = {
             "define one `int main()` or `int main(int argc, char **argv)`",
         ),
         CheckRule(
-            *("throw", None, _E, _E),
+            *("throw", None, _W, _E),
             "an exception is thrown",
-            "the profile builds without exceptions, as flight software does",
+            "in the pool profile an exception takes memory of the arena, and the image grows by tables; the strict "
+            "profile builds without exceptions",
             "return an error, or take the host profile",
         ),
         CheckRule(
-            *("catch", None, _E, _E),
+            *("catch", None, _W, _E),
             "an exception is caught",
-            "the profile builds without exceptions: the handler would never run",
+            "as throw; in the strict profile the handler would never run",
             "test for the error instead, or take the host profile",
         ),
         CheckRule(
-            *("rtti", None, _E, _E),
+            *("rtti", None, _W, _E),
             "dynamic_cast or typeid",
-            "the profile builds without run-time type information",
+            "in the pool profile the node gets run-time type information; the strict profile has none",
             "use a virtual function, or take the host profile",
         ),
         CheckRule(
@@ -200,10 +201,11 @@ RULES: dict[str, CheckRule] = {
             "set the number of messages that may wait, or raise the bound for the node",
         ),
         CheckRule(
-            *("thread", _E, _E, _E),
-            "a thread that is not cFE's, or a condition that another thread has to make true",
-            "the node is one task of cFE: only this task may call ROS, and the thread would outlive it",
-            "use a timer or a callback",
+            *("thread", _W, _E, _E),
+            "a thread, or a condition that another thread has to make true",
+            "in the profile host each thread becomes a child task of the application, and one runs until it waits; in "
+            "the other profiles a node is one task",
+            "use a timer or a callback, or take the host profile",
         ),
         CheckRule(
             *("socket", _E, _E, _E),

@@ -13,6 +13,12 @@
 #include <boost/function.hpp>
 #include <boost/make_shared.hpp>
 
+#if defined(ROSCFE_PROFILE_HOST) // these three come with ROS's header, and nodes rely on it
+#include "boost/thread/condition_variable.hpp"
+#include "boost/thread/shared_mutex.hpp"
+#include "boost/thread/thread_only.hpp"
+#endif
+
 #include "actionlib/client/action_client.h"
 #include "actionlib/client/simple_goal_state.h"
 #include "ros/ros.h"

@@ -10,7 +10,14 @@
 
 #include <string>
 
+#if defined(ROSCFE_PROFILE_HOST) // these three come with ROS's header, and nodes rely on it
+#include "boost/thread/condition_variable.hpp"
+#include "boost/thread/shared_mutex.hpp"
+#include "boost/thread/thread_only.hpp"
+#endif
+
 #include "actionlib/server/action_server.h"
+#include "roscfe/waiting.h"
 
 namespace actionlib
 {
@@ -91,7 +98,7 @@ class SimpleActionServer
         }
         if (isActive() && current_ != next_)
         {
-            current_.setCanceled(Result(), "This goal was canceled because another goal was received by the simple "
+            current_.setCanceled(Result(), "This goal was canceled because another goal was recieved by the simple "
                                            "action server");
         }
         current_                  = next_;
@@ -161,13 +168,13 @@ class SimpleActionServer
                              (!next_.isValid() || mine >= next_.getGoalID().stamp);
         if (!is_last)
         {
-            goal.setCanceled(Result(), "This goal was canceled because another goal was received by the simple action "
+            goal.setCanceled(Result(), "This goal was canceled because another goal was recieved by the simple action "
                                        "server");
             return;
         }
         if (next_.isValid() && (!current_.isValid() || next_ != current_))
         {
-            next_.setCanceled(Result(), "This goal was canceled because another goal was received by the simple action "
+            next_.setCanceled(Result(), "This goal was canceled because another goal was recieved by the simple action "
                                         "server");
         }
         next_                     = goal;

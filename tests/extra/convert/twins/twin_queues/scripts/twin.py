@@ -58,6 +58,7 @@ class Twin:
         self.at_once = True
         rospy.sleep(2.2)
         self.at_once = False
+        rospy.sleep(0.02)  # the thread of roscpp's spinner looks each 0.1 s whether it is stopped
         out.publish("stopped")
         rospy.sleep(0.5)
         out.publish("not empty" if own.waiting else "empty")

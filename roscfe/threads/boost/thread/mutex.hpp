@@ -1,5 +1,6 @@
-// A node is one task, so nobody but the node itself can hold its mutexes. To lock one that it holds would be to wait for
-// ever: that ends the application with an event. Only nodes for the host may have threads beside it, and real mutexes.
+// Only nodes for the host have threads, and mutexes that threads wait for. In the other profiles a node is one task, and
+// only the node itself can hold its mutexes. To lock one that it holds would be to wait for ever: that ends the application
+// with an event.
 #ifndef BOOST_THREAD_MUTEX_HPP
 #define BOOST_THREAD_MUTEX_HPP
 
@@ -7,6 +8,8 @@
 #include <atomic>
 #include <mutex>
 #include <thread>
+
+#include "boost/thread/thread_time.hpp"
 #endif
 
 #include "boost/thread/lock_guard.hpp"
@@ -44,7 +47,7 @@ class mutex
     {
         refuse_to_wait(owner_ == std::this_thread::get_id());
         mutex_.lock();
-        owner_ = std::this_thread::get_id();
+        take_holder();
     }
     bool try_lock()
     {
@@ -52,14 +55,20 @@ class mutex
         {
             return false;
         }
-        owner_ = std::this_thread::get_id();
+        take_holder();
         return true;
     }
     void unlock()
     {
-        owner_ = std::thread::id();
+        yield_holder();
         mutex_.unlock();
     }
+
+    // Around the wait for a condition, which unlocks the mutex and locks it again.
+    typedef std::mutex::native_handle_type native_handle_type;
+    native_handle_type native_handle() { return mutex_.native_handle(); }
+    void               yield_holder() { owner_ = std::thread::id(); }
+    void               take_holder() { owner_ = std::this_thread::get_id(); }
 #endif
 
   private:
@@ -80,6 +89,33 @@ class mutex
 };
 
 typedef mutex try_mutex;
+
+#if !defined(ROSCFE_PROFILE_POOL) && !defined(ROSCFE_PROFILE_STRICT)
+class timed_mutex
+{
+  public:
+    typedef unique_lock<timed_mutex> scoped_lock;
+    typedef unique_lock<timed_mutex> scoped_try_lock;
+    typedef unique_lock<timed_mutex> scoped_timed_lock;
+
+    void lock() { mutex_.lock(); }
+    bool try_lock() { return mutex_.try_lock(); }
+    void unlock() { mutex_.unlock(); }
+    template <class Time>
+    bool timed_lock(const Time &time)
+    {
+        return mutex_.try_lock_for(std::chrono::nanoseconds(roscfe_time::rest(time)));
+    }
+    template <class Duration>
+    bool try_lock_for(const Duration &duration)
+    {
+        return timed_lock(duration);
+    }
+
+  private:
+    std::timed_mutex mutex_;
+};
+#endif
 
 } // namespace boost
 

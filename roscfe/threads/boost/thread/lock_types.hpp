@@ -21,6 +21,11 @@ class unique_lock
     unique_lock(Mutex &mutex, defer_lock_t) : mutex_(&mutex) {}
     unique_lock(Mutex &mutex, adopt_lock_t) : mutex_(&mutex), owns_(true) {}
     unique_lock(Mutex &mutex, try_to_lock_t) : mutex_(&mutex) { try_lock(); }
+    template <class Time>
+    unique_lock(Mutex &mutex, const Time &time) : mutex_(&mutex)
+    {
+        timed_lock(time);
+    }
     unique_lock(unique_lock &&other) noexcept { swap(other); }
     unique_lock &operator=(unique_lock &&other) noexcept
     {
@@ -47,6 +52,18 @@ class unique_lock
         may(!owns_);
         owns_ = mutex_->try_lock();
         return owns_;
+    }
+    template <class Time>
+    bool timed_lock(const Time &time)
+    {
+        may(!owns_);
+        owns_ = mutex_->timed_lock(time);
+        return owns_;
+    }
+    template <class Duration>
+    bool try_lock_for(const Duration &duration)
+    {
+        return timed_lock(duration);
     }
     void unlock()
     {
@@ -83,6 +100,27 @@ class unique_lock
     Mutex *mutex_ = nullptr;
     bool   owns_  = false;
 };
+
+// Lock both, in an order that cannot wait in a circle.
+template <class One, class Other>
+void lock(One &one, Other &other)
+{
+    for (;;)
+    {
+        one.lock();
+        if (other.try_lock())
+        {
+            return;
+        }
+        one.unlock();
+        other.lock();
+        if (one.try_lock())
+        {
+            return;
+        }
+        other.unlock();
+    }
+}
 
 } // namespace boost
 

@@ -1,13 +1,15 @@
-// What is there of Boost's threads in nodes that have none: mutexes, and the name of the one task. Nodes for the host get
-// the computer's Boost in its place, which has threads.
+// Threads. A node for the host has them: each is a task of cFE, and they take turns. In the other profiles there are only
+// the mutexes, and the name of the one task.
 #ifndef BOOST_THREAD_THREAD_HPP
 #define BOOST_THREAD_THREAD_HPP
-
-#include <ostream>
 
 #include "boost/thread/locks.hpp"
 #include "boost/thread/mutex.hpp"
 #include "boost/thread/recursive_mutex.hpp"
+
+#if defined(ROSCFE_PROFILE_POOL) || defined(ROSCFE_PROFILE_STRICT)
+
+#include <ostream>
 
 namespace boost
 {
@@ -34,5 +36,12 @@ inline std::ostream &operator<<(std::ostream &stream, roscfe_id)
 
 } // namespace this_thread
 } // namespace boost
+
+#else
+
+#include "boost/thread/thread_group.hpp"
+#include "boost/thread/thread_only.hpp"
+
+#endif
 
 #endif
