@@ -21,8 +21,6 @@ from rospy_shim.types.msgs import OnDisk
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping
 
-    from rclpy_shim.seam.waiting import Waitable
-
 Entity = TopicWriter | TopicReader | ServiceServer | ServiceClient
 
 
@@ -108,11 +106,6 @@ class Ros2Program(WaitingNode):
 
     # -- waiting and time --------------------------------------------------------------------------------------------
 
-    def wait(self, seen: int, waitables: Iterable[Waitable], timeout_ns: int | None) -> None:
-        """Wait for work; see `Waiting.wait`. Returns at once if the program is shut down."""
-        if not self.life.is_shutdown():
-            self.waiting.wait(seen, waitables, timeout_ns)
-
     def now_ns(self) -> int:
         """Return ROS's time in ns."""
         self.universe.charge()
@@ -160,7 +153,7 @@ class Ros2Program(WaitingNode):
             Quality=Quality,
             now_ns=self.now_ns,
             steady_ns=self.steady_ns,
-            ring=self.waiting.ring,
+            ring=self.waiting.look_again,
             write=self.universe.stderr.write,
         )
         return module

@@ -274,6 +274,10 @@ class ServiceClient:
         if entry is not None:
             entry.calls.pop(number, None)
 
+    def is_open(self) -> bool:
+        """Return True if the pipe exists; it is made at the first call."""
+        return self._pipe.number != NO_PIPE
+
     def ready(self) -> bool:
         """Return True if an answer waits, which may be for another client."""
         return self._pipe.is_filled()

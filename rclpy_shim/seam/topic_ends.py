@@ -174,7 +174,7 @@ class TopicReader(Subscription):
         if not self.quality.is_kept:
             return
         super().deliver(payload, header)
-        self.program.waiting.ring()
+        self.program.waiting.look_again()
 
     def _call_attention(self) -> None:
         self._attention = True

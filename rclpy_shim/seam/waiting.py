@@ -7,26 +7,66 @@ the bus needs no extra work, and a more urgent program runs as soon as its messa
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Protocol
 
-from cfepy.rtos import FOREVER, TIMEOUT, WaitList
+from cfepy.rtos import TIMEOUT, WaitList
 from rospy_shim.client.node import Node
 from rospy_shim.types.transport import WHOLE, sequence_of
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from cfepy.rtos import Kernel
     from cfepy.sb import Pipe
 
 LONGEST_NS = 500_000_000
 """A task looks at least so often whether the program is shut down."""
+_NEVER = 1 << 62
 
 
 class Waitable(Protocol):
-    """An entity that may have work for its program."""
+    """An entity that may have work for its program.
+
+    Attributes:
+        due_ns: steady time in ns at which it has work; only timers have one.
+    """
+
+    due_ns: int
 
     def ready(self) -> bool:
         """Return True if it has work."""
+
+
+class Bell:
+    """Wakes one executor (its guard condition). A ring holds until the executor waits the next time.
+
+    Args:
+        waiting: the waiting tasks of the program.
+
+    Attributes:
+        rung: it was rung since the last wait.
+        worked: a callback has begun or ended since the last wait.
+    """
+
+    __slots__ = ("_waiting", "rung", "worked")
+
+    def __init__(self, waiting: Waiting) -> None:
+        self._waiting = waiting
+        self.rung = False
+        self.worked = False
+
+    def note_work(self) -> None:
+        """Wake the executor because a callback has begun or ended. Only threads of its own wait meanwhile."""
+        self.worked = True
+        if self._waiting.tasks:
+            self._waiting.look_again()
+
+    def ring(self) -> None:
+        """Wake the executor."""
+        self.rung = True
+        if self._waiting.tasks:
+            self._waiting.look_again()
 
 
 class Waiting:
@@ -39,47 +79,68 @@ class Waiting:
 
     Attributes:
         tasks: the waiting tasks.
-        rings: number of calls of `ring` so far.
+        version: changes when the program has other entities, or other pipes.
     """
 
     def __init__(self, kernel: Kernel, bus: Any, name: str) -> None:
         self._kernel = kernel
         self._bus = bus
         self.tasks = WaitList(f"work for the executor of {name}")
-        self.rings = 0
+        self.version = 0
+        self.is_over: Callable[[], bool] = lambda: False
 
     def adopt(self, pipe: Pipe) -> None:
         """Let messages of a pipe wake the program's tasks."""
         pipe.waits = self.tasks
+        self.note_change()
 
     def release(self, pipe: Pipe) -> None:
         """Give a pipe that is about to be deleted a wait list of its own again."""
         pipe.waits = WaitList(f"a message on pipe {pipe.name}")
+        self.note_change()
 
-    def ring(self) -> None:
-        """Wake all waiting tasks; a task that is about to wait does not."""
-        self.rings += 1
+    def note_change(self) -> None:
+        """Note that the program has other entities or pipes now."""
+        self.version += 1
+        self.look_again()
+
+    def bell(self) -> Bell:
+        """Return a bell for an executor."""
+        return Bell(self)
+
+    def look_again(self) -> None:
+        """Let all waiting tasks look at their entities and bells."""
         if self.tasks:
             self._kernel.wake_all(self.tasks, TIMEOUT)
 
-    def wait(self, seen: int, waitables: Iterable[Waitable], timeout_ns: int | None) -> None:
+    def wait(
+        self, bell: Bell, entities: Sequence[Waitable], end_ns: int | None, version: int
+    ) -> tuple[list[Waitable], bool]:
         """Wait for work.
 
         Args:
-            seen: value of `rings` when the caller began to look for work.
-            waitables: entities whose work ends the wait.
-            timeout_ns: longest time in ns; None for no limit.
+            bell: ends the wait when it has been rung.
+            entities: entities whose work ends the wait.
+            end_ns: latest end, in ns of the steady clock; None for no limit.
+            version: the `version` that the entities belong to; another one ends the wait.
+
+        Returns:
+            The entities with work, in their order, and True if the end has come.
         """
-        if self.rings != seen or any(each.ready() for each in waitables):
-            return
-        if timeout_ns is not None and timeout_ns <= 0:
-            return
-        limit = FOREVER if timeout_ns is None else timeout_ns
-        item = self._kernel.wait_on(self.tasks, min(limit, LONGEST_NS) if limit != FOREVER else LONGEST_NS)
-        if item is not TIMEOUT and item is not None:
-            self._keep(item)
-            if self.tasks:
-                self._kernel.wake_all(self.tasks, TIMEOUT)
+        kernel = self._kernel
+        while True:
+            is_over = self.is_over()  # may take time, in which others run: before the look
+            ready = [each for each in entities if each.ready()]
+            is_late = end_ns is not None and kernel.now >= end_ns
+            if ready or bell.rung or bell.worked or is_late or is_over or self.version != version:
+                bell.rung = bell.worked = False
+                return ready, is_late
+            due = min([each.due_ns for each in entities], default=_NEVER)
+            limit = min(due if end_ns is None or due < end_ns else end_ns, kernel.now + LONGEST_NS) - kernel.now
+            item = kernel.wait_on(self.tasks, max(limit, 1))
+            if item is not TIMEOUT and item is not None:
+                self._keep(item)
+                self.look_again()
 
     def _keep(self, item: Any) -> None:
         """Put a packet that the bus gave to a task into its pipe, where it has its place by its sequence count.
@@ -89,6 +150,9 @@ class Waiting:
         """
         pipe: Pipe = item[1].pipe
         if pipe.is_closed():
+            return
+        if not pipe.items:
+            self._bus.put_back(pipe, [item])
             return
         found = self._bus.set_aside(pipe)
         count = sequence_of(item[0])
@@ -109,4 +173,5 @@ class WaitingNode(Node):
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         self.waiting = Waiting(self.kernel, self.cfe.sb, self.universe.name)
+        self.waiting.is_over = self.life.is_shutdown
         self.life.wait_lists.append(self.waiting.tasks)

@@ -146,7 +146,9 @@ def spin(node: Node, executor: Executor | None = None) -> None:
     chosen = get_global_executor() if executor is None else executor
     try:
         chosen.add_node(node)
-        while chosen.context.ok():
+        if type(chosen) is SingleThreadedExecutor:
+            chosen.spin_while_alive()
+        while chosen.context.is_alive():
             chosen.spin_once()
     finally:
         chosen.remove_node(node)

@@ -9,13 +9,7 @@ from typing import Any
 
 
 class CallbackGroup:
-    """Base of the groups.
-
-    Attributes:
-        is_awaited: an executor waits until a callback of the group has ended.
-    """
-
-    is_awaited = False
+    """Base of the groups."""
 
     def __init__(self) -> None:
         self.entities: list[Any] = []

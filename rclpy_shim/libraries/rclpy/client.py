@@ -7,13 +7,14 @@ import time
 from typing import Any
 
 from rclpy import _seam
+from rclpy._entity import Call, Entity
 from rclpy.qos import QoSProfile
 from rclpy.task import Future
 
 _LOOK_S = 0.25  # period at which `wait_for_service` looks
 
 
-class Client:
+class Client(Entity):
     """Calls a service; `Node.create_client` makes one.
 
     Args:
@@ -34,8 +35,8 @@ class Client:
         self.callback_group = callback_group
         self._pending: dict[int, Future] = {}
         self._side = _seam.program.add_client(srv_name, srv_type, max(qos_profile.depth, 1))
-        self.ready = self._side.ready
-        self._executor: Any = None
+        self.ready = self._side.ready  # type: ignore[method-assign]
+        self.may_have_work = self._side.is_open  # type: ignore[method-assign]
 
     @property
     def service_name(self) -> str:
@@ -81,13 +82,21 @@ class Client:
         future.add_done_callback(self.remove_pending_request)
         return future
 
-    def take(self) -> tuple[Future, Any, str] | None:
-        """Take the oldest response. Returns its future, the response, and an error's text; None if none waits."""
-        while (taken := self._side.take()) is not None:
-            future = self._pending.get(taken[0])
-            if future is not None:
-                return future, taken[1], taken[2]
-        return None
+    def take_work(self, executor: Any) -> Call | None:
+        """Take the oldest response; see `Entity.take_work`."""
+        taken = self._side.take()
+        return None if taken is None else (self._finish, (executor, *taken))
+
+    def _finish(self, executor: Any, number: int, response: Any, error: str) -> None:
+        """Finish the future of a call, unless the call was removed."""
+        future = self._pending.get(number)
+        if future is None:
+            return
+        future._set_executor(executor)
+        if error:
+            future.set_exception(RuntimeError(error))
+        else:
+            future.set_result(response)
 
     def get_pending_request(self, sequence_number: int) -> Future:
         """Return the future of a call by its number. Raises KeyError if it is not pending."""

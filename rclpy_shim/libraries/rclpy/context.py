@@ -53,6 +53,10 @@ class Context:
         """Return True if the context is initialized and not shut down."""
         return self._is_up and not _seam.program.life.is_shutdown()
 
+    def is_alive(self) -> bool:
+        """Return the same as `ok`, without the time that a call of cFE takes."""
+        return self._is_up and not _seam.program.life.over
+
     def shutdown(self) -> None:
         """Shut the context down and call its hooks. After a signal that has done so, the first call has no effect.
 

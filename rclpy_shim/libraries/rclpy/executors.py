@@ -1,23 +1,32 @@
 """Executors: they wait for work of their nodes and run the callbacks (rclpy.executors).
 
-An executor takes the work of a node in the order timers, subscriptions, guard conditions, clients, services. All that
-is ready at one look is run before it looks again.
+An executor works in rounds, as rclpy 9.1 does. A round resumes each coroutine that is not done, once. Then it waits,
+and takes all entities that are ready at that moment: waitables first, then for each node timers, subscriptions, guard
+conditions, clients and services. A message is taken when its callback begins, not before.
 """
 
 from __future__ import annotations
 
+import inspect
+import os
+import threading
+import warnings
 from collections.abc import Callable, Iterator
-from functools import partial
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from rclpy import _seam
 from rclpy.context import Context, get_default_context
 from rclpy.exceptions import NotInitializedException
 from rclpy.task import Future, Task
-from rclpy.utilities import S_TO_NS
+from rclpy.utilities import timeout_sec_to_nsec
 
 Work = tuple[Task, Any, Any]
 """A task, its entity and its node; the latter two are None for a task of the program."""
+
+
+class TimeoutException(Exception):
+    """There was no work in time."""
 
 
 class ShutdownException(Exception):
@@ -28,12 +37,82 @@ class ExternalShutdownException(Exception):
     """The context was shut down."""
 
 
-class TimeoutException(Exception):
-    """There was no work in time."""
-
-
 class ConditionReachedException(Exception):
     """A condition became true."""
+
+
+class TimeoutObject:
+    """A time-out that changes while an executor spins.
+
+    Args:
+        timeout: the time in s.
+    """
+
+    def __init__(self, timeout: float) -> None:
+        self.timeout = timeout
+
+
+class EntityTask(Task):
+    """One callback of an entity. It takes the work of the entity when it begins.
+
+    Args:
+        entity: the entity.
+        executor: its executor.
+        coroutine: its work, if that was taken already.
+    """
+
+    def __init__(self, entity: Any, executor: Executor, coroutine: Any = None) -> None:
+        self._executor = executor
+        self._entity = entity
+        self._coroutine = coroutine
+        self._has_begun = coroutine is not None
+        if coroutine is None:
+            entity._executor_event = True
+
+    def _run(self) -> None:
+        entity = self._entity
+        if not self._has_begun:
+            bell = self._executor._bell
+            group = entity.callback_group
+            if self._executor._is_shut_down or (group is not None and not group.beginning_execution(entity)):
+                entity._executor_event = False
+                bell.ring()
+                self._finish_with(None)
+                return
+            self._has_begun = True
+            try:
+                work = entity.take_work(self._executor)
+            finally:
+                entity._executor_event = False
+                bell.note_work()
+            if work is None:
+                self._end(None, None)
+                return
+            function, arguments = work
+            if not _is_coroutine_function(function):
+                try:
+                    function(*arguments)
+                except Exception as error:
+                    self._end(None, error)
+                except BaseException:
+                    self._release()
+                    raise
+                else:
+                    self._end(None, None)
+                return
+            self._coroutine = function(*arguments)
+        self._resume()
+
+    def _end(self, result: Any, error: Exception | None) -> None:
+        self._release()
+        super()._end(result, error)
+
+    def _release(self) -> None:
+        """Let the other callbacks of the group run."""
+        group = self._entity.callback_group
+        if group is not None:
+            group.ending_execution(self._entity)
+        self._executor._bell.note_work()
 
 
 class Executor:
@@ -52,8 +131,13 @@ class Executor:
             raise NotInitializedException
         self._nodes: list[Any] = []
         self._tasks: list[Work] = []
-        self._batch: Iterator[tuple[Any, Any]] = iter(())
         self._is_shut_down = False
+        self._bell = _seam.program.waiting.bell()
+        self._rounds: Iterator[Work] | None = None
+        self._asked: tuple[Any, ...] = ()
+        self._entities: list[Any] = []
+        self._known_version = -1
+        self._context.on_shutdown(self.wake)
 
     @property
     def context(self) -> Context:
@@ -72,16 +156,20 @@ class Executor:
         """
         task = Task(callback, args, kwargs, executor=self)
         self._tasks.append((task, None, None))
-        _seam.ring()
+        self._bell.ring()
         return task
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Run no more callbacks. Returns True."""
+        """Run no more callbacks. Returns True at once; callbacks that run are not waited for, as in rclpy 9.1.
+
+        Args:
+            timeout_sec: accepted.
+        """
         self._is_shut_down = True
-        for node in self._nodes:
-            node._forget_executor(self)
+        self._bell.ring()
         self._nodes = []
-        _seam.ring()
+        self._known_version = -1
+        self._rounds = None
         return True
 
     def add_node(self, node: Any) -> bool:
@@ -89,20 +177,21 @@ class Executor:
         if node in self._nodes:
             return False
         self._nodes.append(node)
+        self._known_version = -1
         node.executor = self
-        _seam.ring()
+        self._bell.ring()
         return True
 
     def remove_node(self, node: Any) -> None:
         """Run the callbacks of a node no more."""
         if node in self._nodes:
             self._nodes.remove(node)
-            node._forget_executor(self)
-            _seam.ring()
+            self._known_version = -1
+            self._bell.ring()
 
     def wake(self) -> None:
         """Let the executor look for work now."""
-        _seam.ring()
+        self._bell.ring()
 
     def get_nodes(self) -> list[Any]:
         """Return its nodes."""
@@ -114,7 +203,7 @@ class Executor:
         Raises:
             ExternalShutdownException: the context was shut down during a wait.
         """
-        while self._context.ok() and not self._is_shut_down:
+        while self._context.is_alive() and not self._is_shut_down:
             self.spin_once()
 
     def spin_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
@@ -124,13 +213,17 @@ class Executor:
             future: the future.
             timeout_sec: longest time in s; None or a negative one waits without limit.
         """
-        future.add_done_callback(lambda done: _seam.ring())
-        end = _end_of(timeout_sec)
-        while self._context.ok() and not future.done() and not self._is_shut_down:
-            left = None if end is None else end - _seam.steady_ns()
-            if left is not None and left <= 0:
-                return
-            self._spin_once(left, future.done)
+        future.add_done_callback(lambda done: self.wake())
+        is_limited = timeout_sec is not None and timeout_sec >= 0
+        left = TimeoutObject(timeout_sec or 0.0) if is_limited else None
+        end = _seam.steady_ns() + timeout_sec_to_nsec(timeout_sec)
+        while self._context.ok() and not future.done() and not future.cancelled() and not self._is_shut_down:
+            self._spin_once_until_future_complete(future, left)
+            if left is not None:
+                now = _seam.steady_ns()
+                if now >= end:
+                    return
+                left.timeout = (end - now) / 1e9
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
         """Run one callback, or wait for one.
@@ -141,188 +234,256 @@ class Executor:
         Raises:
             ExternalShutdownException: the context was shut down during the wait.
         """
-        end = _end_of(timeout_sec)
-        self._spin_once(None if end is None else end - _seam.steady_ns(), lambda: False)
+        raise NotImplementedError
 
-    def spin_once_until_future_complete(self, future: Future, timeout_sec: float | None = None) -> None:
+    def spin_once_until_future_complete(self, future: Future, timeout_sec: Any = None) -> None:
         """Run one callback, or wait for one, or until a future is done; see `spin_once`."""
-        future.add_done_callback(lambda done: _seam.ring())
-        end = _end_of(timeout_sec)
-        self._spin_once(None if end is None else end - _seam.steady_ns(), future.done)
+        future.add_done_callback(lambda done: self.wake())
+        self._spin_once_until_future_complete(future, timeout_sec)
 
-    def _spin_once(self, left_ns: int | None, condition: Callable[[], bool]) -> None:
-        try:
-            task, entity, node = self._next_work(left_ns, condition)
-        except (ShutdownException, TimeoutException, ConditionReachedException):
-            return
-        self._run(task, entity, node)
-
-    def _run(self, task: Task, entity: Any, node: Any) -> None:
-        task()
-        if not task.done():
-            self._tasks.append((task, entity, node))
-            return
-        error = task.exception()
-        if error is not None:
-            raise error
+    def _spin_once_until_future_complete(self, future: Future, timeout_sec: Any = None) -> None:
+        raise NotImplementedError
 
     # -- looking for work --------------------------------------------------------------------------------------------
 
     def wait_for_ready_callbacks(
         self,
-        timeout_sec: float | None = None,
+        timeout_sec: float | TimeoutObject | None = None,
         nodes: list[Any] | None = None,
-        condition: Callable[[], bool] = lambda: False,
+        condition: Callable[[], bool] | None = None,
     ) -> Work:
         """Wait for work, which an executor of the program's own runs by calling the task.
 
         Args:
             timeout_sec: longest time in s; None or a negative one waits without limit.
-            nodes: must be None, for the nodes of this executor.
+            nodes: the nodes that count; None for all of this executor.
             condition: ends the wait when it is true.
 
         Returns:
-            The task, its entity and its node. The work has been taken from its entity.
+            The task, its entity and its node.
 
         Raises:
             ShutdownException, ExternalShutdownException, TimeoutException, ConditionReachedException: there is none.
-            NotImplementedError: `nodes` is given.
         """
-        if nodes is not None:
-            raise NotImplementedError("cfepy does not have executors that wait for some of their nodes yet")
-        end = _end_of(timeout_sec)
-        return self._next_work(None if end is None else end - _seam.steady_ns(), condition)
-
-    def _next_work(self, left_ns: int | None, condition: Callable[[], bool]) -> Work:
-        """Wait for work, at most so many ns; see `wait_for_ready_callbacks`."""
-        end = None if left_ns is None else _seam.steady_ns() + left_ns
+        asked = (timeout_sec, nodes, condition)
         while True:
+            if self._rounds is None or self._asked != asked:
+                self._asked = asked
+                limit = timeout_sec.timeout if isinstance(timeout_sec, TimeoutObject) else timeout_sec
+                self._rounds = self._work(timeout_sec_to_nsec(limit), nodes, condition)
+            found = next(self._rounds, None)
+            if found is not None:
+                return found
+            self._rounds = None
+
+    def _work(self, limit_ns: int, nodes: list[Any] | None, condition: Callable[[], bool] | None) -> Iterator[Work]:
+        """Yield the work of one round, after rounds without work; without a limit in time, of all rounds."""
+        is_endless = limit_ns < 0
+        end = None if is_endless else _seam.steady_ns() + limit_ns
+        waiting = _seam.program.waiting
+        has_worked = False
+        while (is_endless or not has_worked) and not self._is_shut_down and (condition is None or not condition()):
+            if self._tasks:
+                for work in self._tasks[:]:
+                    task, _, node = work
+                    if not task._is_running and not task.done() and self._counts(node, nodes):
+                        has_worked = True
+                        yield work
+                self._tasks = [each for each in self._tasks if each[0]._is_pending()]
+            if not self._tasks and condition is None:
+                self._bell.worked = False  # another round would do nothing
+            candidates = self._candidates(nodes)
+            ready, end_reached = waiting.wait(self._bell, candidates, end, self._known_version)
             if self._is_shut_down:
                 raise ShutdownException
-            if not self._context.ok():
+            if not self._context.is_alive():
                 raise ExternalShutdownException
-            if condition():
-                raise ConditionReachedException
-            seen = _seam.program.waiting.rings
-            found = self._ready_task() or self._next_of_batch()
-            if found is not None:
-                return found
-            self._batch = self._look()
-            found = self._next_of_batch()
-            if found is not None:
-                return found
-            now = _seam.steady_ns()
-            if end is not None and now >= end:
+            for entity in ready:
+                if entity.is_still_ready() and entity.callback_group.can_execute(entity):
+                    has_worked = True
+                    yield self._begun(entity)
+            if end_reached:
                 raise TimeoutException
-            self._wait(seen, now, end)
+        if self._is_shut_down:
+            raise ShutdownException
+        if condition is not None and condition():
+            raise ConditionReachedException
 
-    def _wait(self, seen: int, now: int, end: int | None) -> None:
-        times = [timer.due_ns for node in self._nodes for timer in node.timers if self._may_run(timer)]
-        if end is not None:
-            times.append(end)
-        waitables = []
-        for node in self._nodes:
-            for kind in (node.subscriptions, node.guards, node.clients, node.services):
-                for each in kind:
-                    if each.callback_group.can_execute(each):
-                        waitables.append(each)
-                    else:
-                        each.callback_group.is_awaited = True
-        _seam.program.wait(seen, waitables, min(times) - now if times else None)
+    def _counts(self, node: Any, nodes: list[Any] | None) -> bool:
+        return node is None or node in (self._nodes if nodes is None else nodes)
 
-    @staticmethod
-    def _may_run(timer: Any) -> bool:
-        if timer.is_canceled():
-            return False
-        may_run = bool(timer.callback_group.can_execute(timer))
-        timer.callback_group.is_awaited |= not may_run
-        return may_run
+    def _begun(self, entity: Any) -> Work:
+        task = EntityTask(entity, self)
+        work = (task, entity, entity._of_node)
+        self._tasks.append(work)
+        return work
 
-    def _ready_task(self) -> Work | None:
-        for index, (task, _, _) in enumerate(self._tasks):
-            if task.done() or task.is_ready():
-                return self._tasks.pop(index)
-        return None
+    def can_execute(self, entity: Any) -> bool:
+        """Return True if the callback of an entity may begin now."""
+        group = entity.callback_group
+        return not entity._executor_event and group is not None and bool(group.can_execute(entity))
 
-    def _next_of_batch(self) -> Work | None:
-        for entity, node in self._batch:
-            if node not in self._nodes or not entity.callback_group.can_execute(entity):
-                continue
-            task = self._take(entity)
-            if task is not None:
-                entity.callback_group.beginning_execution(entity)
-                task.on_end = partial(self._end_work, entity)
-                return task, entity, node
-        return None
+    def _candidates(self, nodes: list[Any] | None) -> list[Any]:
+        """Return the entities that may begin, in the order of their turns."""
+        version = _seam.program.waiting.version
+        if self._known_version != version:
+            self._known_version = version
+            self._entities = [each for node in self._nodes for each in node._waitables]
+            for node in self._nodes:
+                for kind in (node._timers, node._subscriptions, node._guards, node._clients, node._services):
+                    self._entities += [each for each in kind if each.may_have_work()]
+        return [
+            each
+            for each in self._entities
+            if not each._executor_event
+            and each.callback_group.can_execute(each)
+            and (nodes is None or each._of_node in nodes)
+        ]
 
-    @staticmethod
-    def _end_work(entity: Any) -> None:
-        """Note the end of a callback; others of its group may run now, which only other threads wait for."""
-        entity.callback_group.ending_execution(entity)
-        if entity.callback_group.is_awaited:
-            entity.callback_group.is_awaited = False
-            _seam.ring()
+    def __enter__(self) -> Executor:
+        return self
 
-    def _look(self) -> Iterator[tuple[Any, Any]]:
-        """Return the entities with work, in the order of their turns."""
-        return iter(
-            [
-                (each, node)
-                for node in self._nodes
-                for kind in (node.timers, node.subscriptions, node.guards, node.clients, node.services)
-                for each in kind
-                if each.ready()
-            ]
-        )
-
-    def _take(self, entity: Any) -> Task | None:
-        """Take the work of an entity."""
-        taken = entity.take()
-        if taken is None:
-            return None
-        maker = getattr(entity, "srv_type", None)
-        if maker is None:
-            return Task(entity.callback or _nothing, taken, None, self)
-        if hasattr(entity, "send_response"):
-            return Task(_answer(entity, *taken), None, None, self)
-        return Task(_finish, (self, *taken), None, self)
+    def __exit__(self, *error: object) -> None:
+        self.shutdown()
 
 
-def _nothing() -> None:
-    """Stand for the callback of a guard condition or timer without one."""
-
-
-def _finish(executor: Executor, future: Future, response: Any, error: str) -> None:
-    """Finish the future of a call."""
-    future._set_executor(executor)
-    if error:
-        future.set_exception(RuntimeError(error))
-    else:
-        future.set_result(response)
-
-
-async def _answer(service: Any, number: int, request: Any) -> None:
-    """Call the callback of a service and send the response."""
-    response = service.callback(request, service.srv_type.Response())
-    if hasattr(response, "__await__"):
-        response = await response
-    service.send_response(response, number)
-
-
-def _end_of(timeout_sec: float | None) -> int | None:
-    if timeout_sec is None or timeout_sec < 0:
-        return None
-    return int(_seam.steady_ns()) + int(timeout_sec * S_TO_NS)
+def _is_coroutine_function(function: Any) -> bool:
+    """Return True for a coroutine function; the usual case of a function or method needs no search."""
+    code = getattr(function, "__code__", None)
+    return bool(code.co_flags & inspect.CO_COROUTINE) if code is not None else inspect.iscoroutinefunction(function)
 
 
 class SingleThreadedExecutor(Executor):
     """Runs callbacks in the thread that spins."""
 
+    _is_spinning = False
+
+    def _spin_once(self, timeout_sec: Any, condition: Callable[[], bool] | None = None) -> None:
+        self._is_spinning = True
+        try:
+            task, entity, _ = self.wait_for_ready_callbacks(timeout_sec, None, condition)
+        except (ShutdownException, TimeoutException, ConditionReachedException):
+            return
+        finally:
+            self._is_spinning = False
+        if task is None:
+            self._run_entity(entity)
+            return
+        task()
+        error = task.exception()
+        if error is not None:
+            raise error
+
+    def spin_while_alive(self) -> None:
+        """Run callbacks until the context is shut down, as calls of `spin_once` do, and faster.
+
+        Raises:
+            ExternalShutdownException: the context was shut down during a wait.
+        """
+        context, bell, waiting = self._context, self._bell, _seam.program.waiting
+        while context.is_alive():
+            if self._tasks or self._rounds is not None or self._is_shut_down:
+                self.spin_once()  # with coroutines, or in the midst of a round
+                continue
+            bell.worked = False
+            ready, _ = waiting.wait(bell, self._candidates(None), None, self._known_version)
+            if not self._is_shut_down and not context.is_alive():
+                raise ExternalShutdownException
+            for entity in ready:
+                if entity.is_still_ready() and entity.callback_group.can_execute(entity):
+                    self._run_entity(entity)
+                    if not context.is_alive() or self._is_shut_down:
+                        break
+
+    def _begun(self, entity: Any) -> Work:
+        return (None, entity, None) if self._is_spinning else super()._begun(entity)  # type: ignore[return-value]
+
+    def _run_entity(self, entity: Any) -> None:
+        """Run the callback of an entity at once. Only a coroutine needs a task, which is faster for all others."""
+        place = len(self._tasks)
+        group = entity.callback_group
+        if not group.beginning_execution(entity):
+            return
+        is_over = True
+        try:
+            work = entity.take_work(self)
+            if work is None:
+                return
+            function, arguments = work
+            if not _is_coroutine_function(function):
+                function(*arguments)
+                return
+            is_over = False
+        finally:
+            if is_over:
+                group.ending_execution(entity)
+            self._bell.worked = True
+        task = EntityTask(entity, self, function(*arguments))
+        task()
+        if task._is_pending():
+            self._tasks.insert(place, (task, entity, entity._of_node))
+        error = task.exception()
+        if error is not None:
+            raise error
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Run one callback, or wait for one; see `Executor.spin_once`."""
+        self._spin_once(timeout_sec)
+
+    def _spin_once_until_future_complete(self, future: Future, timeout_sec: Any = None) -> None:
+        self._spin_once(timeout_sec, future.done)
+
 
 class MultiThreadedExecutor(Executor):
-    """Refuses: callbacks in several threads are not there yet."""
+    """Runs callbacks in a pool of threads. An exception of a callback is raised by a later turn of `spin_once`.
+
+    Args:
+        num_threads: number of threads; None takes the number of CPUs, which is 1 on the simulated computer.
+        context: its context; None takes the default one.
+    """
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
-        raise NotImplementedError(
-            "cfepy does not have the MultiThreadedExecutor for nodes of ROS 2 yet; use a SingleThreadedExecutor"
-        )
+        super().__init__(context=context)
+        if num_threads is None:
+            num_threads = len(os.sched_getaffinity(0))
+        if num_threads == 1:
+            warnings.warn(
+                "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
+                stacklevel=2,
+            )
+        self._futures: list[Task] = []
+        self._pool = ThreadPoolExecutor(num_threads)
+        self._lock = threading.Lock()
+
+    def _spin_once(self, timeout_sec: Any, condition: Callable[[], bool] | None = None) -> None:
+        try:
+            task, _, _ = self.wait_for_ready_callbacks(timeout_sec, None, condition)
+        except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
+            return
+        self._pool.submit(task)
+        self._futures.append(task)
+        for each in self._futures[:]:
+            if each.done():
+                self._futures.remove(each)
+                each.result()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Start one callback, or wait for one; see `Executor.spin_once`."""
+        self._spin_once(timeout_sec)
+
+    def _spin_once_until_future_complete(self, future: Future, timeout_sec: Any = None) -> None:
+        self._spin_once(timeout_sec, future.done)
+
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Begin no more callbacks.
+
+        Args:
+            timeout_sec: accepted.
+            wait_for_threads: wait until the callbacks that run have ended.
+
+        Returns:
+            True.
+        """
+        is_done = super().shutdown(timeout_sec)
+        self._pool.shutdown(wait=wait_for_threads)
+        return is_done

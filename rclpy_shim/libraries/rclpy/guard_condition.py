@@ -6,10 +6,11 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy import _seam
+from rclpy._entity import Call, Entity, nothing
 from rclpy.context import Context, get_default_context
 
 
-class GuardCondition:
+class GuardCondition(Entity):
     """A condition that triggers a callback.
 
     Args:
@@ -33,10 +34,10 @@ class GuardCondition:
         """Return True if it was triggered since the last `take`."""
         return self._is_triggered
 
-    def take(self) -> tuple[()]:
-        """Reset it. Returns the arguments of the callback."""
+    def take_work(self, executor: Any) -> Call:
+        """Reset it; see `Entity.take_work`."""
         self._is_triggered = False
-        return ()
+        return self.callback or nothing, ()
 
     def destroy(self) -> None:
         """Forget a trigger."""

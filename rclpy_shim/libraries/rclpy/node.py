@@ -96,6 +96,7 @@ class Node(ParameterStore):
         self._services: list[Service] = []
         self._timers: list[Timer] = []
         self._guards: list[GuardCondition] = []
+        self._waitables: list[Any] = []
         self._executor: Any = None
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         _seam.program.open_node(self.get_fully_qualified_name())
@@ -200,11 +201,8 @@ class Node(ParameterStore):
         if new_executor is not None:
             new_executor.add_node(self)
 
-    def _forget_executor(self, executor: Any) -> None:
-        if self._executor is executor:
-            self._executor = None
-
     def _wake(self) -> None:
+        _seam.program.waiting.note_change()
         if self._executor is not None:
             self._executor.wake()
 
@@ -250,6 +248,7 @@ class Node(ParameterStore):
         group = getattr(entity, "callback_group", None)
         if group is not None:
             group.add_entity(entity)
+        entity._of_node = self
         entities.append(entity)
         self._wake()
         return entity

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import Any
 
 from rclpy import _seam
+from rclpy._entity import Call, Entity
 from rclpy.qos import QoSProfile
 
 
-class Service:
+class Service(Entity):
     """Answers requests; `Node.create_service` makes one.
 
     Args:
@@ -36,17 +38,26 @@ class Service:
         self.callback_group = callback_group
         self.qos_profile = qos_profile
         self._side = _seam.program.add_service(srv_name, srv_type, max(qos_profile.depth, 1), is_quiet)
-        self.ready = self._side.ready
+        self.ready = self._side.ready  # type: ignore[method-assign]
+        self.may_have_work = self._side.is_open  # type: ignore[method-assign]
 
     @property
     def service_name(self) -> str:
         """The resolved name."""
         return self.srv_name
 
-    def take(self) -> tuple[int, Any] | None:
-        """Take the oldest request. Returns the number of its call, and the request; None if none waits."""
-        taken: tuple[int, Any] | None = self._side.take()
-        return taken
+    def take_work(self, executor: Any) -> Call | None:
+        """Take the oldest request; see `Entity.take_work`."""
+        taken = self._side.take()
+        return None if taken is None else (self._answer, taken)
+
+    async def _answer(self, number: int, request: Any) -> None:
+        """Call the callback and send its response."""
+        function = self.callback
+        response = function(request, self.srv_type.Response())
+        if inspect.iscoroutinefunction(function):
+            response = await response
+        self.send_response(response, number)
 
     def send_response(self, response: Any, header: int) -> None:
         """Answer a call.

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from typing import Any
 
 from rclpy import _seam
+from rclpy._entity import Call, Entity
 from rclpy.qos import QoSProfile
 
 
-class Subscription:
+class Subscription(Entity):
     """Takes messages of a topic; `Node.create_subscription` makes one.
 
     Args:
@@ -41,22 +42,22 @@ class Subscription:
         self.qos_profile = qos_profile
         self._wants_info = _takes_two(callback)
         self._side = _seam.program.add_subscription(topic, msg_type, qos_profile.quality(), node.get_logger().warning)
-        self.ready = self._side.ready
+        self.ready = self._side.ready  # type: ignore[method-assign]  # without another call
 
     @property
     def topic_name(self) -> str:
         """The resolved name of the topic."""
         return self.topic
 
-    def take(self) -> tuple[Any, ...] | None:
-        """Take the oldest message. Returns the arguments of the callback, or None if no whole message waits."""
+    def take_work(self, executor: Any) -> Call | None:
+        """Take the oldest message; see `Entity.take_work`."""
         taken = self._side.take()
         if taken is None:
             return None
         if not self._wants_info:
-            return (taken[0],)
+            return self.callback, (taken[0],)
         now = _seam.now_ns()
-        return taken[0], {"source_timestamp": now, "received_timestamp": now}
+        return self.callback, (taken[0], {"source_timestamp": now, "received_timestamp": now})
 
     def get_publisher_count(self) -> int:
         """Return the number of publishers whose messages come here."""

@@ -11,22 +11,27 @@ from typing import Any
 class Future:
     """A result that comes later; a coroutine that an executor runs can await it.
 
+    A coroutine that awaits it continues at the executor's next round. The result alone does not begin one, as in
+    rclpy 9.1: a result that another thread sets is not seen before something else wakes the executor.
+
     Args:
         executor: runs the callbacks of `add_done_callback`; None runs them at once.
     """
 
+    _is_done = False
+    _is_cancelled = False
+    _result: Any = None
+    _exception: BaseException | None = None
+    _was_read = False
+    _callbacks: list[Callable[[Any], object]] | None = None
+    _executor: Any = None
+
     def __init__(self, *, executor: Any = None) -> None:
-        self._is_done = False
-        self._is_cancelled = False
-        self._result: Any = None
-        self._exception: BaseException | None = None
-        self._was_read = False
-        self._callbacks: list[Callable[[Any], object]] = []
         self._executor = executor
 
-    def __await__(self) -> Generator[Any, None, Any]:
+    def __await__(self) -> Generator[None, None, Any]:
         while self._is_pending():
-            yield self
+            yield
         return self.result()
 
     def _is_pending(self) -> bool:
@@ -43,8 +48,8 @@ class Future:
         return self._is_cancelled
 
     def done(self) -> bool:
-        """Return True if it is done or cancelled."""
-        return not self._is_pending()
+        """Return True if it has a result or an exception; a cancelled one is not done in rclpy 9.1."""
+        return self._is_done
 
     def result(self) -> Any:
         """Return the result, or None if there is none yet.
@@ -77,14 +82,19 @@ class Future:
 
     def add_done_callback(self, callback: Callable[[Any], object]) -> None:
         """Add a function that is called with this object when it is done; at once if it is."""
-        if self._is_pending():
-            self._callbacks.append(callback)
+        if not self._is_pending():
+            if self._executor is not None:
+                self._executor.create_task(callback, self)
+            else:
+                callback(self)
+        elif self._callbacks is None:
+            self._callbacks = [callback]
         else:
-            self._call(callback)
+            self._callbacks.append(callback)
 
     def remove_done_callback(self, callback: Callable[[Any], object]) -> bool:
         """Remove such a function. Returns True if it was there."""
-        if callback not in self._callbacks:
+        if self._callbacks is None or callback not in self._callbacks:
             return False
         self._callbacks.remove(callback)
         return True
@@ -93,18 +103,15 @@ class Future:
         self._executor = executor
 
     def _finish(self) -> None:
-        callbacks, self._callbacks = self._callbacks, []
-        for callback in callbacks:
-            self._call(callback)
-
-    def _call(self, callback: Callable[[Any], object]) -> None:
-        if self._executor is not None:
-            self._executor.create_task(callback, self)
-            return
-        try:
-            callback(self)
-        except Exception as error:
-            warnings.warn(f"Unhandled exception in done callback: {error}", RuntimeWarning, stacklevel=2)
+        callbacks, self._callbacks = self._callbacks, None
+        for callback in callbacks or ():
+            if self._executor is not None:
+                self._executor.create_task(callback, self)
+                continue
+            try:
+                callback(self)
+            except Exception as error:
+                warnings.warn(f"Unhandled exception in done callback: {error}", stacklevel=2)
 
 
 class Task(Future):
@@ -117,6 +124,9 @@ class Task(Future):
         executor: runs the callbacks of `add_done_callback`.
     """
 
+    _is_running = False
+    _coroutine: Any = None
+
     def __init__(
         self,
         handler: Any,
@@ -126,12 +136,11 @@ class Task(Future):
     ) -> None:
         super().__init__(executor=executor)
         self._args, self._kwargs = tuple(args or ()), dict(kwargs or {})
-        is_function = _is_coroutine_function(handler)
-        self._is_coroutine = is_function or inspect.iscoroutine(handler)
-        self._handler = handler(*self._args, **self._kwargs) if is_function else handler
-        self._awaited: Any = None
-        self._is_running = False
-        self.on_end: Callable[[], object] | None = None  # called once, at the end
+        self._handler = handler
+        if inspect.iscoroutinefunction(handler):
+            self._coroutine = handler(*self._args, **self._kwargs)
+        elif inspect.iscoroutine(handler):
+            self._coroutine = handler
 
     def __call__(self) -> None:
         """Run the function, or the coroutine until it waits."""
@@ -139,41 +148,40 @@ class Task(Future):
             return
         self._is_running = True
         try:
-            if self._is_coroutine:
-                self._awaited = self._handler.send(None)
-            else:
-                self.set_result(self._handler(*self._args, **self._kwargs))
-        except StopIteration as end:
-            if not self._is_coroutine:
-                self.set_exception(end)
-            else:
-                self.set_result(end.value)
-        except Exception as error:
-            self.set_exception(error)
+            self._run()
         finally:
             self._is_running = False
-            if self.on_end is not None and not self._is_pending():
-                ended, self.on_end = self.on_end, None
-                ended()
 
-    def cancel(self) -> None:
-        """Cancel it; a coroutine is closed."""
-        if self._is_pending() and self._is_coroutine and not self._is_running:
-            self._handler.close()
-        super().cancel()
+    def _run(self) -> None:
+        if self._coroutine is not None:
+            self._resume()
+            return
+        try:
+            result = self._handler(*self._args, **self._kwargs)
+        except Exception as error:
+            self._end(None, error)
+        else:
+            self._end(result, None)
+
+    def _resume(self) -> None:
+        """Run the coroutine until it waits, or to its end."""
+        try:
+            self._coroutine.send(None)
+        except StopIteration as end:
+            self._end(end.value, None)
+        except Exception as error:
+            self._end(None, error)
+
+    def _end(self, result: Any, error: Exception | None) -> None:
+        if error is None:
+            self.set_result(result)
+        else:
+            self.set_exception(error)
+
+    def _finish_with(self, result: Any) -> None:
+        """End without having run."""
+        self.set_result(result)
 
     def executing(self) -> bool:
         """Return True while it runs."""
         return self._is_running
-
-    def is_ready(self) -> bool:
-        """Return True if it can run now: the future that its coroutine awaits is done."""
-        if self._is_running or not self._is_pending():
-            return False
-        return not isinstance(self._awaited, Future) or self._awaited.done()
-
-
-def _is_coroutine_function(handler: Any) -> bool:
-    """Return True for a coroutine function; the usual case of a function or method needs no search."""
-    code = getattr(handler, "__code__", None)
-    return bool(code.co_flags & inspect.CO_COROUTINE) if code is not None else inspect.iscoroutinefunction(handler)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from rclpy import _seam
+from rclpy._entity import NEVER, Call, Entity, nothing
 from rclpy.clock import Clock
 from rclpy.clock_type import ClockType
 from rclpy.context import Context
@@ -22,7 +23,7 @@ class TimerInfo(NamedTuple):
     actual_call_time: Time
 
 
-class Timer:
+class Timer(Entity):
     """Calls a function periodically; `Node.create_timer` makes one.
 
     Args:
@@ -54,7 +55,8 @@ class Timer:
         self._period_ns = timer_period_ns
         self._is_canceled = not autostart
         self._last_ns = self._now()
-        self.due_ns = self._last_ns + timer_period_ns
+        self._next_ns = self._last_ns + timer_period_ns
+        self.due_ns = self._next_ns if autostart else NEVER
         self._wants_info = callback is not None and _wants_info(callback)
 
     def _now(self) -> int:
@@ -77,34 +79,34 @@ class Timer:
 
     def ready(self) -> bool:
         """Return True if a call is due."""
-        return self.is_ready()
+        return not self._is_canceled and self._now() >= self._next_ns
+
+    is_still_ready = ready
 
     def is_ready(self) -> bool:
         """Return True if a call is due."""
-        return not self._is_canceled and self._now() >= self.due_ns
+        return self.ready()
 
-    def take(self) -> tuple[Any, ...] | None:
-        """Begin a call, and plan the next one; periods that were missed are left out.
-
-        Returns:
-            The arguments of the callback; None if no call is due.
-        """
-        if not self.is_ready():
+    def take_work(self, executor: Any) -> Call | None:
+        """Begin a call, and plan the next one; periods that were missed are left out. See `Entity.take_work`."""
+        if self._is_canceled:
             return None
-        now, expected = self._now(), self.due_ns
+        now, expected = self._now(), self._next_ns
         self._last_ns = now
-        self.due_ns += self._period_ns
-        if self.due_ns < now:
+        self._next_ns += self._period_ns
+        if self._next_ns < now:
             if self._period_ns == 0:
-                self.due_ns = now
+                self._next_ns = now
             else:
-                self.due_ns += (now - self.due_ns + self._period_ns - 1) // self._period_ns * self._period_ns
+                self._next_ns += (now - self._next_ns + self._period_ns - 1) // self._period_ns * self._period_ns
+        self.due_ns = self._next_ns
+        function = self.callback or nothing
         if not self._wants_info:
-            return ()
+            return function, ()
         kind = self._clock.clock_type
         shift = 0 if kind is ClockType.STEADY_TIME else _seam.now_ns() - now
         times = (Time(nanoseconds=each + shift, clock_type=kind) for each in (expected, now))
-        return (TimerInfo(*times),)
+        return function, (TimerInfo(*times),)
 
     def is_canceled(self) -> bool:
         """Return True if it was cancelled."""
@@ -113,12 +115,13 @@ class Timer:
     def cancel(self) -> None:
         """Call the function no more, until `reset`."""
         self._is_canceled = True
+        self.due_ns = NEVER
 
     def reset(self) -> None:
         """Begin a period now."""
         self._is_canceled = False
         self._last_ns = self._now()
-        self.due_ns = self._last_ns + self._period_ns
+        self._next_ns = self.due_ns = self._last_ns + self._period_ns
         _seam.ring()
 
     def time_since_last_call(self) -> int:
@@ -127,11 +130,11 @@ class Timer:
 
     def time_until_next_call(self) -> int | None:
         """Return the ns until the next call, negative if it is late; None if it was cancelled."""
-        return None if self._is_canceled else self.due_ns - self._now()
+        return None if self._is_canceled else self._next_ns - self._now()
 
     def destroy(self) -> None:
         """Call the function no more."""
-        self._is_canceled = True
+        self.cancel()
 
     def __enter__(self) -> Timer:
         return self

@@ -7,27 +7,9 @@ from pathlib import Path
 import pytest
 
 from rospy_shim.types.config import NodeConfig
-from tests.rospy_shim.missions import run_nodes
+from tests.rclpy_shim.programs import printed
 
 pytestmark = pytest.mark.slow
-HEAD = """
-import rclpy, time, warnings
-from rclpy.parameter import Parameter
-from std_msgs.msg import String
-rclpy.init()
-def attempt(function, *args, **options):
-    try:
-        return function(*args, **options)
-    except Exception as error:
-        print(type(error).__name__, "|", str(error).split(chr(10))[0])
-"""
-
-
-def printed(body: str, folder: Path, config: NodeConfig | None = None, seconds: float = 3.0) -> list[str]:
-    """Return the lines that a program prints."""
-    run = run_nodes(folder, {"A": HEAD + body}, nodes={"A": config} if config is not None else None, seconds=seconds)
-    assert run.finished
-    return [line for lines in run.printed.values() for line in lines]
 
 
 def test_parameters_are_declared_read_and_set(tmp_path: Path) -> None:
@@ -336,8 +318,6 @@ def test_missing_parts_are_refused_by_name(tmp_path: Path) -> None:
 import importlib
 for name in ("tf2_ros", "rclpy.action", "launch", "example_interfaces.action", "rospy", "nothing"):
     attempt(importlib.import_module, name)
-from rclpy.executors import MultiThreadedExecutor
-attempt(MultiThreadedExecutor)
 """,
         tmp_path,
     )
@@ -349,8 +329,6 @@ attempt(MultiThreadedExecutor)
         ),
         "ImportError | a program of ROS 2 cannot import rospy; use two nodes, or write `ros: 1` for it in mission.yaml",
         "ModuleNotFoundError | No module named 'nothing'",
-        "NotImplementedError | cfepy does not have the MultiThreadedExecutor for nodes of ROS 2 yet; use a"
-        " SingleThreadedExecutor",
     ]
 
 

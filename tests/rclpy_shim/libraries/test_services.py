@@ -70,8 +70,10 @@ async def call():
     timer.cancel()
     response = await client.call_async(AddTwoInts.Request(a=2, b=3))
     print("sum", response.sum)
+    done.append(True)
+done = []
 timer = node.create_timer(0.1, call)
-for turn in range(5):
+while not done:
     rclpy.spin_once(node, timeout_sec=0.2)
 """
     assert caller(body, tmp_path) == ["sum 5"]
