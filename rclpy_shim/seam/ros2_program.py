@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from cfepy.interpreter.node_interrupt import NodeInterrupt
 from rclpy_shim.interfaces import Interfaces
 from rclpy_shim.seam.matching import Quality
+from rclpy_shim.seam.own_topics import ROSOUT, LogLine, OwnTopics
 from rclpy_shim.seam.service_ends import ServiceClient, ServiceServer
 from rclpy_shim.seam.topic_ends import TopicReader, TopicWriter
 from rclpy_shim.seam.waiting import WaitingNode
@@ -35,6 +36,7 @@ class Ros2Program(WaitingNode):
         super().__init__(*args, **options)
         self.interfaces = Interfaces([OnDisk(self.packages)], self.universe.environ)
         self._entities: list[Entity] = []
+        self.own_topics = OwnTopics(self)
 
     # -- the graph ---------------------------------------------------------------------------------------------------
 
@@ -79,6 +81,12 @@ class Ros2Program(WaitingNode):
         made.connect()
         return made
 
+    def own_writer(self, name: str, data_class: Any, quality: Quality) -> TopicWriter:
+        """Make a publisher of the program itself, which is not connected yet; see `add_publisher`."""
+        made = TopicWriter(self, name, data_class, quality, lambda text: None)
+        self._entities.append(made)
+        return made
+
     def add_subscription(
         self, name: str, data_class: Any, quality: Quality, warn: Callable[[str], object]
     ) -> TopicReader:
@@ -90,6 +98,10 @@ class Ros2Program(WaitingNode):
         made = TopicReader(self, name, data_class, quality, warn)
         self._entities.append(made)
         made.connect()
+        if name == ROSOUT and made.topic is not None:
+            for node in list(self.graph.nodes.values()):
+                if isinstance(node, Ros2Program):
+                    node.own_topics.open_rosout()
         return made
 
     def add_service(self, name: str, service_class: Any, depth: int, is_quiet: bool = False) -> ServiceServer:
@@ -155,5 +167,7 @@ class Ros2Program(WaitingNode):
             steady_ns=self.steady_ns,
             ring=self.waiting.look_again,
             write=self.universe.stderr.write,
+            log=lambda *line: self.own_topics.log(LogLine(*line)),
+            tell_parameters=self.own_topics.tell_parameters,
         )
         return module

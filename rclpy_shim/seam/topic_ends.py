@@ -83,6 +83,10 @@ class TopicWriter(Link):
             self._kept.append(payload)
         return payload
 
+    def keep(self, message: Any) -> None:
+        """Keep a message for later subscriptions without sending it."""
+        self._packed(message)
+
     def _keep_back(self, message: Any) -> None:
         self._unsent(self._unsent_head + self._packed(message))
         if self.topic is not None:

@@ -46,6 +46,7 @@ class Arguments(NamedTuple):
         files: paths of files with parameters.
         log_levels: levels of loggers by name; "" is the default.
         refused: arguments that are not known.
+        accepted: arguments without a value.
     """
 
     remaps: list[Remap]
@@ -53,6 +54,12 @@ class Arguments(NamedTuple):
     files: list[str]
     log_levels: dict[str, str]
     refused: list[str]
+    accepted: list[str]
+
+    @property
+    def disables_rosout(self) -> bool:
+        """True if the command line has `--disable-rosout-logs`."""
+        return "--disable-rosout-logs" in self.accepted
 
 
 def parse_arguments(words: Sequence[str]) -> Arguments:
@@ -61,7 +68,7 @@ def parse_arguments(words: Sequence[str]) -> Arguments:
     Raises:
         RuntimeError: an argument lacks its value, or has the wrong form.
     """
-    found = Arguments([], [], [], {}, [])
+    found = Arguments([], [], [], {}, [], [])
     pending = _ros_words(words)
     for word in pending:
         if word in ("-r", "--remap"):
@@ -74,7 +81,7 @@ def parse_arguments(words: Sequence[str]) -> Arguments:
             name, has_name, level = _value(word, pending).rpartition(":=")
             found.log_levels[name if has_name else ""] = level
         elif word in _ACCEPTED:
-            continue
+            found.accepted.append(word)
         elif ":=" in word:
             found.remaps.append(_remap(word))
         else:

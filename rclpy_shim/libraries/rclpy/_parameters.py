@@ -123,6 +123,9 @@ class ParameterStore:
             raise InvalidParameterValueException(name, chosen.value, result.reason)
         self._descriptors[name] = descriptor
         self._parameters[name] = chosen
+        self._tell([chosen], [], [])
+        for heard in self._post_set_callbacks:
+            heard([chosen])
         return chosen
 
     def undeclare_parameter(self, name: str) -> None:
@@ -137,6 +140,9 @@ class ParameterStore:
         if self._descriptors[name].read_only:
             raise ParameterImmutableException(name)
         del self._parameters[name], self._descriptors[name]
+
+    def _tell(self, new: list[Parameter], changed: list[Parameter], deleted: list[Parameter]) -> None:
+        """Publish changes on /parameter_events."""
 
     # -- reading -----------------------------------------------------------------------------------------------------
 
@@ -257,13 +263,20 @@ class ParameterStore:
         result = self._judge(chosen, self._descriptors)
         if not result.successful:
             return result
+        new: list[Parameter] = []
+        changed: list[Parameter] = []
+        deleted: list[Parameter] = []
         for each in chosen:
             if each.type_ is Parameter.Type.NOT_SET and not self._is_dynamic(each.name):
+                if each.name in self._parameters:
+                    deleted.append(each)
                 self._parameters.pop(each.name, None)
                 self._descriptors.pop(each.name, None)
                 continue
+            (changed if each.name in self._parameters else new).append(each)
             self._parameters[each.name] = each
             self._descriptors.setdefault(each.name, self._free_descriptor(each))
+        self._tell(new, changed, deleted)
         for heard in self._post_set_callbacks:
             heard(chosen)
         return result
@@ -291,6 +304,9 @@ class ParameterStore:
                 return SetParametersResult(successful=False, reason=reason)
         for judge in self._on_set_callbacks:
             result = judge(parameters)
+            if not isinstance(result, SetParametersResult):
+                warnings.warn("Callback returned an invalid type, it should return SetParameterResult.", stacklevel=4)
+                return SetParametersResult(successful=False, reason="Callback returned an invalid type")
             if not result.successful:
                 return result
         return SetParametersResult(successful=True)

@@ -26,6 +26,8 @@ _FORMAT = "[{severity}] [{time}] [{name}]: {message}"
 _TOKEN = re.compile(r"\{(\w+)\}")
 _OPTIONS = ("throttle_duration_sec", "throttle_time_source_type", "skip_first", "once")
 _HERE = __file__
+published: set[str] = set()
+"""Names of the loggers whose lines are on /rosout: those of nodes, and their children."""
 
 
 class LoggingSeverity(IntEnum):
@@ -90,7 +92,10 @@ class RcutilsLogger:
         """
         if not name:
             raise ValueError("Child logger name must not be empty.")
-        return RcutilsLogger(f"{self.name}.{name}" if self.name else name)
+        full = f"{self.name}.{name}" if self.name else name
+        if self.name in published:
+            published.add(full)
+        return RcutilsLogger(full)
 
     def set_level(self, level: LoggingSeverity | int) -> None:
         """Log lines of this severity or a higher one from now on."""
@@ -185,6 +190,9 @@ def _write(severity: LoggingSeverity, name: str, message: str, frame: Any) -> No
     form = os.environ.get("RCUTILS_CONSOLE_OUTPUT_FORMAT") or _FORMAT
     line = _TOKEN.sub(lambda found: tokens[found[1]]() if found[1] in tokens else found[0], form)
     _seam.write(line + "\n")
+    if name in published:
+        code = frame.f_code
+        _seam.log(now, int(severity), name, message, code.co_filename, code.co_name, frame.f_lineno)
 
 
 def get_logger(name: str) -> RcutilsLogger:

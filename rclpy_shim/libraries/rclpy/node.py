@@ -24,7 +24,7 @@ from rclpy.clock import Clock, ROSClock
 from rclpy.context import Context, get_default_context
 from rclpy.exceptions import NotInitializedException
 from rclpy.guard_condition import GuardCondition
-from rclpy.logging import RcutilsLogger, get_logger
+from rclpy.logging import RcutilsLogger, get_logger, published
 from rclpy.parameter import Parameter
 from rclpy.parameter_service import ParameterService
 from rclpy.publisher import Publisher
@@ -49,7 +49,7 @@ class Node(ParameterStore):
         cli_args: arguments for this node alone, before the program's.
         namespace: its namespace; None is the root.
         use_global_arguments: take the program's arguments, too.
-        enable_rosout: accepted; there is no topic /rosout of ROS 2 yet.
+        enable_rosout: publish its log on /rosout.
         start_parameter_services: offer the services for its parameters.
         parameter_overrides: values that replace the command line's.
         allow_undeclared_parameters: parameters need not be declared.
@@ -101,6 +101,8 @@ class Node(ParameterStore):
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         _seam.program.open_node(self.get_fully_qualified_name())
         self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
+        if enable_rosout and not self._arguments.disables_rosout:
+            published.add(self._logger.name)
         self._clock = ROSClock()
         self.declare_parameter(SIM_TIME, False)
         if automatically_declare_parameters_from_overrides:
@@ -121,6 +123,20 @@ class Node(ParameterStore):
         validate_node_name(name)
         validate_namespace(found)
         self._name, self._namespace = name, found
+
+    def _tell(self, new: list[Parameter], changed: list[Parameter], deleted: list[Parameter]) -> None:
+        def event() -> Any:
+            from rcl_interfaces.msg import ParameterEvent
+
+            return ParameterEvent(
+                stamp=self._clock.now().to_msg(),
+                node=self.get_fully_qualified_name(),
+                new_parameters=[each.to_parameter_msg() for each in new],
+                changed_parameters=[each.to_parameter_msg() for each in changed],
+                deleted_parameters=[each.to_parameter_msg() for each in deleted],
+            )
+
+        _seam.tell_parameters(event)
 
     # -- names -------------------------------------------------------------------------------------------------------
 
@@ -493,12 +509,15 @@ class Node(ParameterStore):
 
     def get_topic_names_and_types(self, no_demangle: bool = False) -> list[tuple[str, list[str]]]:
         """Return the topics with a publisher or a subscription, and their types such as "std_msgs/msg/String"."""
-        topics = sorted(_seam.program.graph.topics.items())
-        return [
-            (name, [each.type.replace("/", "/msg/")])
+        topics = _seam.program.graph.topics.items()
+        found = {
+            name: [each.type.replace("/", "/msg/")]
             for name, each in topics
             if each.links or each.subscriptions or each.compiled_publishers or each.compiled_subscribers
-        ]
+        }
+        found.setdefault("/parameter_events", ["rcl_interfaces/msg/ParameterEvent"])
+        found.setdefault("/rosout", ["rcl_interfaces/msg/Log"])
+        return sorted(found.items())
 
     def get_service_names_and_types(self) -> list[tuple[str, list[str]]]:
         """Return the services, and their types such as "std_srvs/srv/SetBool"."""
