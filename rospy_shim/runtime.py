@@ -27,6 +27,7 @@ from rospy_shim.graph.graph import Graph, TopicEntry, TopicRow
 from rospy_shim.library_parts import FOLDER, STAND_INS, ConfigModules, library_names, library_parts, shown_names
 from rospy_shim.master import MASTER_PORT, Switchboard, xmlrpc_client
 from rospy_shim.parameters.app import ParameterApp
+from rospy_shim.types.entry_points import entry_of
 from rospy_shim.types.msgs import make_module
 from rospy_shim.types.msgs.modules import MessageModule
 from rospy_shim.types.worlds import is_of_ros2
@@ -308,6 +309,7 @@ class RosRuntime:
         cwd = config.cwd or script.parent
         home = str(cwd).removeprefix(self._config.root)
         homes = {"HOME": home, "PWD": home}
+        entry = entry_of(script, config.executable) if config.executable else None
         universe = Universe(
             self._kernel,
             name=config.name or app_name,
@@ -332,6 +334,8 @@ class RosRuntime:
             accesses=self._accesses,
             traps=self.traps,
             on_thread_start=tasks.thread,
+            entry=entry,
+            program=script.parent / config.executable if config.executable else "",
         )
         universe.pid = self._pids.take(universe.pid)
         if ros2 is None:

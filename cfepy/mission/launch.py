@@ -328,6 +328,9 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
     from rospy_shim.roslaunch.launch_plan import node_environment, node_in_cpp
 
     environ = node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
+    setup = _setup_of(words)
+    if setup is not None:
+        return spec_of_script(setup, words[2:], words[1])
     is_pair = build is not None and len(words) > 1 and not os.path.isfile(words[0])
     node = node_in_cpp(words[0], words[1], Path.cwd() / words[1], environ, words[2:]) if is_pair else None
     if node is None or build is None:
@@ -342,11 +345,28 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
     )
 
 
-def spec_of_script(script: Path, words: Sequence[str]) -> MissionSpec:
-    """Return the mission of a single node with its arguments."""
+def _setup_of(words: Sequence[str]) -> Path | None:
+    """Return the setup.py of the package that a command line names, if it names the node, too."""
+    from rospy_shim.roslaunch.launch_plan import setup_of
+
+    if len(words) < 2 or os.path.isfile(words[0]) or words[0].endswith(".py"):
+        return None
+    return setup_of(words[0], words[1], Path.cwd() / words[1], os.environ)
+
+
+def spec_of_script(script: Path, words: Sequence[str], executable: str = "") -> MissionSpec:
+    """Return the mission of a single node with its arguments.
+
+    Args:
+        script: its program, or the setup.py of its package.
+        words: the arguments.
+        executable: its name in that setup.py; empty runs the script itself.
+    """
     from rospy_shim.roslaunch.launch_plan import app_name, node_environment
 
     environ = node_environment(os.environ, os.environ.get("ROS_NAMESPACE", "/"))
-    app = app_name(script.stem)
-    config = NodeConfig(app, args=tuple(words), env=environ, script=script, cwd=Path.cwd(), required=True)
+    app = app_name(executable or script.stem)
+    config = NodeConfig(
+        app, args=tuple(words), env=environ, script=script, cwd=Path.cwd(), required=True, executable=executable
+    )
     return spec_of(script, {app: config}, ROSCORE_PARAMS)

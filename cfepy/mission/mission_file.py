@@ -397,6 +397,7 @@ NODE_FIELDS: Mapping[str, Callable[[Marked], Any]] = {
     "respawn_delay": Marked.time,
     "required": Marked.flag,
     "ros": _version_of_ros,
+    "executable": Marked.text,
 }
 """The readers of the fields of a node, which return the values of `NodeConfig`."""
 

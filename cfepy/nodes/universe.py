@@ -120,6 +120,8 @@ class Universe:
         accesses: Accesses | None = None,
         traps: list[object] | None = None,
         on_thread_start: StartThread | None = None,
+        entry: tuple[str, str] | None = None,
+        program: str | os.PathLike[str] = "",
     ) -> None:
         check_own_builtins()
         self.kernel = kernel
@@ -127,7 +129,8 @@ class Universe:
         self._root = root
         self.overlay = overlay
         self.script = self.shown(os.path.abspath(script)) if script else ""
-        self.argv = [self.shown(os.fspath(script)), *argv]
+        self.argv = [self.shown(os.fspath(program or script)), *argv]
+        self.entry = entry
         self.host_name = "cfepy"
         self.pid = process_number(name)
         self.priority = priority
@@ -497,6 +500,10 @@ def _execute(universe: Universe) -> int:
     )
     universe.importer.modules["__main__"] = module
     try:
+        if universe.entry is not None:
+            name, function = universe.entry
+            main = getattr(universe.importer.load(name), function)
+            universe.importer.load("sys").exit(main())
         code = universe.importer.own_code(universe.resolve(universe.script), universe.script, is_main=True)
         universe.adopts(vars(module))
         for doubt in doubts_of(code):  # only for the program itself: modules come from Python's byte code cache

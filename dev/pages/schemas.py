@@ -226,6 +226,7 @@ def _node() -> Schema:
         "respawn_delay": TIME,
         "required": FLAG,
         "ros": {"enum": [1, 2]},
+        "executable": {"type": "string"},
     }
     return record(mission_file.NODE_FIELDS, shapes, described_in("reference/mission_file.md", "### A node"))
 

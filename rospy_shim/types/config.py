@@ -31,7 +31,8 @@ class NodeConfig:
     end ends the run. `compute` is the computing time of its callbacks for a message of a topic, and of its handler for
     a request of a service, by name, in ns of virtual CPU time. `on_disk`: it writes files on the computer, not into the
     run's own files, as a tool of the user's. `ros` is the version of ROS that it is written for, 1 or 2; None takes the
-    one that its package or its imports name.
+    one that its package or its imports name. `executable` is the name of the node in the setup.py beside `script`
+    (console_scripts); empty runs the script itself.
     """
 
     app: str
@@ -52,6 +53,7 @@ class NodeConfig:
     on_disk: bool = False
     compute: Mapping[str, int] = field(default_factory=dict)
     ros: int | None = None
+    executable: str = ""
 
     @property
     def is_of_startup_script(self) -> bool:

@@ -208,6 +208,8 @@ def _absolute(plan: RunPlan) -> tuple[str, ...]:
         file, args = launch_file(plan.words)
         return (str(file), *(f"{name}:={value}" for name, value in args.items()))
     if plan.command == NODE:
+        if len(plan.words) > 1 and not os.path.isfile(plan.words[0]):
+            return plan.words  # a package, which each computer finds in the same folder
         script, words = node_script(plan.words)
         return (str(script), *words)
     return (str(find_script(plan.words[0])), *plan.words[1:])
