@@ -82,7 +82,8 @@ class Ros2World:
             if name == SEAM:
                 return lambda universe: program.module()
             if top == "rclpy":
-                if rest and not (LIBRARIES / "rclpy" / f"{rest}.py").is_file():
+                place = LIBRARIES.joinpath("rclpy", *rest.split("."))
+                if rest and not place.with_suffix(".py").is_file() and not (place / "__init__.py").is_file():
                     raise _refused(name)
                 return None
             if top in NOT_YET and not program.universe.importer.has_own(top):
@@ -94,8 +95,6 @@ class Ros2World:
                 )
             if not rest and program.universe.importer.has_own(name):
                 return None
-            if rest == "action" and program.interfaces.module(top) is not None:
-                raise _refused(name)
             module = program.interfaces.module(name)
             return None if module is None else lambda universe: module
 

@@ -14,9 +14,11 @@ from types import ModuleType
 from typing import Any
 
 from cfepy.status import UsageError
+from rclpy_shim.interfaces import action_parts
 from rclpy_shim.interfaces.interface_text import RosInterface, parse_interface
 from rclpy_shim.interfaces.message_classes import (
     TypeParts,
+    build_action_class,
     build_message_class,
     build_service_class,
     bus_spec,
@@ -27,8 +29,9 @@ from rospy_shim.types.msgs.definition_sources import Definition, Definitions, Ki
 from rospy_shim.types.msgs.spec import Spec, hash_text, md5_text, parse
 
 PARTS = ("Request", "Response")
+_ROS_1_PARTS = ("Goal", "Result", "Feedback", "ActionGoal", "ActionResult", "ActionFeedback", "Action")
 CHECK_FIELDS = "ROS_PYTHON_CHECK_FIELDS"
-_KINDS: tuple[Kind, ...] = ("msg", "srv")
+_KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
 _DEFINITIONS = Path(__file__).parent / "definitions"
 
 
@@ -75,7 +78,11 @@ class InterfaceTexts:
         key = (name, kind)
         if key not in self._packages:
             found = (source.package(name, kind) for source in self._sources)
-            self._packages[key] = next((each for each in found if each is not None), {})
+            chosen = next((each for each in found if each), {})
+            if kind == "msg":  # sources add the messages that ROS 1 derives from actions
+                made = {f"{each}{part}" for each in self._package(name, "action") for part in _ROS_1_PARTS}
+                chosen = {each: text for each, text in chosen.items() if each not in made}
+            self._packages[key] = chosen
         return self._packages[key]
 
     def _definition(self, full_name: str) -> Definition:
@@ -83,6 +90,9 @@ class InterfaceTexts:
         found = self._package(package, "msg").get(name)
         if found is not None:
             return found
+        action, part = action_parts.action_of(name)
+        if part and (text := self._package(package, "action").get(action)) is not None:
+            return action_parts.definition_of(text, action, part)
         services = self._package(package, "srv")
         for index, part in enumerate(PARTS):
             if name.endswith(part) and name.removesuffix(part) in services:
@@ -106,7 +116,11 @@ class BusTexts:
 
     def package(self, name: str, kind: Kind) -> Definitions | None:
         """Return messages or services of a package; None if it has none."""
-        return {each: self._definition(f"{name}/{each}", kind) for each in self._texts.names(name, kind)} or None
+        names = self._texts.names(name, kind)
+        if kind == "msg":
+            actions = self._texts.names(name, "action")
+            names = [*names, *(f"{each}_{part}" for each in actions for part in action_parts.PARTS)]
+        return {each: self._definition(f"{name}/{each}", kind) for each in names} or None
 
     def _definition(self, full_name: str, kind: Kind) -> Definition:
         if kind == "srv":
@@ -149,6 +163,7 @@ class Interfaces:
         self._checks = (environ or {}).get(CHECK_FIELDS) == "1"
         self._classes: dict[str, Any] = {}
         self._services: dict[str, Any] = {}
+        self._actions: dict[str, Any] = {}
 
     def message_class(self, full_name: str) -> Any:
         """Return the class of a message such as "std_msgs/String", or of "std_srvs/SetBoolRequest".
@@ -173,13 +188,42 @@ class Interfaces:
         found = self._services.get(full_name)
         if found is None:
             package, _, name = full_name.partition("/")
-            if name not in self._texts.names(package, "srv"):
+            action, _, part = name.partition("_")
+            joint, module = "", f"{package}.srv.{module_name(name)}"
+            if part in action_parts.SERVICES and action in self._texts.names(package, "action"):
+                joint, module = "_", f"{package}.action.{module_name(action)}"
+            elif name not in self._texts.names(package, "srv"):
                 raise UsageError(f"unknown service type {full_name!r} of ROS 2; check that its package is near")
-            request, response = (self.message_class(full_name + part) for part in PARTS)
-            texts = [md5_text(self._bus.spec(full_name + part), self._bus.md5sum) for part in PARTS]
-            module = f"{package}.srv.{module_name(name)}"
+            names = [f"{full_name}{joint}{each}" for each in PARTS]
+            request, response = (self.message_class(each) for each in names)
+            texts = [md5_text(self._bus.spec(each), self._bus.md5sum) for each in names]
             found = build_service_class(full_name, module, hash_text("".join(texts)), request, response)
             self._services[full_name] = found
+        return found
+
+    def action_class(self, full_name: str) -> Any:
+        """Return the class of an action such as "example_interfaces/Fibonacci".
+
+        Raises:
+            UsageError: there is no such type, or its text has an error.
+        """
+        found = self._actions.get(full_name)
+        if found is None:
+            package, _, name = full_name.partition("/")
+            if name not in self._texts.names(package, "action"):
+                raise UsageError(f"unknown action type {full_name!r} of ROS 2; check that its package is near")
+            found = self._actions[full_name] = build_action_class(
+                name,
+                f"{package}.action.{module_name(name)}",
+                {part: self.message_class(f"{full_name}_{part}") for part in action_parts.OWN_PARTS},
+                {
+                    "SendGoalService": self.service_class(f"{full_name}_SendGoal"),
+                    "GetResultService": self.service_class(f"{full_name}_GetResult"),
+                    "FeedbackMessage": self.message_class(f"{full_name}_FeedbackMessage"),
+                    "CancelGoalService": self.service_class("action_msgs/CancelGoal"),
+                    "GoalStatusMessage": self.message_class("action_msgs/GoalStatusArray"),
+                },
+            )
         return found
 
     def packages(self) -> list[str]:
@@ -198,6 +242,9 @@ class Interfaces:
         md5sum, full_text = self._bus.md5sum(full_name), self._bus.full_text(full_name)
         if name in self._texts.names(package, "msg"):
             return TypeParts(f"{package}.msg.{module_name(name)}", name, md5sum, full_text, self._checks)
+        action, of_action = action_parts.action_of(name)
+        if of_action:
+            return TypeParts(f"{package}.action.{module_name(action)}", name, md5sum, full_text, self._checks)
         part = next(each for each in PARTS if name.endswith(each))
         service = name.removesuffix(part)
         module = f"{package}.srv.{module_name(service)}"
@@ -230,6 +277,11 @@ class Interfaces:
             full_name = f"{package}/{name}"
             if kind == "msg":
                 found[name] = lambda full_name=full_name: self.message_class(full_name)  # type: ignore[misc]
+                continue
+            if kind == "action":
+                found[name] = lambda full_name=full_name: self.action_class(full_name)  # type: ignore[misc]
+                for part in action_parts.PARTS:
+                    found[f"{name}_{part}"] = lambda key=f"{full_name}_{part}": self.message_class(key)  # type: ignore[misc]
                 continue
             found[name] = lambda full_name=full_name: self.service_class(full_name)  # type: ignore[misc]
             for part in PARTS:

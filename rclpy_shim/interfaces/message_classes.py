@@ -233,3 +233,21 @@ def build_service_class(full_name: str, module: str, md5sum: str, request: type,
         "_response_class": response,
     }
     return type(full_name.rpartition("/")[2], (), body)
+
+
+def build_action_class(name: str, module: str, parts: dict[str, type], implementation: dict[str, type]) -> Any:
+    """Make the class of an action.
+
+    Args:
+        name: its bare name.
+        module: value of `__module__`.
+        parts: classes of goal, result and feedback.
+        implementation: classes of the services and messages that carry them.
+    """
+
+    def __init__(self: object) -> None:
+        raise NotImplementedError("Action classes can not be instantiated")
+
+    impl = type("Impl", (), {**implementation, "__module__": module, "__qualname__": f"{name}.Impl"})
+    about = {"__doc__": f"Action class '{name}'.", "__module__": module, "__init__": __init__}
+    return type(name, (), {**about, **parts, "Impl": impl})

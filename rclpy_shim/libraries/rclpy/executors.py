@@ -8,7 +8,6 @@ conditions, clients and services. A message is taken when its callback begins, n
 from __future__ import annotations
 
 import inspect
-import os
 import threading
 import warnings
 from collections.abc import Callable, Iterator
@@ -21,6 +20,7 @@ from rclpy.exceptions import NotInitializedException
 from rclpy.task import Future, Task
 from rclpy.utilities import timeout_sec_to_nsec
 
+_USUAL_THREADS = 4
 Work = tuple[Task, Any, Any]
 """A task, its entity and its node; the latter two are None for a task of the program."""
 
@@ -438,14 +438,14 @@ class MultiThreadedExecutor(Executor):
     """Runs callbacks in a pool of threads. An exception of a callback is raised by a later turn of `spin_once`.
 
     Args:
-        num_threads: number of threads; None takes the number of CPUs, which is 1 on the simulated computer.
+        num_threads: number of threads; None takes 4, as on a computer with so many CPUs.
         context: its context; None takes the default one.
     """
 
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         super().__init__(context=context)
         if num_threads is None:
-            num_threads = len(os.sched_getaffinity(0))
+            num_threads = _USUAL_THREADS
         if num_threads == 1:
             warnings.warn(
                 "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",

@@ -488,6 +488,8 @@ class Node(ParameterStore):
         ):
             for each in entities[:]:
                 self._destroy(entities, each)
+        for waitable in self._waitables[:]:
+            waitable.destroy()
 
     def __enter__(self) -> Node:
         return self
@@ -545,9 +547,25 @@ class Node(ParameterStore):
         """Refuse: there is no information about end points yet."""
         raise NotImplementedError("cfepy does not have information about subscriptions for nodes of ROS 2 yet")
 
-    def add_waitable(self, waitable: Any) -> NoReturn:
-        """Refuse: there are no waitables yet."""
-        raise NotImplementedError("cfepy does not have waitables for nodes of ROS 2 yet")
+    @property
+    def waitables(self) -> Iterator[Any]:
+        """The waitables: servers and clients of actions, and others."""
+        yield from self._waitables
+
+    def add_waitable(self, waitable: Any) -> None:
+        """Let the executor of the node run a waitable.
+
+        Raises:
+            NotImplementedError: it uses a wait set of rcl.
+        """
+        if hasattr(waitable, "add_to_wait_set"):
+            raise NotImplementedError("cfepy does not have wait sets of rcl for nodes of ROS 2 yet")
+        self._added(self._waitables, waitable)
+
+    def remove_waitable(self, waitable: Any) -> None:
+        """Run a waitable no more."""
+        self._waitables.remove(waitable)
+        self._wake()
 
 
 def _refuse(**options: Any) -> None:

@@ -26,7 +26,7 @@ _ENVELOPES = {
     "Result": "actionlib_msgs/GoalStatus status",
     "Feedback": "actionlib_msgs/GoalStatus status",
 }
-Kind = Literal["msg", "srv"]
+Kind = Literal["msg", "srv", "action"]
 _NO_END = " (no line feed at its end)"  # of a type whose .msg file has none
 _SHIPPED = Path(__file__).parent / "definitions"
 _SUFFIXES = (".msgs", ".srvs", ".actions")
