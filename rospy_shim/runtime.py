@@ -147,6 +147,11 @@ class Ros2(Protocol):
         """Return the finder of the program's modules."""
 
 
+def _shows_all(module: str) -> None:
+    """Return None: modules of ROS 2 show all of their names."""
+    return
+
+
 def _no_ros2() -> Ros2:
     raise UsageError("nodes of ROS 2 cannot run here; start them in a mission")
 
@@ -324,7 +329,7 @@ class RosRuntime:
             call_cost_ns=self._call_ns,
             stdout=self._console.write,
             find_module=lambda name: find(name),
-            shown_names=shown_names,
+            shown_names=shown_names if ros2 is None else _shows_all,
             priority=tasks.priority,
             ordered_sets=self._config.ordered_sets if config.ordered_sets is None else config.ordered_sets,
             keys=config.keys,

@@ -17,6 +17,7 @@ from rclpy_shim.seam.own_topics import ROSOUT, LogLine, OwnTopics
 from rclpy_shim.seam.service_ends import ServiceClient, ServiceServer
 from rclpy_shim.seam.topic_ends import TopicReader, TopicWriter
 from rclpy_shim.seam.waiting import WaitingNode
+from rospy_shim.library_parts import FOLDER
 from rospy_shim.types.msgs import OnDisk
 
 if TYPE_CHECKING:
@@ -167,6 +168,7 @@ class Ros2Program(WaitingNode):
             steady_ns=self.steady_ns,
             ring=self.waiting.look_again,
             write=self.universe.stderr.write,
+            SHARED_LIBRARIES=str(FOLDER),
             log=lambda *line: self.own_topics.log(LogLine(*line)),
             tell_parameters=self.own_topics.tell_parameters,
         )

@@ -4,6 +4,7 @@ from typing import Any
 
 program: Any
 Quality: Any
+SHARED_LIBRARIES: str
 
 def now_ns() -> int: ...
 def steady_ns() -> int: ...
