@@ -124,10 +124,6 @@ class Ros2Program(WaitingNode):
         self.universe.charge()
         return self.clock.wall_ns()
 
-    def steady_ns(self) -> int:
-        """Return the time in ns since the computer was started."""
-        return self.kernel.now
-
     def catch_signals(self, on_signal: Callable[[], object], numbers: Iterable[int]) -> None:
         """Let signals shut rclpy down; a handler that was set before runs too. Only the main thread can do this."""
         table = self.universe.signals

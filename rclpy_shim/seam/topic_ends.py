@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from cfepy.status import CfeError
 from rclpy_shim.seam.matching import Quality, mismatch
+from rclpy_shim.seam.topic_events import Deadline, Incompatible, LivelinessChanged, LivelinessLost, Matched, Status
 from rclpy_shim.seam.waiting import WaitingNode
 from rospy_shim.client import connection_setup as connecting
 from rospy_shim.client.link import Link
@@ -21,16 +22,9 @@ from rospy_shim.types.transport import EVERYBODY, HEADER_BYTES, SPARE_AT, is_for
 if TYPE_CHECKING:
     from collections.abc import Callable, Sized
 
-    from rospy_shim.graph.graph import Header
+    from rospy_shim.graph.graph import Header, TopicEntry
 
-NO_SENDING = (
-    "New subscription discovered on topic '{}', requesting incompatible QoS. No messages will be sent to it."
-    " Last incompatible policy: {}"
-)
-NO_RECEIVING = (
-    "New publisher discovered on topic '{}', offering incompatible QoS. No messages will be received from it."
-    " Last incompatible policy: {}"
-)
+STAMP = slice(6, 12)  # the spacecraft time in a packet, in units of 2**-16 s
 
 
 class TopicWriter(Link):
@@ -50,7 +44,12 @@ class TopicWriter(Link):
         super().__init__(program, name, data_class)
         self.quality = quality
         self.warn = warn
-        self._kept: deque[bytes] = deque(maxlen=quality.depth)
+        self._kept: deque[tuple[int, bytes]] = deque(maxlen=quality.depth)  # with the time in ns
+        note, now = program.waiting.note_change, program.steady_ns
+        self.matched, self.incompatible = Matched(note), Incompatible(note)
+        self.deadline = Deadline(note, quality.deadline_ns, now)
+        self.lost = LivelinessLost(note, quality.lease_ns, now)
+        self._is_watched = bool(quality.deadline_ns or quality.is_manual)
         self._counts_header = data_class._slot_types[:1] == ["std_msgs/Header"]
         self.queue_size = quality.depth
         if quality.is_kept:
@@ -63,6 +62,26 @@ class TopicWriter(Link):
         for subscription in topic.subscriptions[:] if topic is not None else ():
             if isinstance(subscription, TopicReader):
                 part_if_unequal(self, subscription)
+        note_matches(topic)
+
+    def close(self) -> None:
+        """Leave the graph."""
+        topic = self.topic
+        super().close()
+        note_matches(topic)
+
+    def peer_connected(self, subscription: Subscription) -> None:
+        """Count an expected subscriber as connected."""
+        super().peer_connected(subscription)
+        note_matches(self.topic)
+
+    def assert_liveliness(self) -> None:
+        """Say that the publisher is alive (rcl_publisher_assert_liveliness)."""
+        if self.quality.is_manual:
+            self.lost.note()
+            for each in self.topic.subscriptions if self.topic is not None else ():
+                if isinstance(each, TopicReader):
+                    each.program.waiting.look_again()
 
     def serialize(self, message: Any) -> bytes:
         """Return the bytes of a message, with the next sequence number in its header for nodes of ROS 1.
@@ -76,11 +95,14 @@ class TopicWriter(Link):
 
     def _packed(self, message: Any) -> bytes:
         self.seq += 1
+        if self._is_watched:
+            self.deadline.note()
+            self.assert_liveliness()
         if self._counts_header:
             message.header._seq = self.seq
         payload: bytes = self._pack(message)
         if self.is_latch:
-            self._kept.append(payload)
+            self._kept.append((self.node.kernel.now, payload))
         return payload
 
     def keep(self, message: Any) -> None:
@@ -94,7 +116,8 @@ class TopicWriter(Link):
 
     def give_latched(self, subscription: Subscription) -> None:
         """Give a new subscription the messages that were kept; one of ROS 1 gets the last one."""
-        kept = list(self._kept)
+        span, now = self.quality.lifespan_ns, self.node.kernel.now
+        kept = [payload for at, payload in self._kept if not span or now - at < span]
         if not isinstance(subscription, TopicReader):
             kept = kept[-1:]
         for payload in kept:
@@ -128,6 +151,12 @@ class TopicReader(Subscription):
         self.queue_size = None if quality.keeps_all else quality.depth
         self._items: Sized = ()  # the packets in the pipe
         self.has_begun = quality.is_kept  # then publishers give the messages that they keep
+        note, now = program.waiting.note_change, program.steady_ns
+        self.matched, self.incompatible = Matched(note), Incompatible(note)
+        self.message_lost = Status(("total_count",), note)
+        self.deadline = Deadline(note, quality.deadline_ns, now, self.ready)
+        self.liveliness = LivelinessChanged(note, self._publishers)
+        self._drops_old = False  # a publisher has a lifespan
 
     def connect(self) -> None:
         """Go on the graph: make the pipe and join the topic.
@@ -155,6 +184,28 @@ class TopicReader(Subscription):
         for link in list(topic.links):
             if not (isinstance(link, TopicWriter) and part_if_unequal(link, self)):
                 connecting.begin(link, self, delays.get(link, 0), late=True)
+        note_matches(topic)
+
+    def _publishers(self) -> dict[Link, LivelinessLost | None]:
+        """Return the connected publishers; for those that must say that they are alive, with their losses."""
+        links = self.peers if self.topic is not None else []
+        return {each: each.lost if isinstance(each, TopicWriter) and each.quality.is_manual else None for each in links}
+
+    def note_publishers(self) -> None:
+        """Note a change of the connected publishers."""
+        self.matched.note(self.count())
+        self._drops_old = any(isinstance(each, TopicWriter) and each.quality.lifespan_ns for each in self.peers)
+
+    def _is_old(self, packet: bytes) -> bool:
+        """Return True if a message has expired, by its publisher's lifespan."""
+        header = None if self.topic is None else self.topic.sender_of(packet)
+        spans = [
+            each.quality.lifespan_ns for each in self.peers if isinstance(each, TopicWriter) and each.header is header
+        ]
+        if not spans or not spans[0]:
+            return False
+        age = self._bus.ports.time.stamp() - int.from_bytes(packet[STAMP], "big")
+        return bool(age * 1_000_000_000 >> 16 >= spans[0])
 
     def _size_pipe(self) -> None:
         pipe = self._find_pipe()
@@ -208,8 +259,12 @@ class TopicReader(Subscription):
                 packet = self._assemble(packet, self.topic)
                 if packet is None:
                     continue
+            if self._drops_old and self._is_old(packet):
+                continue
             message = self._made(packet, HEADER_BYTES)
             if message is not None:
+                if self.quality.deadline_ns:
+                    self.deadline.note()
                 return message, self.topic.sender_of(packet)
         return None
 
@@ -235,6 +290,7 @@ class TopicReader(Subscription):
             topic.remove_subscription(self)
             topic.leave()
             self.__give_back__()
+            note_matches(topic)
 
     def __give_back__(self) -> None:
         """Delete the pipe."""
@@ -248,7 +304,7 @@ class TopicReader(Subscription):
 
 
 def part_if_unequal(link: TopicWriter, subscription: TopicReader) -> bool:
-    """Keep two sides apart whose qualities of service do not match, and warn on both sides.
+    """Keep two sides apart whose qualities of service do not match, and let both count it.
 
     Returns:
         True if they do not match.
@@ -258,6 +314,18 @@ def part_if_unequal(link: TopicWriter, subscription: TopicReader) -> bool:
         return False
     if subscription not in link.expected:
         link.expect_peer(subscription)
-        link.warn(NO_SENDING.format(link.name, policy))
-        subscription.warn(NO_RECEIVING.format(link.name, policy))
+        link.incompatible.note(policy)
+        subscription.incompatible.note(policy)
     return True
+
+
+def note_matches(topic: TopicEntry | None) -> None:
+    """Let all sides of a topic count their other sides."""
+    if topic is None:
+        return
+    for link in topic.links:
+        if isinstance(link, TopicWriter):
+            link.matched.note(link.count())
+    for subscription in topic.subscriptions:
+        if isinstance(subscription, TopicReader):
+            subscription.note_publishers()

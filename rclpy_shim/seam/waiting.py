@@ -174,4 +174,5 @@ class WaitingNode(Node):
         super().__init__(*args, **options)
         self.waiting = Waiting(self.kernel, self.cfe.sb, self.universe.name)
         self.waiting.is_over = self.life.is_shutdown
+        self.steady_ns = lambda: self.kernel.now
         self.life.wait_lists.append(self.waiting.tasks)

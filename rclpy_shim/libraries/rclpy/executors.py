@@ -328,7 +328,7 @@ class Executor:
         version = _seam.program.waiting.version
         if self._known_version != version:
             self._known_version = version
-            self._entities = [each for node in self._nodes for each in node._waitables]
+            self._entities = [each for node in self._nodes for each in node._waitables if each.may_have_work()]
             for node in self._nodes:
                 for kind in (node._timers, node._subscriptions, node._guards, node._clients, node._services):
                     self._entities += [each for each in kind if each.may_have_work()]

@@ -286,8 +286,8 @@ class Node(ParameterStore):
             msg_type: message class.
             topic: name of the topic.
             qos_profile: its quality of service, or its depth.
-            callback_group: accepted; a publisher has no callbacks without events.
-            event_callbacks: must be None.
+            callback_group: group of the callbacks for its events; None is the node's default one.
+            event_callbacks: `PublisherEventCallbacks`; None for the usual ones.
             qos_overriding_options: must be None.
             publisher_class: class of the publisher.
 
@@ -296,10 +296,24 @@ class Node(ParameterStore):
             AttributeError, TypeError: a wrong type.
             NotImplementedError: an option that cfepy does not have yet.
         """
-        _refuse(event_callbacks=event_callbacks, qos_overriding_options=qos_overriding_options)
+        _refuse(qos_overriding_options=qos_overriding_options)
         _check_message_type(msg_type)
         full = self.resolve_topic_name(topic)
-        return self._added(self._publishers, publisher_class(self, msg_type, full, profile_of(qos_profile)))  # type: ignore[no-any-return]
+        made = publisher_class(
+            self,
+            msg_type,
+            full,
+            profile_of(qos_profile),
+            event_callbacks=event_callbacks,
+            callback_group=callback_group,
+            given_name=topic,
+        )
+        return self._with_events(self._publishers, made)  # type: ignore[no-any-return]
+
+    def _with_events(self, entities: list[Any], entity: Any) -> Any:
+        for handler in entity.event_handlers:
+            self.add_waitable(handler)
+        return self._added(entities, entity)
 
     def create_subscription(
         self,
@@ -322,7 +336,7 @@ class Node(ParameterStore):
             callback: called with each message, and with a dictionary about it if it takes two arguments.
             qos_profile: its quality of service, or its depth.
             callback_group: its group; None is the node's default one.
-            event_callbacks: must be None.
+            event_callbacks: `SubscriptionEventCallbacks`; None for the usual ones.
             qos_overriding_options: must be None.
             raw: must be False.
             content_filter_options: must be None.
@@ -333,15 +347,23 @@ class Node(ParameterStore):
             NotImplementedError: an option that cfepy does not have yet.
         """
         _refuse(
-            event_callbacks=event_callbacks,
             qos_overriding_options=qos_overriding_options,
             raw=raw,
             content_filter_options=content_filter_options,
         )
         _check_message_type(msg_type)
         full = self.resolve_topic_name(topic)
-        made = Subscription(self, msg_type, full, callback, self._group(callback_group), profile_of(qos_profile))
-        return self._added(self._subscriptions, made)  # type: ignore[no-any-return]
+        made = Subscription(
+            self,
+            msg_type,
+            full,
+            callback,
+            self._group(callback_group),
+            profile_of(qos_profile),
+            event_callbacks=event_callbacks,
+            given_name=topic,
+        )
+        return self._with_events(self._subscriptions, made)  # type: ignore[no-any-return]
 
     def create_client(
         self,
@@ -445,6 +467,9 @@ class Node(ParameterStore):
         if entity not in entities:
             return False
         entities.remove(entity)
+        for handler in getattr(entity, "event_handlers", ()):
+            if handler in self._waitables:
+                self._waitables.remove(handler)
         entity.destroy()
         self._wake()
         return True
@@ -490,6 +515,7 @@ class Node(ParameterStore):
                 self._destroy(entities, each)
         for waitable in self._waitables[:]:
             waitable.destroy()
+        self._waitables.clear()
 
     def __enter__(self) -> Node:
         return self

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rclpy import _seam
+from rclpy.event_handler import PublisherEventCallbacks
 from rclpy.qos import QoSProfile
 
 
@@ -16,14 +17,31 @@ class Publisher:
         msg_type: message class.
         topic: resolved name of the topic.
         qos_profile: its quality of service.
+        event_callbacks: callbacks for its events; None for the usual ones.
+        callback_group: their group.
+        given_name: the topic as the program names it.
     """
 
-    def __init__(self, node: Any, msg_type: Any, topic: str, qos_profile: QoSProfile) -> None:
+    def __init__(
+        self,
+        node: Any,
+        msg_type: Any,
+        topic: str,
+        qos_profile: QoSProfile,
+        *,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        callback_group: Any = None,
+        given_name: str = "",
+    ) -> None:
         self.msg_type = msg_type
         self.topic = topic
         self.qos_profile = qos_profile
         self._side = _seam.program.add_publisher(topic, msg_type, qos_profile.quality(), node.get_logger().warning)
         self._send = self._side.send
+        callbacks = event_callbacks or PublisherEventCallbacks()
+        group = node.default_callback_group if callback_group is None else callback_group
+        warn = node.get_logger().warning
+        self.event_handlers = callbacks.create_event_handlers(group, self._side, given_name or topic, warn)
 
     @property
     def topic_name(self) -> str:
@@ -52,8 +70,8 @@ class Publisher:
         _seam.program.close(self._side)
 
     def assert_liveliness(self) -> None:
-        """Refuse: there is no liveliness yet."""
-        raise NotImplementedError("cfepy does not have liveliness for nodes of ROS 2 yet")
+        """Say that the publisher is alive, for MANUAL_BY_TOPIC."""
+        self._side.assert_liveliness()
 
     def wait_for_all_acked(self, timeout: Any = None) -> bool:
         """Return True: the bus has handed each message over when `publish` returns."""

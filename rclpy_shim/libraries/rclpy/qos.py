@@ -1,8 +1,4 @@
-"""Quality of service (rclpy.qos).
-
-History, depth, reliability and durability count. Deadline, lifespan and liveliness are refused, unless they have their
-defaults.
-"""
+"""Quality of service (rclpy.qos)."""
 
 from __future__ import annotations
 
@@ -86,7 +82,28 @@ class LivelinessPolicy(QoSPolicyEnum):
 QoSHistoryPolicy, QoSReliabilityPolicy = HistoryPolicy, ReliabilityPolicy
 QoSDurabilityPolicy, QoSLivelinessPolicy = DurabilityPolicy, LivelinessPolicy
 QOS_UNLIMITED = Duration(nanoseconds=0)
-_TIMES = ("lifespan", "deadline", "liveliness_lease_duration")
+
+
+class QoSPolicyKind(Enum):
+    """Names of the policies, as events have them."""
+
+    RMW_QOS_POLICY_INVALID = 1
+    RMW_QOS_POLICY_DURABILITY = 2
+    RMW_QOS_POLICY_DEADLINE = 4
+    RMW_QOS_POLICY_LIVELINESS = 8
+    RMW_QOS_POLICY_RELIABILITY = 16
+    RMW_QOS_POLICY_HISTORY = 32
+    RMW_QOS_POLICY_LIFESPAN = 64
+    RMW_QOS_POLICY_DEPTH = 128
+    RMW_QOS_POLICY_LIVELINESS_LEASE_DURATION = 256
+
+    def __str__(self) -> str:
+        return f"rmw_qos_policy_kind_t.{self.name}"
+
+
+def qos_policy_name_from_kind(policy_kind: Any) -> str:
+    """Return the short name of a policy, such as "RELIABILITY"."""
+    return QoSPolicyKind(getattr(policy_kind, "value", policy_kind)).name.removeprefix("RMW_QOS_POLICY_")
 
 
 class QoSProfile:
@@ -145,22 +162,22 @@ class QoSProfile:
         return f"QoSProfile({', '.join(f'{name}={getattr(self, name)}' for name in self.__slots__)})"
 
     def quality(self) -> Any:
-        """Return it as the seam has it.
-
-        Raises:
-            NotImplementedError: it has a policy that cfepy does not have yet.
-        """
-        for name in _TIMES:
-            if getattr(self, name) not in (Duration(), Infinite):
-                raise NotImplementedError(f"cfepy does not have the QoS policy {name} for nodes of ROS 2 yet")
-        if self.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC:
-            raise NotImplementedError("cfepy does not have the QoS policy MANUAL_BY_TOPIC for nodes of ROS 2 yet")
+        """Return it as the seam has it."""
         return _seam.Quality(
             depth=max(self.depth, 1),
             is_reliable=self.reliability is not ReliabilityPolicy.BEST_EFFORT,
             is_kept=self.durability is DurabilityPolicy.TRANSIENT_LOCAL,
             keeps_all=self.history is HistoryPolicy.KEEP_ALL,
+            deadline_ns=_limit(self.deadline),
+            lifespan_ns=_limit(self.lifespan),
+            is_manual=self.liveliness is LivelinessPolicy.MANUAL_BY_TOPIC,
+            lease_ns=_limit(self.liveliness_lease_duration),
         )
+
+
+def _limit(time: Duration) -> int:
+    """Return a time in ns; 0 for one without a limit."""
+    return 0 if time == Infinite else int(time.nanoseconds)
 
 
 qos_profile_default = QoSProfile(depth=10)

@@ -8,6 +8,7 @@ from typing import Any
 
 from rclpy import _seam
 from rclpy._entity import Call, Entity
+from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos import QoSProfile
 
 
@@ -21,6 +22,8 @@ class Subscription(Entity):
         callback: called with a message, and with a dictionary about it if it takes two arguments.
         callback_group: its group.
         qos_profile: its quality of service.
+        event_callbacks: callbacks for its events; None for the usual ones.
+        given_name: the topic as the program names it.
 
     Raises:
         RuntimeError: the callback takes another number of arguments.
@@ -34,6 +37,9 @@ class Subscription(Entity):
         callback: Callable[..., Any],
         callback_group: Any,
         qos_profile: QoSProfile,
+        *,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        given_name: str = "",
     ) -> None:
         self.msg_type = msg_type
         self.topic = topic
@@ -43,6 +49,10 @@ class Subscription(Entity):
         self._wants_info = _takes_two(callback)
         self._side = _seam.program.add_subscription(topic, msg_type, qos_profile.quality(), node.get_logger().warning)
         self.ready = self._side.ready  # type: ignore[method-assign]  # without another call
+
+        callbacks = event_callbacks or SubscriptionEventCallbacks()
+        warn = node.get_logger().warning
+        self.event_handlers = callbacks.create_event_handlers(callback_group, self._side, given_name or topic, warn)
 
     @property
     def topic_name(self) -> str:

@@ -86,6 +86,7 @@ pub = n.create_publisher(String, "a", QoSProfile(depth=1, reliability=Reliabilit
 time.sleep(0.5)
 pub.publish(String(data="x"))
 print(pub.get_subscription_count())
+rclpy.spin_once(n, timeout_sec=0.1)
 """)
     listener = node("""
 n = rclpy.create_node("listener")
@@ -93,11 +94,11 @@ n.create_subscription(String, "a", print, 10)
 rclpy.spin_once(n, timeout_sec=1.0)
 """)
     printed = run_nodes(tmp_path, {"L": listener, "T": talker}).printed
-    assert printed["talker"][0].endswith(
-        "[talker]: New subscription discovered on topic '/a', requesting incompatible QoS. No messages will be sent to"
+    assert printed["talker"][0] == "0"
+    assert printed["talker"][1].endswith(
+        "[talker]: New subscription discovered on topic 'a', requesting incompatible QoS. No messages will be sent to"
         " it. Last incompatible policy: RELIABILITY"
     )
-    assert printed["talker"][1] == "0"
     assert len(printed["listener"]) == 1
     assert "offering incompatible QoS" in printed["listener"][0]
 
@@ -132,7 +133,6 @@ attempt(pub.publish, "text")
 attempt(pub.publish, String(data=3))
 attempt(n.create_publisher, str, "a", 10)
 attempt(n.create_publisher, String, "a b", 10)
-attempt(n.create_publisher, String, "a", QoSProfile(depth=1, deadline=Duration(seconds=1)))
 attempt(n.create_subscription, String, "a", print, 10, raw=True)
 attempt(n.create_subscription, String, "a", lambda: None, 10)
 attempt(n.create_subscription, String, "a", print, -1)
@@ -144,11 +144,9 @@ attempt(n.create_subscription, String, "a", print, -1)
         "AttributeError",
         "InvalidTopicNameException",
         "NotImplementedError",
-        "NotImplementedError",
         "RuntimeError",
         "ValueError",
     ]
-    assert "cfepy does not have the QoS policy deadline" in "\n".join(printed)
 
 
 @pytest.mark.slow
