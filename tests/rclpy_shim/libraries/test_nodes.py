@@ -316,7 +316,7 @@ def test_missing_parts_are_refused_by_name(tmp_path: Path) -> None:
     lines = printed(
         """
 import importlib
-for name in ("cv_bridge", "rclpy.lifecycle", "launch", "rospy", "nothing"):
+for name in ("cv_bridge", "rclpy.serialization", "launch", "rospy", "nothing"):
     attempt(importlib.import_module, name)
 """,
         tmp_path,
@@ -325,7 +325,7 @@ for name in ("cv_bridge", "rclpy.lifecycle", "launch", "rospy", "nothing"):
         *(
             f"ModuleNotFoundError | cfepy does not have {name} for nodes of ROS 2 yet; docs/how_to/run_a_ros2_node.md"
             " lists what works"
-            for name in ("cv_bridge", "rclpy.lifecycle", "launch")
+            for name in ("cv_bridge", "rclpy.serialization", "launch")
         ),
         "ImportError | a program of ROS 2 cannot import rospy; use two nodes, or write `ros: 1` for it in mission.yaml",
         "ModuleNotFoundError | No module named 'nothing'",
