@@ -26,7 +26,7 @@ from rospy_shim.client.subscription import NO_LIMIT, NO_PIPE, POLL
 from rospy_shim.graph.graph import ServiceCall
 
 if TYPE_CHECKING:
-    from collections.abc import Sized
+    from collections.abc import Callable, Sized
 
     from rospy_shim.graph.graph import ServiceEntry
 
@@ -227,8 +227,13 @@ class ServiceClient:
         entry = self._program.graph.services.get(self.name)
         return entry is not None and entry.service.service_class._md5sum == self.service_class._md5sum
 
-    def send(self, request: Any) -> int:
+    def send(self, request: Any, begin: Callable[[int], object]) -> int:
         """Send a request (rcl_send_request).
+
+        Args:
+            request: the request.
+            begin: called with the number of the call before the request is sent, since the answer may come before this
+                method returns.
 
         Returns:
             The number of the call. Without a server the request is lost, and the number is negative.
@@ -241,6 +246,7 @@ class ServiceClient:
         entry = self._program.graph.services.get(self.name)
         if entry is None or not self.is_available():
             self._lost -= 1
+            begin(self._lost)
             return self._lost
         self._pipe.open(entry.answer_id)
         header = {
@@ -252,6 +258,7 @@ class ServiceClient:
         if len(self._mine) >= MOST_CALLS:
             self.forget(next(iter(self._mine)))
         self._mine[number] = entry
+        begin(number)
         bus = self._program.cfe.sb
         for packet in request_packets(entry.request_id, number, body, bus.config.sb_max_msg_size):
             self._wait_for_room(entry, packet)

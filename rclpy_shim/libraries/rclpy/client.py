@@ -76,10 +76,9 @@ class Client(Entity):
         """
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
-        number = self._side.send(request)
         future = Future(executor=None)
-        self._pending[number] = future
         future.add_done_callback(self.remove_pending_request)
+        self._side.send(request, lambda number: self._pending.update({number: future}))
         return future
 
     def take_work(self, executor: Any) -> Call | None:

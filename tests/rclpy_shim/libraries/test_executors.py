@@ -176,3 +176,21 @@ for turn in range(4):
         tmp_path,
     )
     assert lines == ["a", "0", "b", "1", "2", "3"]
+
+
+def test_message_is_waited_for_without_an_executor(tmp_path: Path) -> None:
+    lines = printed(
+        """
+import threading
+from rclpy.wait_for_message import wait_for_message
+n = rclpy.create_node("n")
+pub = n.create_publisher(String, "a", 1)
+start = time.time()
+print(wait_for_message(String, n, "a", time_to_wait=0.3), round(time.time() - start, 1))
+threading.Timer(0.3, pub.publish, [String(data="x")]).start()
+print(wait_for_message(String, n, "a", time_to_wait=2.0), round(time.time() - start, 1))
+print(len(list(n.subscriptions)))
+""",
+        tmp_path,
+    )
+    assert lines == ["(False, None) 0.3", "(True, std_msgs.msg.String(data='x')) 0.6", "0"]

@@ -177,3 +177,24 @@ print(call(ListParameters, "list_parameters").result.names)
         "['use_sim_time', 'speed']",
     ]
     assert run.printed["owner"] == ["[('speed', 2.5)]"]
+
+
+def test_answer_before_the_call_returns_completes_the_future(tmp_path: Path) -> None:
+    both = """
+import rclpy, threading, time
+from std_srvs.srv import Trigger
+from rclpy.executors import SingleThreadedExecutor
+rclpy.init()
+node, server = rclpy.create_node("caller"), rclpy.create_node("server")
+server.create_service(Trigger, "s", lambda request, response: response)
+client = node.create_client(Trigger, "s")
+for each in (node, server):
+    executor = SingleThreadedExecutor()
+    executor.add_node(each)
+    threading.Thread(target=executor.spin, daemon=True).start()
+client.wait_for_service()
+futures = [client.call_async(Trigger.Request()) for turn in range(5)]
+time.sleep(0.5)
+print([each.done() for each in futures], len(client._pending))
+"""
+    assert run_nodes(tmp_path, {"A": both}).printed["caller"] == ["[True, True, True, True, True] 0"]

@@ -200,18 +200,19 @@ class ActionClient(Waitable):
     # -- requests ----------------------------------------------------------------------------------------------------
 
     def _send(self, kind: str, request: Any, goal_id: Any) -> Future:
-        number = getattr(self._ends, kind).send(request)
         future = Future()
-        self._pending[kind][number] = (future, goal_id)
-        self.add_future(future)
+        pending = self._pending[kind]
 
         def forget(done: Future) -> None:
-            if self._pending[kind].pop(number, None) is not None:
+            for number in [number for number, (each, _) in pending.items() if each is future]:
+                del pending[number]
                 self.remove_future(future)
                 if kind == "result":
                     self._feedback_callbacks.pop(bytes(goal_id.uuid), None)
 
+        self.add_future(future)
         future.add_done_callback(forget)
+        getattr(self._ends, kind).send(request, lambda number: pending.update({number: (future, goal_id)}))
         return future
 
     def send_goal(self, goal: Any, **kwargs: Any) -> Any:
