@@ -20,7 +20,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--bag": ("FILE", "record the ROS topics of the run into a bag"),
     "--bag-topics": ("TOPIC", "record only these"),
     "--board": ("NAME|FILE", "(this board instead of the mission's own|boards, with commas between)"),
-    "--cfe": ("RELEASE", "the sources are for cFE 6: 6.5 or 6.7"),
+    "--cfe": ("RELEASE", "the sources are for cFE 6: 6.5, 6.7 or 6.8"),
     "--cmake": (None, "ask CMake for the sources"),
     "--cluster": ("ADDRESS", "dask cluster"),
     "--console": (None, "show the flight computer's console"),

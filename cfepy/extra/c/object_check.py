@@ -90,7 +90,7 @@ def _check_needs(
         listed = _listed(unknown, places)
         text = f"{entry.name} needs {listed}, but cfepy and the libraries of the mission do not define them"
         if any(map(is_name_of_cfe_6, unknown)):
-            text += ", because it was built for cFE 6; build its sources with cfepy build --cfe 6.5 or --cfe 6.7"
+            text += ", because it was built for cFE 6; build its sources with cfepy build --cfe 6.5, 6.7 or 6.8"
         nowhere = undefined_on_linux(source, sorted(unknown))
         so = f"; it cannot be loaded without {_listed(set(nowhere))}" if nowhere else "; calling it is a fault"
         yield MissionProblem(script, entry.line, text + so, is_warning=not nowhere)

@@ -29,6 +29,8 @@ _MID, _CODE = "_MID", "_CC"
 _COMMAND_BIT = 0x1000
 _CFE_6 = "CFEPY_CFE_6"
 """The macro of sources that were built for cFE 6."""
+_WITH_OLD_HEADERS = (65, 67)
+"""Its values where packets have headers of cFE 6."""
 _OLD_HEADERS = ("CFE_SB_CmdHdr", "CFE_SB_TlmHdr", "CCSDS_CmdPkt", "CCSDS_TlmPkt", "CCSDS_Command", "CCSDS_Telemetry")
 _OLD_TELEMETRY = 12
 _FIRST = ("CFE_", "OS_", "CCSDS_")
@@ -92,7 +94,7 @@ class _Application:
         self._constants = structs.enumerators()
         self._names = structs.struct_names()
         self._functions = structs.function_names()
-        self._is_cfe_6 = macros.value(_CFE_6, self._constants) is not None
+        self._is_cfe_6 = macros.value(_CFE_6, self._constants) in _WITH_OLD_HEADERS
 
     def read(self) -> None:
         """Add its packets to the content."""

@@ -2,7 +2,11 @@
 #ifndef CFEPY_CFE6_SERVICES_H
 #define CFEPY_CFE6_SERVICES_H
 
+#if CFEPY_CFE_6 == 68
+#include "cfe6_between.h"
+#else
 #include "cfe6_messages.h"
+#endif
 #include "es_messages.h"
 #include "evs_messages.h"
 #include "tbl_messages.h"
@@ -11,6 +15,7 @@
 /* ---- ES: an application and a task are registered before they run ---- */
 #define CFE_ES_RegisterApp()       CFEPY_6_Status(CFE_SUCCESS)
 #define CFE_ES_RegisterChildTask() CFEPY_6_Status(CFE_SUCCESS)
+#if CFEPY_CFE_6 != 68
 #define CFE_ES_RunLoop(status)     ((int32)CFE_ES_RunLoop(status))
 #define CFE_ES_GetPoolBuf(buffer, handle, size) \
     CFE_ES_GetPoolBuf((CFE_ES_MemPoolBuf_t *)(void *)(buffer), handle, size)
@@ -26,6 +31,7 @@
     })
 #define CFEPY_6_POOL_SIZES            17
 #define CFE_ES_MAX_MEMPOOL_BLOCK_SIZES CFEPY_6_POOL_SIZES
+#endif
 #define CFE_ES_CDS_MAX_FULL_NAME_LEN  (CFE_MISSION_ES_CDS_MAX_NAME_LENGTH + OS_MAX_API_NAME + 2)
 #define CFE_ES_APP_RUN                CFE_ES_RunStatus_APP_RUN
 #define CFE_ES_APP_EXIT               CFE_ES_RunStatus_APP_EXIT
@@ -119,8 +125,10 @@ typedef union {
 
 /* ---- TBL ---- */
 #define CFE_TBL_NotifyByMessage(handle, id, code, value) \
-    CFE_TBL_NotifyByMessage(handle, CFEPY_6_Id((uint16)(id)), code, value)
+    CFE_TBL_NotifyByMessage(handle, CFEPY_6_Id(id), code, value)
+#if CFEPY_CFE_6 != 68
 #define CFE_TBL_GetAddress(address, handle) CFE_TBL_GetAddress((void **)(void *)(address), handle)
+#endif
 #define CFE_TBL_INACTIVE_BUFFER            CFE_TBL_BufferSelect_INACTIVE
 #define CFE_TBL_ACTIVE_BUFFER              CFE_TBL_BufferSelect_ACTIVE
 #define CFE_TBL_MAX_FULL_NAME_LEN_COMP     (CFE_MISSION_TBL_MAX_NAME_LENGTH + OS_MAX_API_NAME + 2)

@@ -65,7 +65,7 @@ class Options:
     Attributes:
         cfs: a cFS tree whose headers are used; None for cfepy's.
         definitions: a folder of a mission's headers, which go before the application's own.
-        cfe: the release of cFE 6 that the sources are written for, "6.5" or "6.7"; None for cFE 7.
+        cfe: the release of cFE 6 that the sources are written for, "6.5", "6.7" or "6.8"; None for cFE 7.
         optimize: the compiler's -O, such as "2" or "g".
         debug: whether to include debug data (-g).
         omit_deprecated: whether deprecated names are left out, as with OMIT_DEPRECATED in a cFS build: table handles

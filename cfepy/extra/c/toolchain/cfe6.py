@@ -16,7 +16,7 @@ from cfepy.reading.input_limits import CMAKE_BYTES
 from cfepy.reading.suggestions import expected
 from cfepy.status import UsageError
 
-CFE_6 = {"6.5": 65, "6.7": 67}
+CFE_6 = {"6.5": 65, "6.7": 67, "6.8": 68}
 """Releases that `--cfe` accepts, and their CFEPY_CFE_6."""
 FOLDER = "cfe6"
 """The folder of the headers that only cFE 6 has, in the folder of the compiler."""
@@ -25,6 +25,7 @@ ADVICE, BUILD_WITH = "It uses names of cFE 6", "Build it with "
 """The beginnings of two sentences about a source that the compiler refused."""
 REMOVED_TEXT = "was removed: "
 _BOTH = "--cfe 6.5 (cFE 6.0 to 6.5) or --cfe 6.7 (cFE 6.6 and 6.7)"
+_BETWEEN = f"{OPTION} 6.8"
 _MOST_NAMED = 5
 _LAST_OLD, _LAST = 5, 7
 _SHARED = ("public_inc", "platform_inc", "mission_inc", "inc", "src")
@@ -44,6 +45,20 @@ _ONLY_67 = re.compile(
     r"\b(?:SpacePacket|CFE_SB_(?:MsgIdToValue|ValueToMsgId|MsgId_Equal)|CFE_EVS_Event(?:Type|Filter)_\w+"
     r"|CFE_ES_RunStatus_\w+|OS_FILESTAT_\w+|OS_Directory\w+|CFE_(?:MISSION|PLATFORM)_(?:ES|EVS|SB|TBL|TIME)_\w+)\b"
 )
+_ONLY_68 = re.compile(
+    r"\b(?:CFE_MSG_(?:Init|GetMsgId|CommandHeader_t|TelemetryHeader_t)|CFE_SB_(?:Buffer_t|ReceiveBuffer|TransmitMsg))\b"
+)
+"""Names of cFE 7 that cFE 6.8 has as well. Sources with them and with names of cFE 6 are of that time."""
+_MSGID_FUNCTIONS = (
+    "CFE_SB_(?:Subscribe(?:Ex|Local)?|Unsubscribe(?:Local)?|MsgIdToValue|IsValidMsgId)"
+    "|CFE_MSG_(?:Init|SetMsgId|GetTypeFromMsgId)|CFE_TBL_NotifyByMessage"
+)
+_MSGID_IS_NUMBER = re.compile(
+    rf"incompatible type for argument \d+ of '(?:{_MSGID_FUNCTIONS})'|'CFE_SB_MsgId_t'[^\n]* to a variable of type"
+    r"|(?:invalid operands to binary|incompatible types when)[^\n]*'CFE_SB_MsgId_t'"
+    r"|cfe_(?:msg|resourceid)_api\.h: No such file"
+)
+"""Messages of a compiler about sources in which a MsgId is a number, or that include a header of that time."""
 _NOT_CODE = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _QUOTED = re.compile(r"'(\w+)'|([\w-]+\.h): No such file")
 _MESSAGE = re.compile(r"^[^\n]*(?:error|warning): [^\n]*$", re.MULTILINE)
@@ -125,11 +140,14 @@ def check_release(release: str | None) -> None:
 
 
 def option_of(numbers: Sequence[str]) -> str | None:
-    """Return the option for a release of cFE, such as ("6", "7", "0"); None if cfepy has no headers for it."""
+    """Return the option for a release of cFE, such as ("6", "7", "0"); None if cfepy has no headers for it.
+
+    6.7.99 are the development versions after cFE 6.7, until 7.0.0-rc4.
+    """
     if not all(each.isdecimal() for each in numbers) or numbers[0] != "6" or int(numbers[1]) > _LAST:
         return None
-    if int(numbers[1]) == _LAST and numbers[2:3] == ["99"]:  # on its way to cFE 6.8, which has the names of cFE 7
-        return None
+    if int(numbers[1]) == _LAST and numbers[2:3] == ["99"]:
+        return _BETWEEN
     return f"{OPTION} {'6.5' if int(numbers[1]) <= _LAST_OLD else '6.7'}"
 
 
@@ -192,6 +210,8 @@ def advice_about(unknown: Sequence[str], files: Iterable[Path]) -> str:
 def advised_option(files: Iterable[Path]) -> str:
     """Return the option that sources of cFE 6 need, or both if their names do not tell."""
     text = "\n".join(map(_code_of, files))
+    if _ONLY_68.search(text):
+        return _BETWEEN
     if _ONLY_67.search(text):
         return "--cfe 6.7"
     return "--cfe 6.5" if _ONLY_65.search(text) else _BOTH
@@ -204,6 +224,8 @@ def shows_cfe_6(output: str) -> list[str]:
         output: its output, in English.
     """
     found = []
+    if _MSGID_IS_NUMBER.search(output):
+        found.append("a MsgId as a number")
     for line in _MESSAGE.findall(output):
         for name, header in _QUOTED.findall(line):
             if name and (name in _ALSO or is_name_of_cfe_6(name)):

@@ -12,11 +12,11 @@ import pytest
 from cfepy.cli.main import main
 from cfepy.extra.c.engine import compiler
 from cfepy.extra.c.toolchain import CompilerError, Options, build
-from cfepy.extra.c.toolchain.cfe6 import cfe6_flags
+from cfepy.extra.c.toolchain.cfe6 import CFE_6, cfe6_flags, option_of
 from cfepy.extra.c.toolchain.headers import NAMES_6, headers_folder, names
 from cfepy.extra.dictionaries.cosmos_writer import cosmos_text
 from cfepy.ground import dictionary_of
-from cfepy.mission import Mission, read_mission
+from cfepy.mission import Mission, PacketWatch, read_mission
 from cfepy.status import UsageError
 from cfepy.writing.console import Console
 from tests.extra.c.building import CPP, needs_compiler
@@ -24,6 +24,7 @@ from tests.extra.c.building import CPP, needs_compiler
 pytestmark = needs_compiler
 
 VETERAN = Path(__file__).parent / "veteran"
+BETWEEN = Path(__file__).parent / "between"
 SCRIPT = "CFE_APP, veteran, VETERAN_Main, VETERAN, 50, 16384, 0x0, 0;\n!\n"
 FLAGS = {
     "6.5": [],
@@ -34,7 +35,7 @@ HK = 0x0890
 NOOP = bytes.fromhex("1890c0000001 0000")
 LONG_NOOP = bytes.fromhex("1890c0000002 0000 00")
 SEND_HK = bytes.fromhex("1891c0000001 0000")
-each_release = pytest.mark.parametrize("release", FLAGS)
+each_release = pytest.mark.parametrize("release", CFE_6)
 
 
 @pytest.fixture(scope="module")
@@ -139,6 +140,43 @@ def test_ground_names_come_from_headers_of_12_bytes(built: dict[str, Path]) -> N
         assert "  ITEM LIMIT 112 16 UINT " in cosmos_text(read_mission(str(folder)), dictionary)
 
 
+# -- between cFE 6 and 7 -----------------------------------------------------------------------------------------------
+
+
+def test_application_between_6_and_7_answers_with_messages_of_cfe_7(tmp_path: Path) -> None:
+    made = build(BETWEEN, tmp_path / "between.so", Options(cfe="6.8"))
+    assert made.warnings == []
+    (tmp_path / "startup.scr").write_text("CFE_APP, between, BETWEEN_Main, BETWEEN, 50, 16384, 0x0, 0;\n!\n")
+    packets: list[bytes] = []
+    watch = PacketWatch(lambda seen: packets.append(bytes(seen.packet)), lambda msg_id: msg_id in (HK, 0x1890))
+    with Mission(str(tmp_path), console=Console(quiet=True), attachments=[watch]) as mission:
+        mission.run_for(1)
+        for each in (NOOP, SEND_HK):
+            mission.cfe.sb.transmit_msg(each, is_origination=False)
+            mission.run_for(0.2)
+        lines = [line.partition("/BETWEEN ")[2] for line in mission.console.lines if "/BETWEEN " in line]
+    assert lines == ["1: NOOP 0 of 0x1890, 8 bytes, 1, 1", "1: NOOP 5 of 0x1890, 8 bytes, 1, 1"]
+    _, told, echo = packets
+    assert (len(told), told[:6].hex(), told[16:]) == (16 + 4, "0890c000000d", struct.pack("<HH", 1, 0x1890))
+    assert echo[:6].hex() == "1890c0010001"  # SendMsg counts commands, too
+    assert dictionary_of(read_mission(str(tmp_path))).telemetry["BETWEEN_HK_TLM"].length == 16 + 4
+
+
+def test_build_of_sources_in_which_a_msgid_is_a_number_names_the_option(tmp_path: Path) -> None:
+    with pytest.raises(
+        CompilerError, match=r"It uses names of cFE 6: a MsgId as a number.*Build it with --cfe 6\.8\.\)$"
+    ):
+        build(BETWEEN, tmp_path / "between.so")
+
+
+@pytest.mark.parametrize(
+    ("release", "option"),
+    [("6.5.0", "--cfe 6.5"), ("6.7.3", "--cfe 6.7"), ("6.7.99", "--cfe 6.8"), ("7.0.0", None), ("6.7.?", None)],
+)
+def test_release_of_a_tree_names_the_option(release: str, option: str | None) -> None:
+    assert option_of(release.split(".")) == option
+
+
 # -- errors ------------------------------------------------------------------------------------------------------------
 
 
@@ -185,7 +223,7 @@ def test_removed_name_is_reported_with_its_line_and_a_replacement(tmp_path: Path
 @pytest.mark.parametrize(
     ("options", "text"),
     [
-        (Options(cfe="6.8"), "--cfe: unknown release '6.8'; did you mean 6.7? (expected 6.5 or 6.7)"),
+        (Options(cfe="6.9"), "--cfe: unknown release '6.9'; did you mean 6.8? (expected 6.5, 6.7 or 6.8)"),
         (Options(cfe="6.5", omit_deprecated=True), "--cfe: cannot be combined with --omit-deprecated"),
         (Options(cfe="6.5", cfs=Path("cFS")), "--cfe: cannot be combined with --cfs"),
     ],
@@ -212,6 +250,7 @@ def test_headers_of_cfe_6_compile_without_warnings(release: str, tool: list[str]
     suffix = ".c" if "gnu11" in tool[-1] else ".cpp"
     source = tmp_path / f"names{suffix}"
     text = "".join(f'#include "{name}.h"\n' for name in (*names(NAMES_6), *sorted(names())))
-    source.write_text(text + "CFE_SB_MsgPtr_t Message; boolean Yes = TRUE; CFE_EVS_Packet_t Event;\n")
+    old = "boolean Yes = TRUE; CFE_EVS_Packet_t Event;" if release != "6.8" else "CFE_SB_MsgId_t Id = 0x1890;"
+    source.write_text(f"{text}CFE_SB_MsgPtr_t Message; {old}\n")
     flags = [f"-I{folder}", *cfe6_flags(release, folder), "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
     assert subprocess.run([*tool, *flags, str(source)], capture_output=True, text=True).stderr == ""
