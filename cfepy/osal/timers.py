@@ -22,6 +22,9 @@ FREERUN_MASK = 0xFFFFFFFF
 IDLE_SYNCS = 4  # a sync function may return 0 this often in a row before it is slowed down
 SLOW_SYNC_MS = 10
 TIMER_LIMIT_US = 0x7FFFFFFF
+LINUX_TICK_US = 10_000
+"""The tick that NASA's OSAL reports on Linux (_SC_CLK_TCK), though its timers are finer."""
+US_PER_SECOND = 1_000_000
 
 
 class TimeBaseInfo(NamedTuple):
@@ -74,10 +77,24 @@ class OsTimer(OsObject):
 class OsTimeBase(OsObject):
     """The record of a time base. It ticks at `first_ns`, then every `interval_us`."""
 
-    __slots__ = ("base", "first_ns", "interval_us", "kernel", "start_us", "sync", "task", "timers", "waits", "wakes_at")
+    __slots__ = (
+        "accuracy_us",
+        "base",
+        "first_ns",
+        "interval_us",
+        "kernel",
+        "start_us",
+        "sync",
+        "task",
+        "timers",
+        "waits",
+        "wakes_at",
+    )
 
     def __init__(self, name: str, kernel: Kernel, sync: Callable[[int], int] | None) -> None:
         super().__init__(name)
+        tick_us = kernel.tick_ns // NS_PER_US if kernel.tick_ns else LINUX_TICK_US
+        self.accuracy_us = 0 if sync is not None else max(1, tick_us)
         self.kernel = kernel
         self.sync = sync
         self.timers: list[OsTimer] = []  # newest first, as in NASA's ring
@@ -94,6 +111,8 @@ class OsTimeBase(OsObject):
         self.base = self.freerun()
         self.start_us = start_us
         self.interval_us = interval_us
+        if self.sync is None and not self.kernel.tick_ns:  # as NASA's for Linux: the interval without whole seconds
+            self.accuracy_us = (interval_us or start_us) % US_PER_SECOND
         self.first_ns = self.kernel.now + self.start_us * NS_PER_US
         self.poke()
 
@@ -174,7 +193,6 @@ class TimeBaseApi(Core):
         self._time_bases: OsObjectTable[OsTimeBase] = self._table(
             "time base", OS_TIMEBASE_BASE, setup.config.os_max_timebases
         )
-        self._accuracy_us = max(1, setup.kernel.tick_ns // NS_PER_US)
 
     def time_base_create(self, name: str, external_sync: Callable[[int], int] | None = None) -> int:
         """Make a time base (OS_TimeBaseCreate).
@@ -248,8 +266,8 @@ class TimeBaseApi(Core):
         """
         self._refuse_in_callback("OS_TimeBaseGetInfo")
         record = self._time_base(timebase_id)
-        accuracy = 0 if record.sync is not None else self._accuracy_us
-        return TimeBaseInfo(record.name, record.creator, record.interval_us, record.freerun() & FREERUN_MASK, accuracy)
+        freerun = record.freerun() & FREERUN_MASK
+        return TimeBaseInfo(record.name, record.creator, record.interval_us, freerun, record.accuracy_us)
 
     def time_base_get_free_run(self, timebase_id: int) -> int:
         """Return the us of its ticks so far, modulo 2**32 (OS_TimeBaseGetFreeRun).
@@ -402,8 +420,7 @@ class TimerApi(TimeBaseApi):
         """
         self._refuse_in_callback("OS_TimerGetInfo")
         timer = self._timer(timer_id)
-        accuracy = 0 if timer.timebase.sync is not None else self._accuracy_us
-        return TimerInfo(timer.name, timer.creator, 0, timer.interval_us, accuracy)
+        return TimerInfo(timer.name, timer.creator, 0, timer.interval_us, timer.timebase.accuracy_us)
 
     def has_timer(self, owner: object) -> bool:
         """Return whether an application has a timer, whose callback runs in a task of OSAL."""

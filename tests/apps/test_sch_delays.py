@@ -60,7 +60,7 @@ def test_slots_delayed_by_another_app_are_processed_later(tmp_path: Path) -> Non
     assert (values["SkippedSlotsCount"], values["SameSlotCount"]) == (0, 0)
     assert len(flight.times(pk.HK_TLM_MID)) * 100 - 1 == values["SlotsProcessedCount"]
     assert len([line for line in flight.events() if line.startswith("18:")]) == 1  # filtered until housekeeping
-    assert flight.events()[0].endswith("count = 5")
+    assert flight.events()[1].endswith("count = 5")
     late = [time for time in flight.times(FIRST) if time % 1000]
     assert late == []
 

@@ -200,6 +200,20 @@ def test_an_external_sync_drives_a_time_base(bench: Bench) -> None:
     assert bench.os.time_base_get_info(timebase_id).accuracy == 0
 
 
+def test_accuracy_is_that_of_linux_then_the_interval_without_seconds(bench: Bench) -> None:
+    timebase_id = bench.os.time_base_create("OWN")
+
+    def accuracy() -> int:
+        return bench.os.time_base_get_info(timebase_id).accuracy
+
+    found = [accuracy()]
+    for start, interval in ((1, 250), (1, 2_000_500), (1, 3_000_000), (700, 0)):
+        bench.os.time_base_set(timebase_id, start, interval)
+        found.append(accuracy())
+    assert found == [10_000, 250, 500, 0, 700]
+    assert bench.os.timer_get_info(bench.os.timer_create("T", _noter(bench))).accuracy == 10_000
+
+
 def test_sync_that_never_waits_is_slowed_down(bench: Bench) -> None:
     calls: list[int] = []
     bench.os.time_base_create("BAD", lambda timebase_id: calls.append(bench.kernel.now) or 0)
