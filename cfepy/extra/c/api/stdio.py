@@ -115,6 +115,33 @@ class FileStreams:
             self._table.close(stream.number)
         return 0
 
+    def reopen(self, path: str, mode: str, handle: int) -> int:
+        """Close the file of a FILE and open another one in its place (freopen). Returns the FILE.
+
+        Raises:
+            OSError: the file cannot be opened, and the FILE is closed.
+        """
+        if handle in (STDIN, STDOUT, STDERR):
+            raise CFault("freopen() of a standard stream is not available; use fopen, and fprintf to that file")
+        stream, flags = self.of(handle), flags_of(mode)
+        number = stream.number
+        del self._open[handle]
+        try:
+            stream.sync()
+        except OSError:
+            pass  # as in glibc, which forgets the bytes
+        try:
+            self._table.close(number)
+            opened = open_path(self._c, "freopen", path, flags, NEW_FILE)
+        except OSError:
+            self._slots.give(handle)
+            raise
+        if opened != number:
+            self._table.replace(number, opened)
+            self._table.close(opened)
+        self._open[handle] = FileStream(number, self._table.of(number), flags)
+        return handle
+
     def flush_all(self) -> int:
         """Write all buffers. Returns EOF if a file does not take its bytes."""
         status = 0
@@ -299,6 +326,9 @@ class Stdio:
     def number(self, handle: int) -> int:
         return self.files.of(handle).number
 
+    def reopen(self, path: str, mode: str, handle: int) -> int:
+        return self.files.reopen(path, mode, handle)
+
     def scan(self, handle: int) -> int:
         self._c.kernel.preempt()
         return self.files.begin_scan(handle)
@@ -308,6 +338,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
     calls = PosixCalls(api, c)
     stdio = Stdio(c, calls)
     calls.add("fopen fopen64", "$SS", stdio.open, 0)
+    calls.add("freopen freopen64", "$SSp", stdio.reopen, 0)
     calls.add("fdopen", "iS", stdio.open_number, 0)
     calls.add("fclose", "$p", stdio.close)
     calls.add("fflush fflush_unlocked", "$p", stdio.flush)

@@ -7,7 +7,6 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from struct import Struct
 
-from cfepy.extra.c.crashes import CFault
 from cfepy.extra.c.devices import Device
 from cfepy.extra.c.memory import CMemory
 from cfepy.extra.c.posix.descriptor_waits import await_descriptors
@@ -23,6 +22,7 @@ from cfepy.extra.c.posix.open_descriptors import (
     Facts,
     failure,
 )
+from cfepy.extra.c.posix.signals import Signals
 from cfepy.osal import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Network, Place, Stream
 from cfepy.rtos import FOREVER, Kernel
 
@@ -106,6 +106,7 @@ class PosixSocket(AnySocket):
     Args:
         kernel: the processor.
         network: the mission's network.
+        signals: what the process does with SIGPIPE.
         is_ip6: whether it belongs to IPv6.
         kind: SOCK_STREAM or SOCK_DGRAM.
         flags: O_NONBLOCK or 0.
@@ -118,10 +119,18 @@ class PosixSocket(AnySocket):
     """
 
     def __init__(
-        self, kernel: Kernel, network: Network, is_ip6: bool, kind: int, flags: int, stream: Stream | None = None
+        self,
+        kernel: Kernel,
+        network: Network,
+        signals: Signals,
+        is_ip6: bool,
+        kind: int,
+        flags: int,
+        stream: Stream | None = None,
     ) -> None:
         super().__init__(flags)
         self._kernel = kernel
+        self._signals = signals
         self._network = network
         self.is_ip6 = is_ip6
         self.kind = kind
@@ -235,7 +244,7 @@ class PosixSocket(AnySocket):
         if not isinstance(server, Listener):
             raise failure(errno.EINVAL)
         self._wait(lambda: server.readable, self.receive_ns)
-        return PosixSocket(self._kernel, self._network, self.is_ip6, self.kind, flags, server.accept())
+        return PosixSocket(self._kernel, self._network, self._signals, self.is_ip6, self.kind, flags, server.accept())
 
     def connect(self, place: Place | None) -> None:
         """Connect a stream, or set the peer of datagrams; None takes the peer away."""
@@ -394,9 +403,8 @@ class PosixSocket(AnySocket):
     def _broken(self, flags: int) -> int:
         if flags & MSG_NOSIGNAL:
             raise failure(errno.EPIPE)
-        fault = CFault("SIGPIPE: the connection of the socket is over; MSG_NOSIGNAL avoids the signal")
-        fault.ends_process = True
-        raise fault
+        why, advice = "the connection of the socket is over", "MSG_NOSIGNAL avoids the signal"
+        raise self._signals.broken_pipe(why, advice)
 
     def _send_datagram(self, end: Mailbox, data: bytes, target: Place) -> int:
         if len(data) > LONGEST_DATAGRAM:

@@ -195,6 +195,6 @@ def test_check_names_only_functions_without_files_of_the_mission(tmp_path: Path)
     compile_c(tmp_path, "TEST", source)
     [text] = [each.text for each in check_mission(write_mission(tmp_path, "TEST"))]
     assert re.sub(r" \(TEST\.c:\d+\)", "", text) == (
-        "TEST needs pipe, tmpfile, but only files and folders of the mission are available;"
+        "TEST needs tmpfile, but only files and folders of the mission are available;"
         " use fopen, open or OS_OpenCreate; calling it is a fault"
     )
