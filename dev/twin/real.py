@@ -107,7 +107,9 @@ class RealCfe:
         shutil.copytree(built / "cf", folder / "cf")
         shutil.copy(built / EXECUTABLE, folder)
         for path, content in files.items():
-            (folder / path.lstrip("/")).write_bytes(content)
+            target = folder / path.lstrip("/")
+            target.parent.mkdir(parents=True, exist_ok=True)
+            target.write_bytes(content)
         self._log = folder / "console.log"
 
     def __enter__(self) -> RealCfe:

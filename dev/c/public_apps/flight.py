@@ -65,7 +65,7 @@ def flown(folder: Path) -> Flown:
     telemetry = PacketWatch(sent.append, lambda msg_id: not msg_id & COMMAND_BIT and msg_id != LONG_EVENT_MSG_MID)
     with Mission(str(folder), console=Console(quiet=True), attachments=[telemetry]) as mission:
         mission.run_for(BOOT_S)
-        wanted = _commands(mission.cfe.sb, entry.name)
+        wanted = [each for each in subscribed_to(mission.cfe.sb, entry.name) if each & COMMAND_BIT]
         lines, packets = len(mission.console.lines), len(sent)
         for msg_id in wanted:
             mission.outside.act(PACKET, bytes(command(msg_id, 0)))
@@ -81,16 +81,12 @@ def flown(folder: Path) -> Flown:
         return Flown(is_there and not mission.record.resets, tuple(dict.fromkeys(answers))[:5], reason)
 
 
-def _commands(bus: Any, app: str) -> list[int]:
-    """Return the MsgIds of commands that an application subscribes to."""
+def subscribed_to(bus: Any, app: str) -> list[int]:
+    """Return the MsgIds that an application subscribes to."""
     ids: list[int] = []
     bus.routing.for_each_route_id(ids.append)
     routes = [bus.routing.route(each) for each in ids]
-    return [
-        each.msg_id
-        for each in routes
-        if each.msg_id & COMMAND_BIT and any(one.pipe.app_name == app for one in each.destinations)
-    ]
+    return [each.msg_id for each in routes if any(one.pipe.app_name == app for one in each.destinations)]
 
 
 def _events(lines: Sequence[str], app: str) -> Iterator[str]:

@@ -18,6 +18,7 @@ NASA_FIFTEEN = frozenset(
 ) | {"to_lab"}
 """NASA's fifteen applications. Copies of them in other missions do not count."""
 _NOTHING: Mapping[str, str] = {}
+_LISTS = ("modules", "options", "apps", "libraries", "devices", "host", "events_only")
 
 
 class Repository(NamedTuple):
@@ -42,6 +43,11 @@ class PublicMission:
         apps: applications to count; all but NASA's fifteen when empty.
         libraries: folders of libraries in the repository that an application needs; built with the same options.
         devices: names of devices that are there in a flight, and send nothing.
+        host: libraries of this computer that applications need on NASA's cFE, such as "socketcan".
+        events_only: applications of which only the events are compared with those on NASA's cFE, because their
+            telemetry counts what they did in real time.
+        blank: a regular expression for times in texts of events, which are not compared.
+        explained: why applications behave differently on NASA's cFE.
     """
 
     name: str
@@ -54,6 +60,10 @@ class PublicMission:
     apps: tuple[str, ...] = ()
     libraries: tuple[str, ...] = ()
     devices: tuple[str, ...] = ()
+    host: tuple[str, ...] = ()
+    events_only: tuple[str, ...] = ()
+    blank: str = ""
+    explained: Mapping[str, str] = field(default_factory=lambda: _NOTHING)
 
     def counts(self, app: str) -> bool:
         """Return whether an application is one of those that are counted."""
@@ -114,7 +124,7 @@ def read_missions(file: Path = FILE) -> PublicMissions:
         PublicMission(
             **{
                 **each,
-                **{key: tuple(each.get(key, ())) for key in ("modules", "options", "apps", "libraries", "devices")},
+                **{key: tuple(each.get(key, ())) for key in _LISTS},
             }
         )
         for each in root["missions"]

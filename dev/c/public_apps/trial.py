@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from cfepy.es import CFE_LIB, StartupEntry, entries
 from cfepy.extra.c.trees import is_tree
@@ -25,6 +27,27 @@ FIRST_PORT = 15000
 _NOT_MODULES = (".c", ".scr", ".yaml", ".tbl", ".py", ".json", ".txt", ".ini")
 
 
+class Trial(NamedTuple):
+    """An application or library of a mission after its build.
+
+    Attributes:
+        mission: its mission.
+        app: its name.
+        built: one of the words for the build.
+        folder: a mission folder in which it is the last application, after the libraries of its mission; None if it
+            cannot fly.
+        flown: `LIBRARY` for a library, which does not fly alone, otherwise `NOT_FLOWN`.
+        reason: why it cannot fly.
+    """
+
+    mission: PublicMission
+    app: str
+    built: str
+    folder: Path | None = None
+    flown: str = NOT_FLOWN
+    reason: str = ""
+
+
 def try_mission(mission: PublicMission, sources: Sources) -> Iterator[Result]:
     """Build a mission and fly its applications.
 
@@ -32,36 +55,73 @@ def try_mission(mission: PublicMission, sources: Sources) -> Iterator[Result]:
         A result for each application and library of it that counts.
     """
     with tempfile.TemporaryDirectory() as folder:
-        scratch = Path(folder)
-        source = mission.lay_out(sources, scratch)
-        options = [*mission.place_options(scratch), *mission.options]
-        if is_tree(source, str(scratch / mission.repo.rpartition("/")[2] / mission.defs) if mission.defs else None):
-            yield from _try_tree(mission, source, options, scratch)
-        else:
-            yield from _try_app(mission, source, options, scratch)
+        for each in build_mission(mission, sources, Path(folder)):
+            yield _flight(each, Path(folder))
 
 
-def _build(source: Path, target: Path, options: list[str]) -> tuple[int, str]:
-    command = [sys.executable, "-m", "cfepy", "build", str(source), "-o", str(target), *options]
-    done = subprocess.run(command, capture_output=True, text=True)
-    return done.returncode, done.stdout + done.stderr
+def build_mission(
+    mission: PublicMission, sources: Sources, scratch: Path, environment: Mapping[str, str] | None = None
+) -> Iterator[Trial]:
+    """Build a mission.
+
+    Args:
+        mission: the mission.
+        sources: the folder with its sources.
+        scratch: an empty folder for sources and results.
+        environment: more variables of `cfepy build`, such as CC.
+
+    Yields:
+        A trial for each application and library of it that counts.
+    """
+    source = mission.lay_out(sources, scratch)
+    build = _Build(environment or {})
+    options = [*mission.place_options(scratch), *mission.options]
+    if is_tree(source, str(scratch / mission.repo.rpartition("/")[2] / mission.defs) if mission.defs else None):
+        yield from _build_tree(build, mission, source, options, scratch)
+    else:
+        yield _build_app(build, mission, source, options, scratch)
 
 
-def _try_app(mission: PublicMission, source: Path, options: list[str], scratch: Path) -> Iterator[Result]:
+class _Build(NamedTuple):
+    """Runs `cfepy build` with more variables in its environment."""
+
+    environment: Mapping[str, str]
+
+    def run(self, source: Path, target: Path, options: list[str]) -> tuple[int, str]:
+        """Build a folder. Returns the exit status and the output."""
+        command = [sys.executable, "-m", "cfepy", "build", str(source), "-o", str(target), *options]
+        done = subprocess.run(command, capture_output=True, text=True, env={**os.environ, **self.environment})
+        return done.returncode, done.stdout + done.stderr
+
+    def tree(self, source: Path, target: Path, options: list[str]) -> dict[str, tuple[str, str]]:
+        """Build a tree. Returns the result and the text of each module."""
+        report = target.with_suffix(".json")
+        _, said = self.run(source, target, [*options, "--json", str(report)])
+        if not report.is_file():
+            print(f"{source.name}: {said.strip()[-300:]}", file=sys.stderr)
+            return {}
+        lines = json.loads(report.read_text(encoding="utf-8"))["entries"]
+        return {
+            each["name"]: (each["result"], each["text"])
+            for each in lines
+            if not each["name"].endswith(_NOT_MODULES) and "file of the tree" not in each["text"]
+        }
+
+
+def _build_app(build: _Build, mission: PublicMission, source: Path, options: list[str], scratch: Path) -> Trial:
     name = source.name if source.name != "fsw" else source.parent.name
     made = scratch / "made"
     built = AT_ONCE
     made.mkdir()
-    status, said = _build(source, made / f"{name}.so", [])
+    status, said = build.run(source, made / f"{name}.so", [])
     if status and options:
         built = WITH_OPTION
-        status, said = _build(source, made / f"{name}.so", options)
+        status, said = build.run(source, made / f"{name}.so", options)
     if status:
-        yield Result(mission.name, name, NOT_BUILT, NOT_FLOWN, _reason(said, scratch))
-        return
+        return Trial(mission, name, NOT_BUILT, reason=_reason(said, scratch))
     others = [scratch / mission.repo.rpartition("/")[2] / each for each in mission.libraries]
     for each in others:
-        _build(each, made / f"{each.name}.so", options)
+        build.run(each, made / f"{each.name}.so", options)
     tables = [f"{each.stem}" for each in made.glob("*.tbl")]
     libraries = [(each.name, functions_of(made / f"{each.name}.so"), list[str]()) for each in others]
     script = made_startup([*libraries, (name, functions_of(made / f"{name}.so"), _owners(made, tables))])
@@ -69,7 +129,7 @@ def _try_app(mission: PublicMission, source: Path, options: list[str], scratch: 
     (made / "apps").mkdir()
     for table in made.glob("*.tbl"):  # applications of cFS 6 open them in /cf/apps
         shutil.copy(table, made / "apps")
-    yield _flight(mission, name, built, made, entries(script.text), scratch)
+    return _alone(mission, name, built, made, entries(script.text), scratch)
 
 
 def _owners(made: Path, tables: list[str]) -> list[str]:
@@ -79,11 +139,13 @@ def _owners(made: Path, tables: list[str]) -> list[str]:
     return [read((made / f"{each}.tbl").read_bytes()).name for each in tables]
 
 
-def _try_tree(mission: PublicMission, source: Path, options: list[str], scratch: Path) -> Iterator[Result]:
+def _build_tree(
+    build: _Build, mission: PublicMission, source: Path, options: list[str], scratch: Path
+) -> Iterator[Trial]:
     places = mission.place_options(scratch)
     first, last = scratch / "first", scratch / "last"
-    at_once = _tree_entries(source, first, places)
-    found = _tree_entries(source, last, options) if mission.options else at_once
+    at_once = build.tree(source, first, places)
+    found = build.tree(source, last, options) if mission.options else at_once
     folder = last if mission.options else first
     script = entries((folder / SCRIPT).read_bytes()) if (folder / SCRIPT).is_file() else []
     libraries = _libraries(script, folder)
@@ -92,7 +154,7 @@ def _try_tree(mission: PublicMission, source: Path, options: list[str], scratch:
             continue
         if result != BUILT:
             reason = "not in the tree" if result == STANDS_IN else _reason(text, scratch)
-            yield Result(mission.name, name, NOT_BUILT, NOT_FLOWN, reason)
+            yield Trial(mission, name, NOT_BUILT, reason=reason)
             continue
         is_first = at_once.get(name, ("", ""))[0] == BUILT and not places
         built = AT_ONCE if is_first else WITH_OPTION
@@ -103,7 +165,7 @@ def _try_tree(mission: PublicMission, source: Path, options: list[str], scratch:
         if not own:
             own = entries(made_startup([(name, functions_of(library), [])]).text)
         used = [each for each in libraries if Path(_file(each)).stem != name]
-        yield _flight(mission, name, built, folder, [*used, *own[:1]], scratch)
+        yield _alone(mission, name, built, folder, [*used, *own[:1]], scratch)
 
 
 def in_definitions(folder: Path, name: str) -> list[StartupEntry]:
@@ -129,41 +191,34 @@ def _libraries(script: list[StartupEntry], folder: Path) -> list[StartupEntry]:
     return [*named, *(each for each in made if each.kind == CFE_LIB and Path(_file(each)).stem not in known)]
 
 
-def _tree_entries(source: Path, target: Path, options: list[str]) -> dict[str, tuple[str, str]]:
-    report = target.with_suffix(".json")
-    _, said = _build(source, target, [*options, "--json", str(report)])
-    if not report.is_file():
-        print(f"{source.name}: {said.strip()[-300:]}", file=sys.stderr)
-        return {}
-    lines = json.loads(report.read_text(encoding="utf-8"))["entries"]
-    return {
-        each["name"]: (each["result"], each["text"])
-        for each in lines
-        if not each["name"].endswith(_NOT_MODULES) and "file of the tree" not in each["text"]
-    }
-
-
-def _flight(
+def _alone(
     mission: PublicMission, name: str, built: str, folder: Path, script: list[StartupEntry], scratch: Path
-) -> Result:
+) -> Trial:
+    """Return an application in a copy of a mission folder with this startup script."""
     if not script:
-        return Result(mission.name, name, built, NOT_FLOWN, "no entry point was found")
+        return Trial(mission, name, built, reason="no entry point was found")
     if script[-1].kind == CFE_LIB:
-        return Result(mission.name, name, built, LIBRARY, "")
-    alone = scratch / "alone"
-    shutil.rmtree(alone, ignore_errors=True)
+        return Trial(mission, name, built, flown=LIBRARY)
+    alone = scratch / "alone" / name
     shutil.copytree(folder, alone)
     lines = [
         f"{each.kind}, {each.file}, {each.symbol}, {each.name}, {each.priority}, {each.stack_size}, 0x0, 0;"
         for each in script
     ]
     (alone / SCRIPT).write_text("\n".join((*lines, "!", "")), encoding="utf-8")
+    return Trial(mission, name, built, alone)
+
+
+def _flight(trial: Trial, scratch: Path) -> Result:
+    mission, name, built = trial.mission, trial.app, trial.built
+    if trial.folder is None:
+        return Result(mission.name, name, built, trial.flown, trial.reason)
     if mission.devices:
-        with (alone / "mission.yaml").open("a", encoding="utf-8") as text:
+        with (trial.folder / "mission.yaml").open("a", encoding="utf-8") as text:
             text.write("devices:\n")
             for port, each in enumerate(mission.devices, FIRST_PORT):
                 text.write(f"  {each}: {{udp: {port}, to: 127.0.0.1:{port + len(mission.devices)}}}\n")
-    flown = fly(alone)
+    flown = fly(trial.folder)
     if not flown.runs:
         return Result(mission.name, name, built, NOT_FLOWN, _plain(flown.reason, scratch) or "it ended")
     if flown.answers:

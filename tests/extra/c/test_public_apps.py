@@ -19,6 +19,7 @@ from dev.c.public_apps.results import (
     WITH_OPTION,
     Result,
     page,
+    read_beside,
     read_results,
     write_results,
 )
@@ -70,7 +71,7 @@ def test_results_have_known_words_and_reasons() -> None:
 
 
 def test_page_has_the_results() -> None:
-    text = page(read_missions(), read_results())
+    text = page(read_missions(), read_results(), read_beside())
     assert PAGE.read_text(encoding="utf-8") == text, "run python -m dev.c.public_apps report"
 
 
