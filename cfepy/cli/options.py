@@ -76,8 +76,8 @@ def _add_schedule(parser: Options) -> None:
     parser.add_argument(
         "--points",
         metavar="KIND",
-        help="let this schedule preempt Python code at lines, attributes or calls[:MODULE,...], not only at its calls "
-        "of cFE and ROS",
+        help="let this schedule preempt Python code at lines, attributes or calls[:MODULE,...], or shared:NAME,..., "
+        "not only at its calls of cFE and ROS",
     )
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from cfepy.monitors.observed_messages import Heard, MessageWatch, unknown_packets
     from cfepy.monitors.observer import Observer, Sent, app_of
     from cfepy.monitors.predicate import Predicate, short, shortened
-    from cfepy.monitors.race_watch import RaceWatch
+    from cfepy.monitors.race_watch import LOCKS_GIVEN, LOCKS_TAKEN, RaceWatch
     from cfepy.monitors.record import DeadlineRecord, InvariantRecords
     from cfepy.monitors.run_rules import Demands, demands_of, judges_of, read_demands
     from cfepy.monitors.selected_results import FILE, OUTPUT, SelectedResult
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FILE",
+    "LOCKS_GIVEN",
+    "LOCKS_TAKEN",
     "OUTPUT",
     "RESPONSE",
     "WAIT",
@@ -87,7 +89,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ),
             ".record": ("DeadlineRecord", "InvariantRecords"),
             ".selected_results": ("FILE", "OUTPUT", "SelectedResult"),
-            ".race_watch": ("RaceWatch",),
+            ".race_watch": ("LOCKS_GIVEN", "LOCKS_TAKEN", "RaceWatch"),
             ".observed_messages": (
                 "Heard",
                 "MessageWatch",

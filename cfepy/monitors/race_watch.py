@@ -37,8 +37,8 @@ def _always(what: str) -> Key:
 
 
 _TABLES = ("get_address", "get_addresses", "release_address", "release_addresses", "load", "update", "manage")
-_LOCKS_GIVEN = ("release", "release_lock", "__exit__", "_release_save")
-_LOCKS_TAKEN = ("acquire", "acquire_lock", "__enter__", "_acquire_restore", "is_set")
+LOCKS_GIVEN = ("release", "release_lock", "__exit__", "_release_save")
+LOCKS_TAKEN = ("acquire", "acquire_lock", "__enter__", "_acquire_restore", "is_set")
 _LETS_GO: dict[str, Key] = {
     **dict.fromkeys(
         (
@@ -71,12 +71,13 @@ _TAKES: dict[str, Key] = {
 
 
 class _Seen(NamedTuple):
-    """Last access of a task: its clock, the access, and the place."""
+    """Last access of a task: its clock, the access, the place, and the locks that make it exclude others."""
 
     clock: int
     touch: Touch
     frames: Frames
     at_ns: int
+    locks: frozenset[int] = frozenset()
 
 
 class _Place:
@@ -137,7 +138,7 @@ class RaceWatch(Attachment):
     def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
         if call == "__init__":
             self._made(subject)
-        elif call in _LOCKS_GIVEN:
+        elif call in LOCKS_GIVEN:
             self._clocks.let_go(self._task, self._lock(subject))
         elif call == "is_done":
             self._clocks.take(self._task, self._lock(subject))
@@ -149,7 +150,7 @@ class RaceWatch(Attachment):
             self._clocks.let_go(self._task, _LETS_GO[call](args))
 
     def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
-        if call in _LOCKS_TAKEN:
+        if call in LOCKS_TAKEN:
             if result is not False:
                 self._clocks.take(self._task, self._lock(subject))
         elif call in _ENDING:
@@ -240,7 +241,7 @@ class RaceWatch(Attachment):
         mine = (place.writes if touch.is_write else place.reads).get(task)
         if mine is not None and mine.clock == known[task]:
             return  # later accesses of others were not missed: they were compared with this one
-        seen = _Seen(known[task], touch, self._frames(), kernel.now)
+        seen = _Seen(known[task], touch, self._frames(), kernel.now, self._locks_of(task))
         self._compare(place, known, seen)
         key = touch.key
         other = places.get(_ANY_ITEM if key == WHOLE else WHOLE) if key[0] in "*[" else None
@@ -259,9 +260,14 @@ class RaceWatch(Attachment):
         mine = now.touch.task
         for seen in (place.writes, place.reads) if now.touch.is_write else (place.writes,):
             for task, before in seen.items():
-                if task is not mine and known.get(task, 0) < before.clock:
+                is_unordered = task is not mine and known.get(task, 0) < before.clock
+                if is_unordered and before.locks.isdisjoint(now.locks):
                     self._found(before, now)
                     return
+
+    def _locks_of(self, task: Task) -> frozenset[int]:
+        """Return the locks that a task holds, if they exclude other tasks without ordering them."""
+        return frozenset()
 
     def _frames(self) -> Frames:
         """Return the lines of mission code of the running task, from the innermost one up to its caller outside."""

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 from weakref import ref
 
 from cfepy.rtos import Task
-from cfepy.schedules import ATTRIBUTES, CALLS, LINES, Points
+from cfepy.schedules import CALLS, LINES, Points, name_of
 
 if TYPE_CHECKING:
     from cfepy.nodes.instrument import Kinds
@@ -126,7 +126,9 @@ class Accesses:
         self._kernel = kernel
         self._points = Points.parse("" if kernel.policy is None else kernel.policy.points)
         self._point = None if kernel.policy is None else _point_of(kernel)
-        self._has_points = self._points.kind == ATTRIBUTES
+        self._has_points = self._points.are_at_accesses
+        self._names = frozenset(self._points.names)
+        self._named: dict[str, bool] = {}
         self._loading: dict[Task, int] = {}  # tasks that are executing the body of a module
         self._covered: dict[str, bool] = {}
         self._local: dict[type, bool] = {}
@@ -153,7 +155,9 @@ class Accesses:
         from cfepy.nodes.instrument import Kinds
 
         self.files.add(file)
-        return Kinds(bool(self.observers) or kind == ATTRIBUTES, kind == LINES, kind == CALLS, is_main)
+        has_points = bool(kind) and self._points.are_at_accesses
+        names = frozenset() if self.observers else self._names
+        return Kinds(bool(self.observers) or has_points, kind == LINES, kind == CALLS, is_main, names)
 
     def number(self, thing: object) -> int:
         """Return the number of an object, from 1."""
@@ -190,15 +194,23 @@ class Accesses:
 
     # -- telling -------------------------------------------------------------------------------------------------------
 
-    def _let_in(self, frame: FrameType) -> None:
+    def _let_in(self, frame: FrameType, name: str) -> None:
         """Let other tasks run before an access."""
         if (
             self._has_points
             and self._point is not None
+            and (not self._names or self._is_named(name))
             and self._covers(frame.f_code.co_filename)
             and self._kernel.current not in self._loading
         ):
             self._point()
+
+    def _is_named(self, name: str) -> bool:
+        """Return whether the points name the object of an access."""
+        found = self._named.get(name)
+        if found is None:
+            found = self._named[name] = name_of(name) in self._names
+        return found
 
     def _covers(self, file: str) -> bool:
         found = self._covered.get(file)
@@ -209,7 +221,7 @@ class Accesses:
     def _tell(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
         """Let other tasks run, then report an access."""
         if self._has_points:
-            self._let_in(frame)
+            self._let_in(frame, name)
         self._tell_now(frame, thing, key, is_write, name)
 
     def _tell_now(self, frame: FrameType, thing: int, key: str, is_write: bool, name: str) -> None:
@@ -379,7 +391,7 @@ class Accesses:
 
     def _tell_written(self, frame: FrameType, thing: Any, key: Any, text: str) -> None:
         """Report a write to an item: a new key of a dictionary changes the whole dictionary."""
-        self._let_in(frame)
+        self._let_in(frame, text)
         try:
             item = WHOLE if issubclass(type(thing), dict) and key not in thing else self._item(thing, key)
         except TypeError:  # not a valid key; the program is about to get the error itself

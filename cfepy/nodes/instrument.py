@@ -15,6 +15,7 @@ from collections.abc import Iterable, Sequence
 from typing import NamedTuple, TypeVar
 
 from cfepy.interpreter.syntax_trees import FUNCTION, MODULE, NameScopes
+from cfepy.schedules import name_of
 
 READING_METHODS = frozenset(
     {
@@ -66,12 +67,14 @@ class Kinds(NamedTuple):
         lines: at the start of each statement.
         calls: at the end of each call.
         is_main: the module's own statements get hooks too.
+        names: the only names at which `accesses` applies (`cfepy.schedules.name_of`); empty for all.
     """
 
     accesses: bool = False
     lines: bool = False
     calls: bool = False
     is_main: bool = False
+    names: frozenset[str] = frozenset()
 
 
 def with_hooks(tree: ast.Module, kinds: Kinds) -> ast.Module:
@@ -93,6 +96,13 @@ class _Hooking(ast.NodeTransformer):
         self._is_on = kinds.is_main
         self._classes: list[str] = []
         self._site = 0
+
+    def _watches(self, *texts: str) -> bool:
+        """Return whether accesses to an object get hooks: one that has one of these texts in the source."""
+        if not (self._is_on and self._kinds.accesses):
+            return False
+        names = self._kinds.names
+        return not names or any(name_of(text) in names for text in texts)
 
     # -- making calls of hooks -----------------------------------------------------------------------------------------
 
@@ -263,12 +273,12 @@ class _Hooking(ast.NodeTransformer):
     def visit_AugAssign(self, node: ast.AugAssign) -> ast.AST:
         target = node.target
         node.value = self.visit(node.value)
-        if not (self._is_on and self._kinds.accesses):
-            node.target = self.visit(target)
-        elif isinstance(target, ast.Name):
+        if isinstance(target, ast.Name):
             if self._is_shared(target.id):
                 cell = self._cell(target.id, node.value)
                 node.value = self._call("__writes_variable__", node.value, node.value, target.id, *cell)
+        elif not self._watches(self._text_of_changed(target)):
+            node.target = self.visit(target)
         else:
             site = self._next_site()
             if isinstance(target, ast.Attribute):
@@ -280,7 +290,7 @@ class _Hooking(ast.NodeTransformer):
 
     def visit_For(self, node: ast.For) -> ast.AST:
         site = self._next_site()
-        is_watched = self._is_on and self._kinds.accesses and isinstance(node.iter, _CONTAINERS)
+        is_watched = isinstance(node.iter, _CONTAINERS) and self._watches(_text(node.iter))
         node.iter = self._iterated(node.iter, site)
         told = self._told("__wrote_variable__", [node.target], node)
         node.target = self.visit(node.target)
@@ -321,7 +331,7 @@ class _Hooking(ast.NodeTransformer):
     # -- variables -----------------------------------------------------------------------------------------------------
 
     def _is_shared(self, name: str) -> bool:
-        if not (self._is_on and self._kinds.accesses and self._scope.is_shared(name)):
+        if not (self._watches(name) and self._scope.is_shared(name)):
             return False
         return self._scope.function.kind in (FUNCTION, MODULE)
 
@@ -359,11 +369,15 @@ class _Hooking(ast.NodeTransformer):
         node.value = self.visit(base)
         name = node.attr
         is_special = name.startswith("__") and name.endswith("__")
-        if not (self._is_on and self._kinds.accesses) or is_special or _is_super(base):
+        if is_special or not self._watches(self._mangled(name)) or _is_super(base):
             return node
         more = [] if site is None else [site]
         node.value = self._call(hook, base, node.value, self._mangled(name), *more)
         return node
+
+    def _text_of_changed(self, target: ast.Attribute | ast.Subscript) -> str:
+        """Return the text of the object that an augmented assignment changes: the attribute, or the container."""
+        return self._mangled(target.attr) if isinstance(target, ast.Attribute) else _text(target.value)
 
     def _mangled(self, name: str) -> str:
         """Return a private name as mangled by its class."""
@@ -385,7 +399,7 @@ class _Hooking(ast.NodeTransformer):
         text = _text(container)
         node.value = self.visit(container)
         node.slice = self._visit_key(key)
-        if not (self._is_on and self._kinds.accesses):
+        if not self._watches(text):
             return node
         site = site or self._next_site()
         if _has_slice(key) or how == "change":
@@ -418,7 +432,7 @@ class _Hooking(ast.NodeTransformer):
         """Return an expression with a report that its value is read, if it may be a shared container."""
         text = _text(node)
         visited: ast.expr = self.visit(node)
-        if not (self._is_on and self._kinds.accesses and isinstance(node, _CONTAINERS)):
+        if not (isinstance(node, _CONTAINERS) and self._watches(text)):
             return visited
         more = [] if site is None else [site]
         return self._call("__looks_into__", node, visited, text, *more)
@@ -482,7 +496,7 @@ class _Hooking(ast.NodeTransformer):
         reads = name in _READERS and isinstance(function, ast.Name)
         node.args = [self._looked_into(each) if reads else self.visit(each) for each in node.args]
         node.keywords = [self.visit(each) for each in node.keywords]
-        if text:
+        if text and self._watches(text):
             node.args[0] = self._call("__changes__", node.args[0], node.args[0], text)
 
     def _hook_method(self, node: ast.Call, function: ast.Attribute) -> None:
@@ -492,7 +506,7 @@ class _Hooking(ast.NodeTransformer):
         function.value = self.visit(receiver)
         node.args = [self.visit(each) for each in node.args]
         node.keywords = [self.visit(each) for each in node.keywords]
-        if _is_super(receiver):
+        if _is_super(receiver) or not self._watches(text, function.attr):
             return
         last = node.keywords[-1] if node.keywords else node.args[-1] if node.args else None
         if last is None or isinstance(last, ast.Starred) or all(map(_is_plain, node.args)):

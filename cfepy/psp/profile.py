@@ -40,6 +40,7 @@ PORT_FIELDS = ("name", "address", "size")
 SIZES = ("program_flash", "data_flash")
 NUMBERS = (
     "cpu_hz",
+    "cores",
     "watchdog_max_ms",
     "tick_ns",
     *SIZES,
@@ -89,6 +90,7 @@ class BoardProfile:
         name: the board's name.
         description: a line about it.
         cpu_hz: processor clock in Hz; 0 means that computing costs no virtual time.
+        cores: number of cores that run the mission's tasks; 0 if it is not known.
         tick_ns: the kernel's clock tick, to which delays are rounded up, in ns; 0 for none.
         program_flash, data_flash: size in bytes; 0 for no limit.
         sram: regions of RAM; empty for no limit.
@@ -122,6 +124,7 @@ class BoardProfile:
     node_call_ns: int = DEFAULT_NODE_CALL_NS
     limits: dict[str, Limit] = field(default_factory=dict)
     memory_costs: MemoryCosts = MemoryCosts()
+    cores: int = 0
 
     @property
     def sram_size(self) -> int:

@@ -13,6 +13,7 @@ from cfepy.rtos.policy import AskingPolicy, Decision, Policy, Question, missed_n
 from cfepy.rtos.task import Task
 from cfepy.rtos.task_starters import StartersFirst
 
+LATE_ODDS = 4  # the same for a task that was made ready, which happens less often
 HOLD_ODDS = 16  # take one in this many chances to hold a task up; otherwise time would pass faster than the work
 STAY_ODDS = (0.0, 0.5, 0.7)  # probabilities that the running task continues, with preemption points between calls
 STARTERS_ODDS = 3 / 4  # share of the schedules in which a task that starts others continues before them
@@ -29,9 +30,15 @@ class SeededRandom(Policy):
     """
 
     def __init__(
-        self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = ""
+        self,
+        seed: int,
+        any_priority: bool = False,
+        hold_ns: int = 0,
+        connect_ns: int = 0,
+        points: str = "",
+        late_ns: int = 0,
     ) -> None:
-        super().__init__(any_priority, hold_ns, connect_ns, points)
+        super().__init__(any_priority, hold_ns, connect_ns, points, late_ns)
         random = Random(seed)
         self._random = random.random
         self._seldom = Seldom(self._random)
@@ -42,7 +49,7 @@ class SeededRandom(Policy):
         if decision.question is not None and decision.question.is_rare:
             return self._seldom.choose(decision.question)
         width = decision.width - decision.hold
-        if decision.hold and self._random() * HOLD_ODDS < 1:
+        if decision.hold and self._random() * (HOLD_ODDS if decision.running else LATE_ODDS) < 1:
             return width
         if self._stay and decision.question is None:
             return self._going_on(decision)
@@ -104,6 +111,7 @@ class PCT(Policy):
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
         points: see `Policy`.
+        late_ns: see `Policy`.
     """
 
     def __init__(
@@ -115,8 +123,9 @@ class PCT(Policy):
         hold_ns: int = 0,
         connect_ns: int = 0,
         points: str = "",
+        late_ns: int = 0,
     ) -> None:
-        super().__init__(any_priority, hold_ns, connect_ns, points)
+        super().__init__(any_priority, hold_ns, connect_ns, points, late_ns)
         self._random = random = Random(seed)
         self._changes = frozenset(random.sample(range(steps), min(depth - 1, steps)))
         self._ranks: dict[Task, float] = {}
@@ -161,6 +170,7 @@ class Deviations(Policy):
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
         points: see `Policy`.
+        late_ns: see `Policy`.
     """
 
     def __init__(
@@ -170,8 +180,9 @@ class Deviations(Policy):
         hold_ns: int = 0,
         connect_ns: int = 0,
         points: str = "",
+        late_ns: int = 0,
     ) -> None:
-        super().__init__(any_priority, hold_ns, connect_ns, points)
+        super().__init__(any_priority, hold_ns, connect_ns, points, late_ns)
         self._count = len(choices)
         self._left = dict(choices)
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from cfepy.rtos.task import Task
 
-Settings = tuple[bool, int, int, str]
+Settings = tuple[bool, int, int, str, int]
 """The settings of a policy that the kernel reads; see the arguments of `Policy`."""
 HOLD = "hold"  # in place of a task's name: no task runs until the next timer
 
@@ -46,8 +46,8 @@ class Decision:
         now: virtual time in ns.
         tasks: the candidates; fifo's choice comes first. Empty for a question.
         running: whether `tasks[0]` is the running task and could continue; any answer but 0 then preempts it.
-        hold: whether there is one more answer, `len(tasks)`, which holds up the running task until the next timer is
-            due.
+        hold: whether there is one more answer, `len(tasks)`, which holds up `tasks[0]` until the next timer is due: the
+            running task, or one that was made ready and begins late.
         left: the task that just gave up its turn, by yielding or by using a whole time slice, or None.
         question: the question to answer; None if the decision is about the next task.
     """
@@ -99,18 +99,28 @@ class Policy:
         connect_ns: longest delay of a connection between two nodes in ns; 0 keeps the mission's value.
         points: places besides calls where mission code can be preempted (`cfepy.schedules.preemption_points`); empty
             for none.
+        late_ns: a task that was made ready may begin late, after the next timer, if that is within this time in ns; 0
+            for never.
     """
 
-    def __init__(self, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = "") -> None:
+    def __init__(
+        self,
+        any_priority: bool = False,
+        hold_ns: int = 0,
+        connect_ns: int = 0,
+        points: str = "",
+        late_ns: int = 0,
+    ) -> None:
         self.any_priority = any_priority
         self.hold_ns = hold_ns
         self.connect_ns = connect_ns
         self.points = points
+        self.late_ns = late_ns
 
     @property
     def settings(self) -> Settings:
         """The arguments of this class, for a policy that wraps this one."""
-        return self.any_priority, self.hold_ns, self.connect_ns, self.points
+        return self.any_priority, self.hold_ns, self.connect_ns, self.points, self.late_ns
 
     def choose(self, decision: Decision) -> int:
         """Return the answer, from 0 to below `decision.width`."""

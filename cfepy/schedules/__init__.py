@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from cfepy.schedules.exploring import CallObserver, CallPointKernel, ExploringKernel
     from cfepy.schedules.kernels import make_kernel
     from cfepy.schedules.moves import Move, MoveNumbers, MovePolicy, MovesToMake, place_at, plain_name
-    from cfepy.schedules.preemption_points import ATTRIBUTES, CALLS, LINES, Points, source_names
+    from cfepy.schedules.preemption_points import ATTRIBUTES, CALLS, LINES, SHARED, Points, name_of, source_names
     from cfepy.schedules.schedule import DEPTH, ORDER, STEPS, Schedule
     from cfepy.schedules.side_by_side import Abreast
     from cfepy.schedules.vector_clocks import Race, RaceSide, VectorClocks
@@ -25,6 +25,7 @@ __all__ = [
     "DEPTH",
     "LINES",
     "ORDER",
+    "SHARED",
     "STEPS",
     "Abreast",
     "CallObserver",
@@ -40,6 +41,7 @@ __all__ = [
     "Schedule",
     "VectorClocks",
     "make_kernel",
+    "name_of",
     "place_at",
     "plain_name",
     "source_names",
@@ -53,7 +55,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".exploring": ("CallObserver", "CallPointKernel", "ExploringKernel"),
             ".kernels": ("make_kernel",),
             ".moves": ("Move", "MoveNumbers", "MovePolicy", "MovesToMake", "place_at", "plain_name"),
-            ".preemption_points": ("ATTRIBUTES", "CALLS", "LINES", "Points", "source_names"),
+            ".preemption_points": ("ATTRIBUTES", "CALLS", "LINES", "SHARED", "Points", "name_of", "source_names"),
             ".vector_clocks": ("Race", "RaceSide", "VectorClocks"),
             ".schedule": ("DEPTH", "ORDER", "STEPS", "Schedule"),
         },

@@ -87,6 +87,7 @@ class ExploringKernel(Kernel):
         self.frames_wanted = True
         self._any = policy.any_priority
         self._hold_ns = policy.hold_ns
+        self._late_ns = policy.late_ns
         self._decisions = 0
         self._going_on: Task | None = None  # the task that was just put in front: it could continue
         self._left: Task | None = None  # the task that just gave up its turn, or should have
@@ -245,7 +246,7 @@ class ExploringKernel(Kernel):
         ready = self.ready
         return (
             bool(ready and (self._any or ready[0][0] <= task.priority))
-            or bool(self._hold_ns and self._next_timer() is not None)
+            or bool(self._hold_ns and self._next_timer(self._hold_ns) is not None)
             or bool(self._early and self._starters(task))
         )
 
@@ -309,7 +310,8 @@ class ExploringKernel(Kernel):
             if first is self.host:
                 return heappop(ready)[2]
             width = 1 if len(ready) == 1 else self._width()
-            timer = self._next_timer() if self._hold_ns and first is self._going_on else None
+            longest = self._hold_ns if first is self._going_on else self._late_ns
+            timer = self._next_timer(longest) if longest else None
             starters = self._starters(first) if self._early else []
             choice = 0 if width == 1 and timer is None and not starters else self._ask(width, starters, timer)
             if choice < width + len(starters):
@@ -348,12 +350,12 @@ class ExploringKernel(Kernel):
         running = tasks[0] is self._going_on
         return self.policy.choose(Decision(number, self.now, tasks, running, timer is not None, self._left))
 
-    def _next_timer(self) -> int | None:
-        """Return the time of the next timer, if a task may be held up until then."""
+    def _next_timer(self, longest: int) -> int | None:
+        """Return the time of the next timer, if a task may be held up until then: for `longest` ns."""
         timers = self.timers
         while timers and timers[0][2].timer != timers[0][1]:
             heappop(timers)
-        return timers[0][0] if timers and timers[0][0] - self.now <= self._hold_ns else None
+        return timers[0][0] if timers and timers[0][0] - self.now <= longest else None
 
 
 class CallPointKernel(ExploringKernel):

@@ -12,7 +12,8 @@
 
 Every kind but fifo takes options at its end: `any` (tasks of less urgent priority may run before more urgent ones),
 `fair=50` (a task that could run is passed over in at most 50 decisions), `hold=500us` (the running task may be held up
-until the next timer is due, if that is within 500 us), `connect=50ms` (a connection between two ROS nodes may take up
+until the next timer is due, if that is within 500 us), `late=500us` (the same for a task that a message, a timer or a
+give has made ready, before it runs), `connect=50ms` (a connection between two ROS nodes may take up
 to 50 ms), `points=attributes` or `points=lines,arm` (tasks may be interrupted between the calls of their code as well:
 `cfepy.schedules.preemption_points`), and `from=600ms` (fifo up to 600 ms after the start of the run; what comes before
 still counts as decisions).
@@ -46,7 +47,9 @@ _KINDS = {
     "moves": "moves:TASK@MS/FUNCTION.CALL=TASK,...",
     "at": "at:DECISION=CHOICE,...",
 }
-_OPTIONS = ", then options such as :any, :fair=50, :hold=500us, :connect=50ms, :points=attributes or :from=600ms"
+_OPTIONS = (
+    ", then options such as :any, :fair=50, :hold=500us, :late=500us, :connect=50ms, :points=attributes or :from=600ms"
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +71,7 @@ class Schedule:
         points: see `Policy`.
         from_ns: virtual ns until which it is fifo.
         fair: number of decisions in which a task may be passed over (`Fair`); 0 for no limit.
+        late_ns: see `Policy`.
     """
 
     kind: str = "fifo"
@@ -83,6 +87,7 @@ class Schedule:
     from_ns: int = 0
     moves: tuple[Move, ...] = ()
     fair: int = 0
+    late_ns: int = 0
 
     @classmethod
     def parse(cls, text: str, seed: int = 0) -> Schedule:
@@ -129,6 +134,7 @@ class Schedule:
         words += ["any"] if self.any_priority else []
         words += [f"fair={self.fair}"] if self.fair else []
         words += [f"hold={time_word(self.hold_ns)}"] if self.hold_ns else []
+        words += [f"late={time_word(self.late_ns)}"] if self.late_ns else []
         words += [f"connect={time_word(self.connect_ns)}"] if self.connect_ns else []
         words += [f"points={self.points}"] if self.points else []
         words += [f"from={time_word(self.from_ns)}"] if self.from_ns else []
@@ -174,7 +180,7 @@ class Schedule:
     @property
     def settings(self) -> Settings:
         """The settings of its policy."""
-        return self.any_priority, self.hold_ns, self.connect_ns, self.points
+        return self.any_priority, self.hold_ns, self.connect_ns, self.points, self.late_ns
 
     def at(self, deviations: Mapping[int, int]) -> Schedule:
         """Return a schedule that deviates from fifo in some decisions, with this one's options.
@@ -224,7 +230,7 @@ def _option(field: str) -> dict[str, Any] | None:
         from cfepy.schedules.preemption_points import Points  # only schedules with such points load it
 
         return {"points": Points.parse(time, "--schedule").text()}
-    if name not in ("hold", "connect", "from"):
+    if name not in ("hold", "late", "connect", "from"):
         return None
     match = _TIME.fullmatch(time)
     if match is None or not int(match[1]):

@@ -37,12 +37,19 @@ class Abreast(Policy):
         hold_ns: see `Policy`.
         connect_ns: see `Policy`.
         points: see `Policy`.
+        late_ns: see `Policy`.
     """
 
     def __init__(
-        self, seed: int, any_priority: bool = False, hold_ns: int = 0, connect_ns: int = 0, points: str = ""
+        self,
+        seed: int,
+        any_priority: bool = False,
+        hold_ns: int = 0,
+        connect_ns: int = 0,
+        points: str = "",
+        late_ns: int = 0,
     ) -> None:
-        super().__init__(any_priority, hold_ns, connect_ns, points)
+        super().__init__(any_priority, hold_ns, connect_ns, points, late_ns)
         self._random = random = Random(seed)
         self._seldom = Seldom(random.random)
         self._starters_first = random.random() < STARTERS_ODDS

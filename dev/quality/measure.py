@@ -11,6 +11,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from cfepy.extra.exploration.campaign import Search
+from cfepy.extra.exploration.kinds import NOTHING_FOUND
+from cfepy.extra.exploration.missing_points import openings_of
 from cfepy.extra.exploration.search import make_search
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Findings, Verdict
@@ -102,8 +104,9 @@ def hunts(trial: Trial, policy: str, count: int) -> list[Hunt]:
     name, depth, hold_ns = POLICIES[policy]
     options = replace(trial.plan.schedule, kind="at", hold_ns=hold_ns)
     steps = trial.run(options).decisions
+    openings = openings_of(trial, options) if name == "all" and not options.points else NOTHING_FOUND
     return [
-        Hunt(trial, make_search(name, depth, steps, options, first_seed))
+        Hunt(trial, make_search(name, depth, steps, options, first_seed, openings=openings))
         for first_seed in range(0, count * LONGEST, LONGEST)
     ]
 

@@ -16,6 +16,8 @@ from pathlib import Path
 
 from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.fork_server import ForkingJudge
+from cfepy.extra.exploration.kinds import NOTHING_FOUND
+from cfepy.extra.exploration.missing_points import openings_of
 from cfepy.extra.exploration.search import make_search
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Verdict
@@ -27,7 +29,7 @@ from dev.quality.programs import PROGRAMS, Program, program_trial
 MEASURED = Path(__file__).parent / "measured_mended.json"
 MOST = 20_000
 FROM = ":from=545ms"  # applications of the startup script begin at 550 ms
-PIECE = 600  # schedules; a multiple of the number of schedule kinds that take turns
+PIECE = 720  # schedules; a multiple of the number of schedule kinds that take turns
 
 Measured = dict[str, dict[str, list[str] | int]]
 """By mission: `flown`, how many schedules, and `failed`, those that did, with what failed."""
@@ -109,7 +111,8 @@ def verdicts(mission: Bug, folder: Path, count: int, first_seed: int = 0) -> Ite
     try:
         reference = judge.judge(options)
         assert not reference.trouble, reference.trouble
-        search = make_search("all", None, reference.decisions, options, first_seed)
+        openings = NOTHING_FOUND if options.points else openings_of(replace(trial, waits=None), options)
+        search = make_search("all", None, reference.decisions, options, first_seed, openings=openings)
         for number in range(count):
             schedule = search.next()
             assert schedule is not None

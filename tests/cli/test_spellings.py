@@ -49,7 +49,7 @@ MEANINGS: dict[str, tuple[str | None, str]] = {
     "--perfetto": ("FILE", "write a trace in the Trace Event Format"),
     "--play": ("BAG", "play the topics of a bag or an MCAP file into the mission"),
     "--play-options": ("TEXT", "options and remappings of rosbag play"),
-    "--points": ("KIND", "lines, attributes or calls[:MODULE,...]"),
+    "--points": ("KIND", "lines, attributes or calls[:MODULE,...], or shared:NAME,..."),
     "--port": ("PORT=HERE", "open the mission's port PORT"),
     "--profile": ("FILE", "where wall time goes"),
     "--quiet": (None, "(print only the|show no progress)"),

@@ -63,7 +63,7 @@ def test_short_forms_of_a_schedule_are_parsed(text: str, schedule: Schedule) -> 
         ("fifo:1", "invalid schedule 'fifo:1'; expected fifo alone"),
         (
             "random:1:points=all",
-            "invalid kind of points 'all'; did you mean calls? (expected lines, attributes or calls)",
+            "invalid kind of points 'all'; did you mean calls? (expected lines, attributes, calls or shared)",
         ),
         ("random:1:points=lines,", "invalid module ''; write for instance lines:arm,util"),
         ("random:1:2", "invalid schedule 'random:1:2'; expected random[:SEED], then options such as :any"),

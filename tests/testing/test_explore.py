@@ -255,7 +255,7 @@ def test_default_policy_equals_the_default_of_the_command() -> None:
         "random:1",
         "pct:2:2:60",
         "abreast:3",
-        "random:4:hold=1ms",
+        "random:4:hold=1ms:late=1ms",
         "pct:5:3:60",
         "pct:6:1:60",
         "random:7",

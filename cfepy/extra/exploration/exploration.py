@@ -20,8 +20,9 @@ from cfepy.extra.exploration.campaign import Campaign, Crew, Search, Tally
 from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.extent import Breadth, PointCounter
 from cfepy.extra.exploration.fork_server import ForkingNotes
+from cfepy.extra.exploration.kinds import NOTHING_FOUND
 from cfepy.extra.exploration.longest import Distribution, MeasuredTrial, Worst, WorstSearch, worst_of
-from cfepy.extra.exploration.missing_points import SourceWatch, unseen_by
+from cfepy.extra.exploration.missing_points import Openings, SourceWatch, openings_of
 from cfepy.extra.exploration.mission_transfer import files_read, identity_of, ship
 from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.progress import make_progress
@@ -248,7 +249,9 @@ class Expedition:
             options = self._from_operational(options, first.booted_ns)
         trial = beside_fifo(bare, first, options if self.stuck else None)
         findings = Findings(reference)
-        search = self._search(first, options)
+        openings = self._openings(bare, first, options)
+        breadth.options = options
+        search = self._search(first, options, openings or NOTHING_FOUND)
         if self.policy == "orders":
             trial = replace(trial, steps_from_ns=options.from_ns)
         if isinstance(search, NewSwitchSearch):
@@ -275,7 +278,8 @@ class Expedition:
         self._keep(report)
         if not report.findings and not tally.interrupted and not self.points:
             try:
-                breadth.gaps, breadth.files = unseen_by(bare, options)
+                seen = openings_of(bare, options) if openings is None else openings
+                breadth.gaps, breadth.files = list(seen.gaps), list(seen.files)
             except KeyboardInterrupt:  # keep the findings so far
                 tally.interrupted = True
         if distribution is not None and isinstance(trial, MeasuredTrial):
@@ -283,13 +287,31 @@ class Expedition:
             report.worst = worst_of(trial, distribution, 0 if tally.interrupted else budget, self.shrink_s)
         return report
 
-    def _search(self, first: Tried, options: Schedule) -> Search:
+    def _openings(self, bare: Trial, first: Tried, options: Schedule) -> Openings | None:
+        """Return the places where further schedules could differ; None if the policy does not use them."""
+        is_over = self.until_failure and first.verdict.failed
+        if self.policy != "all" or self.points or self.worst is not None or is_over or first.verdict.end_ns is None:
+            return None
+        if any(failure.kind in _NO_WAY for failure in first.verdict.failures):
+            return None
+        found = openings_of(bare, options)
+        return found._replace(overlaps=found.overlaps and first.cores != 1)
+
+    def _search(self, first: Tried, options: Schedule, openings: Openings) -> Search:
         """Return the search of `make_search`; with a measure, the search for the longest value that begins with it."""
         holds = self.worst is None  # a delayed task is late by the delay, not by the mission
         steps, tick_ns = first.verdict.decisions, first.tick_ns
         is_open = self.seeds is None and holds
         found = make_search(
-            self.policy, self.depth, steps, options, self.first_seed, tick_ns, holds=holds, new_switches=is_open
+            self.policy,
+            self.depth,
+            steps,
+            options,
+            self.first_seed,
+            tick_ns,
+            holds=holds,
+            new_switches=is_open,
+            openings=openings,
         )
         return found if holds or not isinstance(found, SeededSearch) else WorstSearch(found, self.first_seed)
 

@@ -11,7 +11,10 @@ from types import FrameType
 from cfepy.extra.exploration.partial_orders import OrdersSeen
 from cfepy.extra.exploration.switch_kinds import SwitchKinds
 from cfepy.extra.exploration.verdict import Verdict
+from cfepy.reading.suggestions import listed
 from cfepy.rtos import AskingPolicy, Decision, Policy
+from cfepy.schedules import SHARED, Points, Schedule
+from cfepy.units import time_word
 
 _KINDS = {
     "cfepy.nodes.stdlib.locks": "locks",
@@ -97,6 +100,10 @@ class Breadth:
         seen: the extent of a search of orders.
         steps: the most decisions that a PCT run had, or was drawn for.
         switches: the kinds of switches of a search without a fixed number of schedules.
+        options: a schedule with the options that all schedules have; None before there are any.
+        shared: the number of schedules with points at shared data, and the names of the data.
+        overlapping, held: numbers of schedules in which any priority could run, and in which tasks could be held up.
+        hold_ns: the longest time of a hold.
     """
 
     points: dict[str, int] = field(default_factory=dict)
@@ -108,11 +115,23 @@ class Breadth:
     files: list[str] = field(default_factory=list)
     seen: OrdersSeen | None = None
     switches: SwitchKinds | None = None
+    options: Schedule | None = None
+    shared: Counter[tuple[str, ...]] = field(default_factory=Counter)
+    overlapping: int = 0
+    held: int = 0
+    hold_ns: int = 0
 
     def take(self, verdict: Verdict) -> None:
         """Count another flown schedule."""
         if verdict.trace:
             self.orders.add(verdict.trace)
+        schedule = verdict.schedule
+        points = Points.parse(schedule.points)
+        if points.kind == SHARED:
+            self.shared[points.names] += 1
+        self.overlapping += schedule.any_priority
+        self.held += bool(schedule.hold_ns or schedule.late_ns)
+        self.hold_ns = max(self.hold_ns, schedule.hold_ns, schedule.late_ns)
         if verdict.schedule.kind == "pct":
             self.pct[verdict.schedule.depth] += 1
             self.steps = max(self.steps, verdict.schedule.steps, verdict.decisions)
@@ -142,6 +161,8 @@ class Breadth:
         if chances:
             bound = f"PCT's bound for {self.tasks} tasks and {self.steps} points"
             found.append(f"probability that a bug was found, at least: {', '.join(chances)} ({bound})")
+        if self.options is not None:
+            found.append(self._kinds_line(self.options))
         if self.gaps:
             found.append(
                 "accesses without a call between them were one step; --points attributes adds points between them:"
@@ -152,9 +173,23 @@ class Breadth:
             found += [f"  {file}" for file in self.files]
         return found
 
+    def _kinds_line(self, options: Schedule) -> str:
+        """Return a line about the kinds of schedules, and about the options that would add others."""
+        parts = [f"{count} with points at {listed(names, 'and')}" for names, count in self.shared.items()]
+        parts += [f"{self.overlapping} with any priority"] if self.overlapping else []
+        parts += [f"{self.held} with tasks held up for up to {time_word(self.hold_ns)}"] if self.held else []
+        more = [] if options.any_priority else ["--any-priority: any priority in all schedules"]
+        more += [] if options.hold_ns else ["--hold TIME: longer holds, in all schedules"]
+        more += [] if options.connect_ns else ["--connect TIME: connections of nodes that take time"]
+        kinds = f"schedules of special kinds: {', '.join(parts) or 'none'}"
+        return f"{kinds}; more with {', '.join(more)}" if more else kinds
+
     def to_dict(self) -> dict[str, object]:
         """Return plain data."""
         return {
+            "at_shared": self.shared.total(),
+            "any_priority": self.overlapping,
+            "held": self.held,
             "orders": len(self.orders),
             "classes": None if self.seen is None else self.seen.orders,
             "complete": self.seen is not None and self.seen.is_complete,

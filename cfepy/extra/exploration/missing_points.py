@@ -1,43 +1,54 @@
-"""The places that an exploration without a failure leaves open: gaps between points, and files of two tasks.
+"""A first look at a mission, before its exploration: unordered data, gaps between points, and files of two tasks.
+
+One more run, of the default schedule, watches accesses as the race watch does. Part of the schedules get points at the
+data that it finds unordered, and other priorities if that leads to other orders.
 
 A gap is a function that accesses a shared object twice with no scheduling point between. No schedule of an exploration
-at calls alone lets another task in there. One more run, of the default schedule, finds them. It watches accesses as the
-race watch does. Two accesses of one function form a pair when its task has called nothing between.
+at calls alone lets another task in there. Two accesses of one function form a pair when its task has called nothing
+between.
 """
 
 from __future__ import annotations
 
+import sys
+from collections import Counter
 from dataclasses import replace
 from pathlib import PurePath
-from types import CodeType
+from types import CodeType, FrameType
 from typing import Any, NamedTuple
 
 from cfepy.attachment import Attachment
 from cfepy.extra.exploration.trial import Trial
-from cfepy.mission import Mission
-from cfepy.monitors import RaceWatch
+from cfepy.mission import CORE_APPS, Mission
+from cfepy.monitors import LOCKS_GIVEN, LOCKS_TAKEN, RaceWatch
 from cfepy.nodes import WRITES_FILE, Accesses, FilePoints, Touch
 from cfepy.reading.suggestions import did_you_mean, listed
-from cfepy.rtos import Task
-from cfepy.schedules import CALLS, CallPointKernel, Points, Schedule, source_names
+from cfepy.rtos import AskingPolicy, Decision, Policy, Task
+from cfepy.schedules import CALLS, CallPointKernel, Points, Schedule, name_of, source_names
 from cfepy.status import UsageError
 
 MOST_TOLD = 5
+_SERVICES = (*CORE_APPS, "ROS")  # applications of cFE, and the one of the parameter server and /rosout
 
 
-class Unseen(NamedTuple):
-    """The places that no schedule has tried.
+class Openings(NamedTuple):
+    """The places where further schedules could differ.
 
     Attributes:
+        shared: names of attributes, variables and containers whose accesses by several tasks nothing orders, as
+            `Points.names`.
+        overlaps: whether tasks of different priority, one of them of the mission, were ready at once.
         gaps: functions that access shared objects twice with no point between; a line each.
         files: files that two tasks used, one of them to change it; a line each.
     """
 
-    gaps: list[str]
-    files: list[str]
+    shared: tuple[str, ...] = ()
+    overlaps: bool = False
+    gaps: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
 
 
-def unseen_by(trial: Trial, options: Schedule) -> Unseen:
+def openings_of(trial: Trial, options: Schedule) -> Openings:
     """Fly the run once more. Returns the places that all schedules with these options leave open.
 
     Args:
@@ -46,8 +57,37 @@ def unseen_by(trial: Trial, options: Schedule) -> Unseen:
     """
     watch = GapWatch()
     plain = replace(trial, plan=replace(trial.plan, races=False), waits=None, reference=None)
-    plain.fly(options.at({}).with_points(CALLS), [watch])
-    return Unseen(watch.lines(), watch.files.lines())
+    schedule = replace(options.at({}), any_priority=True).with_points(CALLS)
+    overlaps = OverlapPolicy(schedule.policy() or Policy())
+    plain.fly(schedule, [watch], policy=overlaps)
+    return Openings(watch.shared(), overlaps.found, tuple(watch.lines()), tuple(watch.files.lines()))
+
+
+class OverlapPolicy(AskingPolicy):
+    """Asks another policy, and notes whether any priority would offer other candidates.
+
+    Args:
+        inner: the policy that decides.
+
+    Attributes:
+        found: whether tasks of the mission could run that a more urgent one keeps from running.
+    """
+
+    def __init__(self, inner: Policy) -> None:
+        super().__init__(inner)
+        self.found = False
+
+    def choose(self, decision: Decision) -> int:
+        if not self.found and len(decision.tasks) > 1:
+            first = decision.tasks[0]
+            self.found = _is_of_mission(first) and any(
+                task.priority != first.priority and _is_of_mission(task) for task in decision.tasks
+            )
+        return super().choose(decision)
+
+
+def _is_of_mission(task: Task) -> bool:
+    return task.owner is not None and getattr(task.owner, "name", "") not in _SERVICES
 
 
 class SourceWatch(Attachment):
@@ -74,12 +114,20 @@ class SourceWatch(Attachment):
 
 
 class GapWatch(RaceWatch):
-    """Finds gaps in a run whose points are at calls."""
+    """Finds gaps in a run whose points are at calls, and unordered data.
+
+    That one task took a lock after another does not order their accesses outside of the lock: under another schedule
+    they might come the other way round. So locks that the mission's own code makes order nothing here. Accesses of
+    tasks that hold the same one are no race.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self._since: dict[Task, tuple[int, dict[tuple[int, str, CodeType], Touch]]] = {}
         self._gaps: dict[tuple[CodeType, str], tuple[tuple[int, str], Touch]] = {}
+        self._names: dict[tuple[int, str], dict[str, None]] = {}
+        self._own: set[int] = set()  # numbers of locks that the mission's code has made
+        self._held: dict[Task, Counter[int]] = {}
 
     def begin(self, mission: Any) -> None:
         super().begin(mission)
@@ -88,8 +136,39 @@ class GapWatch(RaceWatch):
         self.files = SharedFiles(mission.kernel)
         mission.kernel.watch(self.files)
 
+    def _made(self, lock: Any) -> None:
+        super()._made(lock)
+        assert self._mission is not None
+        frame: FrameType | None = sys._getframe(1)
+        while frame is not None and frame.f_globals.get("__name__", "").startswith("cfepy."):
+            frame = frame.f_back
+        if frame is not None and frame.f_code.co_filename in self._mission.accesses.files:
+            number = self._mission.accesses.number(lock)
+            self._own.add(number)
+            self._inner.add(number)
+
+    def called(self, subject: Any, call: str, args: tuple[Any, ...]) -> None:
+        super().called(subject, call, args)
+        if call in LOCKS_GIVEN:
+            self._count(subject, -1)
+
+    def returned(self, subject: Any, call: str, args: tuple[Any, ...], result: Any) -> None:
+        super().returned(subject, call, args, result)
+        if call in LOCKS_TAKEN and result is not False:
+            self._count(subject, 1)
+
+    def _count(self, lock: Any, change: int) -> None:
+        assert self._mission is not None
+        number = self._mission.accesses.number(lock)
+        if number in self._own:
+            self._held.setdefault(self._task, Counter())[number] += change
+
+    def _locks_of(self, task: Task) -> frozenset[int]:
+        return frozenset(number for number, times in self._held.get(task, Counter()).items() if times > 0)
+
     def _pair(self, touch: Touch) -> None:
         """Record a pair if the function accessed the same variable before, and no task could run since."""
+        self._names.setdefault((touch.thing, touch.key), {})[name_of(touch.name)] = None
         passed, touched = self._since.get(touch.task, (-1, {}))
         if passed != self._kernel.passed:
             touched = {}
@@ -97,6 +176,10 @@ class GapWatch(RaceWatch):
         first = touched.setdefault((touch.thing, touch.key, touch.code), touch)
         if first is not touch:
             self._gaps.setdefault((touch.code, touch.name), ((touch.thing, touch.key), first))
+
+    def shared(self) -> tuple[str, ...]:
+        """Return the names under which unordered data is accessed, sorted."""
+        return tuple(sorted({name for place in self.racing for name in self._names.get(place, ()) if name}))
 
     def lines(self) -> list[str]:
         """Return a line for each function, with the variables that it accesses."""

@@ -13,6 +13,8 @@ from collections import Counter, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from cfepy.extra.exploration.kinds import NOTHING_FOUND, Kind, in_turn, seeded_kinds
+from cfepy.extra.exploration.missing_points import Openings
 from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.switch_kinds import SwitchKinds
 from cfepy.extra.exploration.verdict import Verdict
@@ -21,31 +23,24 @@ from cfepy.schedules import Schedule
 
 SEEDED_POLICIES = ("all", "random", "pct", "abreast")
 POLICIES = (*SEEDED_POLICIES, "dfs", "orders")
-PCT_DEPTH, DFS_DEPTH = 3, 2
-PORTFOLIO_DEPTHS = (2, 3, 1)
-"""Depths of PCT in the policy `all`: most races need two ordered events, some three, and starvation one."""
-PORTFOLIO_HOLD_NS = 1_000_000
-"""Delay in the policy `all`, for one schedule in six (with points: for two), unless the board's tick is longer.
-A race with a timer, or with a more urgent task that waits for one, shows only when code takes time. A longer delay
-would break a mission's justified assumptions about its own sleeps; less than a tick would reach no timer."""
-
-
+DFS_DEPTH = 2
 TURNS = 5  # turns of each policy in a generation of a search for new switches
 
 
 class SeededSearch:
-    """Schedules from seeds, each with its own seed: of one kind, or of several in turn.
+    """Schedules from seeds, each with its own seed: of one kind, or of several in rounds.
 
     PCT needs an estimate of the number of decisions of a run. Fifo interrupts no task, so it has far fewer decisions
     than other schedules. So the search waits for the verdict on the first schedule, and uses its number.
 
     Args:
-        kinds: schedules whose seed is replaced.
+        kinds: the kinds of schedules.
         first_seed: of the first one.
     """
 
-    def __init__(self, kinds: tuple[Schedule, ...], first_seed: int = 0) -> None:
-        self._kinds = kinds
+    def __init__(self, kinds: tuple[Kind, ...], first_seed: int = 0) -> None:
+        self._kinds = tuple(each.schedule for each in kinds)
+        self._round = in_turn([each.turns for each in kinds])
         self._number = 0
         self._first_seed = first_seed
         self._is_measured = False
@@ -61,7 +56,7 @@ class SeededSearch:
 
     def _turn(self, number: int) -> int | None:
         """Return which kind a schedule has, by its number; None if earlier verdicts must come first."""
-        return number % len(self._kinds)
+        return self._round[number % len(self._round)]
 
     def tell(self, number: int, verdict: Verdict) -> None:
         """Learn the length of a run from the first verdict; see `cfepy.extra.exploration.campaign.Search`."""
@@ -83,14 +78,14 @@ class NewSwitchSearch(SeededSearch):
     wait for each other, and their number does not change the schedules.
 
     Args:
-        kinds: schedules whose seed is replaced.
+        kinds: the kinds of schedules.
         first_seed: of the first one.
 
     Attributes:
         switches: the kinds so far.
     """
 
-    def __init__(self, kinds: tuple[Schedule, ...], first_seed: int = 0) -> None:
+    def __init__(self, kinds: tuple[Kind, ...], first_seed: int = 0) -> None:
         super().__init__(kinds, first_seed)
         self.switches = SwitchKinds()
         self._size = TURNS * len(kinds)
@@ -129,19 +124,7 @@ def shares(new: Counter[int], flown: Counter[int], kinds: int, size: int) -> lis
     by_rest = sorted(range(kinds), key=lambda kind: (int(left[kind]) - left[kind], kind))
     for kind in by_rest[: size - sum(counts)]:
         counts[kind] += 1
-    return _in_turn(counts)
-
-
-def _in_turn(counts: Sequence[int]) -> list[int]:
-    """Return each kind in the number of its count, evenly mixed."""
-    size = sum(counts)
-    given = [0] * len(counts)
-    turns = []
-    for place in range(1, size + 1):
-        kind = max(range(len(counts)), key=lambda each: (counts[each] * place - given[each] * size, -each))
-        given[kind] += 1
-        turns.append(kind)
-    return turns
+    return in_turn(counts)
 
 
 class SystematicSearch:
@@ -176,6 +159,7 @@ def make_search(
     *,
     holds: bool = True,
     new_switches: bool = False,
+    openings: Openings = NOTHING_FOUND,
 ) -> AnySearch:
     """Return the search for the options of a command.
 
@@ -190,37 +174,14 @@ def make_search(
         tick_ns: of the board's clock; 0 for none.
         holds: in `all`, running tasks may also be delayed in some schedules if `options` do not set a delay.
         new_switches: prefer the policies that bring new kinds of switches.
+        openings: of the mission; in `all`, some schedules have points at its shared data, and any priority.
     """
     if policy == "dfs":
         return SystematicSearch(DFS_DEPTH if depth is None else depth, options)
     if policy == "orders":
         return OrderSearch(options, CORE_APPS, depth)
-    kinds = seeded_kinds(policy, depth, steps, options, tick_ns, holds=holds)
+    kinds = seeded_kinds(policy, depth, steps, options, tick_ns, holds=holds, openings=openings)
     return NewSwitchSearch(kinds, first_seed) if new_switches else SeededSearch(kinds, first_seed)
-
-
-def seeded_kinds(
-    policy: str, depth: int | None, steps: int, options: Schedule, tick_ns: int = 0, *, holds: bool = True
-) -> tuple[Schedule, ...]:
-    """Return the schedules of a seeded policy, which take turns. The arguments are the same as in `make_search`.
-
-    With points between calls there are many decisions, so PCT rarely hits the ones of a bug. In 13 programs that need
-    points, random finds 10 more often than PCT of any of these depths. PCT of depth 3 finds two more often, and neither
-    finds one in 200 schedules. So PCT has one turn in six there.
-    """
-    random, abreast = replace(options, kind="random"), replace(options, kind="abreast")
-    is_mixed = policy == "all"
-    depths = PORTFOLIO_DEPTHS if depth is None and is_mixed else (PCT_DEPTH if depth is None else depth,)
-    pct = tuple(replace(options, kind="pct", depth=each, steps=max(steps, 1)) for each in depths)
-    if not is_mixed:
-        return {"random": (random,), "pct": pct, "abreast": (abreast,)}[policy]
-    held = replace(random, hold_ns=options.hold_ns or max(PORTFOLIO_HOLD_NS, tick_ns))
-    if not holds and not options.hold_ns:
-        held = random
-    if options.points:
-        deepest = max(pct, key=lambda each: each.depth)
-        return (random, deepest, abreast, held, random, held)
-    return (random, pct[0], abreast, *([] if held is random else [held]), *pct[1:])
 
 
 class DepthFirst:

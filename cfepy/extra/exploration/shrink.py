@@ -12,9 +12,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations, islice
-from typing import Generic, NamedTuple, Protocol, Self, TypeVar
+from typing import Any, Generic, NamedTuple, Protocol, Self, TypeVar
 
 from cfepy.extra.exploration.made_moves import Choice, KnownRuns, MadeMove, MoveNotingPolicy
 from cfepy.extra.exploration.trial import Tried
@@ -32,6 +32,7 @@ FEW, SINGLES = 10, 200  # single moves that are tried, at first and in the end
 MERGED = (3, 2)  # numbers of moves that are replaced by one
 AROUND = 30  # decisions before and after them that are searched
 CANDIDATES = 15  # such moves that are tried
+PLAINER: tuple[dict[str, Any], ...] = ({"points": ""}, {"any_priority": False}, {"late_ns": 0}, {"hold_ns": 0})
 TENTH_NS = NS_PER_S // 10
 
 Moves = tuple[Move, ...]
@@ -204,8 +205,9 @@ class Shrinker(Generic[T]):
                     best = min(best, self._with_less(self._without_tail(other)), key=lambda flight: flight.cost)
         self._limit = self._most
         best = self._with_one(self._merged(self._redirected(best)), SINGLES)
-        best = self._sooner(self._later(best))
-        return self._finish(self._fewest(best))
+        best = self._fewest(self._sooner(self._later(best)))
+        plain = self._plainer(best)
+        return self._finish(best if plain is best else self._fewest(plain))
 
     # -- steps -------------------------------------------------------------------------------------------------------
 
@@ -334,6 +336,17 @@ class Shrinker(Generic[T]):
             return self._with_less(best)
         subsets = (subset for size in range(count) for subset in combinations(best.moves, size))
         return next(self._tries(subsets, best), best)
+
+    def _plainer(self, best: _Flight) -> _Flight:
+        """Leave out the options that the failure does not need, such as points between calls."""
+        for change in PLAINER:
+            options = replace(best.options, **change)
+            if options == best.options:
+                continue
+            found = self._flight(best.moves, options)
+            if found.fails and found.cost <= best.cost:
+                best = found
+        return best
 
     def _finish(self, best: _Flight) -> Shrunk[T] | None:
         """Return the result as a schedule of moves, flown once more to be sure."""

@@ -47,6 +47,7 @@ class Tried(NamedTuple):
         booted_ns: virtual time at which the mission became OPERATIONAL; None if it did not.
         tick_ns: of the board's clock; 0 for none.
         tasks: number of tasks that the run had.
+        cores: of the board's processor; 0 if the board does not say.
     """
 
     verdict: Verdict
@@ -55,6 +56,7 @@ class Tried(NamedTuple):
     booted_ns: int | None = None
     tick_ns: int = 0
     tasks: int = 0
+    cores: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,8 @@ class Trial:
         told = replace(told, results=digest_of(found), trace=flown.trace, end_ns=watch.end_ns, trouble=trouble)
         told = replace(told, steps=steps[0].steps if steps else ())
         kernel = flown.mission.kernel
-        return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made)
+        cores = flown.mission.board.cores
+        return Tried(told, found, flown.notes, flown.mission.booted, kernel.tick_ns, kernel.tasks_made, cores)
 
     def _stuck(self, found: Waits, schedule: Schedule, policy: NotingPolicy, end_ns: int) -> Iterator[Failure]:
         assert self.waits is not None

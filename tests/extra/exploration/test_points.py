@@ -206,7 +206,10 @@ def test_apps_have_points(plan_of: Plans) -> None:
 def test_a_command_line_has_points(plan_of: Plans, capsys: pytest.CaptureFixture[str]) -> None:
     words = plan_of("counter", COUNTER).words
     assert main(["run", *words, "--for", "1", "--points", "every", "--quiet"]) == 2
-    assert "--points: invalid kind of points 'every'; expected lines, attributes or calls" in capsys.readouterr().err
+    assert (
+        "--points: invalid kind of points 'every'; expected lines, attributes, calls or shared"
+        in capsys.readouterr().err
+    )
     assert main(["explore", *words, "--for", "1", "--points", "lines:", "--quiet"]) == 2
     assert "invalid module ''; write for instance lines:arm,util" in capsys.readouterr().err
     assert main(["run", *words, "--for", "1", "--points", "lines:counter", "--quiet"]) == 0

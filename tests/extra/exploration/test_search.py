@@ -7,6 +7,8 @@ from itertools import islice
 
 import pytest
 
+from cfepy.extra.exploration.kinds import NOTHING_FOUND
+from cfepy.extra.exploration.missing_points import Openings
 from cfepy.extra.exploration.search import NewSwitchSearch, SeededSearch, SystematicSearch, make_search, shares
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.schedules.schedule import Schedule
@@ -18,8 +20,15 @@ def next_of(search: SeededSearch | SystematicSearch) -> str | None:
     return None if found is None else found.text()
 
 
-def first(policy: str, count: int, depth: int | None = None, options: str = "at", seed: int = 0) -> list[str]:
-    search = make_search(policy, depth, 50, Schedule.parse(options), seed)
+def first(
+    policy: str,
+    count: int,
+    depth: int | None = None,
+    options: str = "at",
+    seed: int = 0,
+    openings: Openings = NOTHING_FOUND,
+) -> list[str]:
+    search = make_search(policy, depth, 50, Schedule.parse(options), seed, openings=openings)
     found = search.next()
     assert found is not None
     search.tell(0, Verdict(found))
@@ -41,7 +50,7 @@ def test_all_policy_mixes_schedules_without_duplicates() -> None:
 
 
 def test_options_are_part_of_every_schedule() -> None:
-    assert all(text.endswith(":any:hold=500us") for text in first("all", 8, options="at:any:hold=500us"))
+    assert all(":any:hold=500us" in text for text in first("all", 8, options="at:any:hold=500us"))
 
 
 def test_pct_uses_the_decisions_of_the_first_schedule() -> None:
@@ -79,6 +88,26 @@ def test_with_points_between_calls_random_has_the_most_turns() -> None:
     assert texts == [f"{kind}:points=attributes" for kind in kinds]
 
 
+def test_one_schedule_of_four_has_points_at_shared_data() -> None:
+    found = first("all", 32, openings=Openings(("goals", "total")))
+    assert sum(text.endswith(":points=shared,goals,total") for text in found) == 8
+    assert found[:6] == first("all", 6)
+    assert {text.split(":")[0] for text in found if "shared" in text} == {"random", "pct"}
+
+
+def test_any_priority_has_turns_if_tasks_of_different_priority_overlap() -> None:
+    found = first("all", 28, openings=Openings(overlaps=True))
+    assert sum(text.endswith(":any") for text in found) == 4
+    assert not any(":any:any" in text for text in first("all", 28, options="at:any", openings=Openings(overlaps=True)))
+
+
+def test_other_policies_do_not_use_openings() -> None:
+    openings = Openings(("total",), overlaps=True)
+    assert first("random", 20, openings=openings) == first("random", 20)
+    with_points = first("all", 20, options="at:points=lines", openings=openings)
+    assert with_points == first("all", 20, options="at:points=lines")
+
+
 def test_given_depth_is_kept_with_points() -> None:
     search = make_search("all", 5, 50, Schedule.parse("at:points=lines"))
     search.next()
@@ -112,7 +141,7 @@ def test_tasks_are_held_up_for_a_tick_at_least(tick_ns: int, hold: str) -> None:
     search = make_search("all", None, 50, Schedule.parse("at"), tick_ns=tick_ns)
     search.next()
     search.tell(0, Verdict(Schedule(), decisions=50))
-    assert any(str(search.next()).endswith(f"hold={hold}") for _ in range(4))
+    assert any(str(search.next()).endswith(f":hold={hold}:late={hold}") for _ in range(4))
 
 
 # -- searches for new switches ---------------------------------------------------------------------------------------

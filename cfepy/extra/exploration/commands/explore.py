@@ -91,6 +91,9 @@ def _about(report: Report, told: Told, width: int) -> Iterator[str]:
     if shrunk is not None:
         yield f"shrunk: {shrunk.trial.command(shrunk.verdict.schedule)}"
         yield f"        {shrunk.text(SHRINK_OPTION)}"
+        if shrunk.verdict.schedule.any_priority and not _asks_for_any_priority(report):
+            yield "        fails only if less urgent tasks run beside more urgent ones, as on several cores (a board"
+            yield "        with `cores: 1` leaves such schedules out)"
         for move in shrunk.moves:
             if move.question:
                 yield f"        {move.task}: {move.chosen}"
@@ -98,6 +101,10 @@ def _about(report: Report, told: Told, width: int) -> Iterator[str]:
     if lines:
         yield ""
         yield from lines
+
+
+def _asks_for_any_priority(report: Report) -> bool:
+    return report.breadth.options is not None and report.breadth.options.any_priority
 
 
 def _longest(report: Report, worst: Worst, width: int) -> Iterator[str]:
