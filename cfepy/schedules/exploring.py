@@ -300,6 +300,16 @@ class ExploringKernel(Kernel):
         super()._push_back(task)
         self._left = task
 
+    def _advance(self) -> Task:
+        """Advance like the base class, but let the policy delay the only task whose timer is due."""
+        decisions = self._decisions
+        task = super()._advance()
+        if not self._late_ns or task is self.host or self._decisions != decisions:
+            return task
+        self.sequence = order = self.sequence + 1
+        heappush(self.ready, (task.priority, order, task))
+        return self._take()
+
     def _take(self) -> Task:
         """Ask the policy if there is a choice; a pause of the run does not count as another decision."""
         ready = self.ready

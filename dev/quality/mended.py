@@ -29,7 +29,7 @@ from dev.quality.programs import PROGRAMS, Program, program_trial
 MEASURED = Path(__file__).parent / "measured_mended.json"
 MOST = 20_000
 FROM = ":from=545ms"  # applications of the startup script begin at 550 ms
-PIECE = 720  # schedules; a multiple of the number of schedule kinds that take turns
+PIECE = 240  # schedules; a multiple of the number of schedule kinds that take turns
 
 Measured = dict[str, dict[str, list[str] | int]]
 """By mission: `flown`, how many schedules, and `failed`, those that did, with what failed."""

@@ -272,3 +272,24 @@ def test_task_that_may_start_early_starts_at_its_time_under_fifo() -> None:
     assert log == [50]
     assert recorded.widths
     assert not recorded.deviations
+
+
+def test_late_task_runs_after_the_next_timer(context: str) -> None:
+    assert delays(context, "at") == [("first", 10_000), ("second", 11_000)]
+    assert delays(context, "moves:first@0/next=hold:late=2us") == [("first", 11_000), ("second", 11_000)]
+    assert delays(context, "moves:first@0/next=hold:late=999ns") == delays(context, "at")
+
+
+def delays(context: str, text: str) -> list[tuple[str, int]]:
+    """Return which of two tasks went on when, after delays of 10 and 11 us."""
+    ended: list[tuple[str, int]] = []
+    with make_kernel(context, None, Schedule.parse(text).policy()) as kernel:
+
+        def work(name: str, after: int) -> None:
+            kernel.delay(after)
+            ended.append((name, kernel.now))
+
+        kernel.spawn("first", lambda: work("first", 10_000))
+        kernel.spawn("second", lambda: work("second", 11_000))
+        kernel.run(1_000_000)
+    return ended

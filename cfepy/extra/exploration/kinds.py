@@ -19,7 +19,7 @@ PORTFOLIO_HOLD_NS = 1_000_000
 """Delay in the policy `all`, for one schedule in six (with points: for two), unless the board's tick is longer.
 A race with a timer, or with a more urgent task that waits for one, shows only when code takes time. A longer delay
 would break a mission's justified assumptions about its own sleeps; less than a tick would reach no timer."""
-TURNS_AT_CALLS = 2  # of each kind with points at calls; with four turns at shared data, these are one of four
+USUAL_TURNS = 2  # of each other kind; so one schedule of four has points at shared data, and one of four any priority
 NOTHING_FOUND = Openings()
 
 
@@ -64,13 +64,14 @@ def seeded_kinds(
         often = held or [random]
         return tuple(map(Kind, (random, deepest, abreast, *often, random, *often)))
     late = [replace(each, late_ns=delay_ns) for each in held]
-    rows = [Kind(each, TURNS_AT_CALLS) for each in (random, pct[0], abreast, *late, *pct[1:])]
+    rows = [Kind(each, USUAL_TURNS) for each in (random, pct[0], abreast, *late, *pct[1:])]
     if openings.shared:
         points = Points(SHARED, names=openings.shared).text()
         rows.append(Kind(random.with_points(points), 2))
         rows += [Kind(each.with_points(points)) for each in (deepest, *late)]
     if openings.overlaps and not options.any_priority:
-        rows += [Kind(replace(each, any_priority=True)) for each in (random, deepest)]
+        rows.append(Kind(replace(random, any_priority=True), 2))
+        rows += [Kind(replace(each, any_priority=True)) for each in (pct[0], deepest)]
     return tuple(rows)
 
 

@@ -96,9 +96,9 @@ def test_one_schedule_of_four_has_points_at_shared_data() -> None:
 
 
 def test_any_priority_has_turns_if_tasks_of_different_priority_overlap() -> None:
-    found = first("all", 28, openings=Openings(overlaps=True))
-    assert sum(text.endswith(":any") for text in found) == 4
-    assert not any(":any:any" in text for text in first("all", 28, options="at:any", openings=Openings(overlaps=True)))
+    found = first("all", 32, openings=Openings(overlaps=True))
+    assert sum(text.endswith(":any") for text in found) == 8
+    assert not any(":any:any" in text for text in first("all", 32, options="at:any", openings=Openings(overlaps=True)))
 
 
 def test_other_policies_do_not_use_openings() -> None:
