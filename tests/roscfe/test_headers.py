@@ -30,7 +30,7 @@ NO_THREADS = (
 """Headers of Boost that only nodes for the host have."""
 LACKING = ("asio", "variant", "regex", "filesystem", "date_time", "format", "optional", "tuple/tuple", "any")
 NO_SERIALIZER = "specialise ros::serialization::Serializer for it"
-DECLARED = re.compile(r"^(?:template <.*>\n)?[\w:<>*& ]+?[ *&](\w+)\(", re.MULTILINE)
+DECLARED = re.compile(r"^(?:template <.*>\n)?(?:\[\[\w+\]\] )?[\w:<>*& ]+?[ *&](\w+)\(", re.MULTILINE)
 """A function of the library, whose declaration begins a line."""
 USED = re.compile(r"\broscfe::(\w+)\(")
 DEPTHS = """

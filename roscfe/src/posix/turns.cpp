@@ -125,9 +125,13 @@ void create_task(Thread *thread)
     std::snprintf(end, sizeof end, "_T%lu", static_cast<unsigned long>(g_created + 1));
     own_name(name, end, end);
     CFE_ES_TaskId_t id = CFE_ES_TASKID_UNDEFINED;
-    thread->has_task   = OS_TaskGetInfo(OS_TaskGetId(), &own) == OS_SUCCESS &&
-                       CFE_ES_CreateChildTask(&id, name, roscfe_begin_thread, CFE_ES_TASK_STACK_ALLOCATE, kStackBytes,
-                                              as<CFE_ES_TaskPriority_Atom_t>(own.priority), 0) == CFE_SUCCESS;
+    bool is_created    = OS_TaskGetInfo(OS_TaskGetId(), &own) == OS_SUCCESS;
+    // What takes packets over asks for its turn as soon as one comes: it is more urgent than whom they are for.
+    const std::uint32_t priority = own.priority - (thread == &g_receiver && own.priority > 1 ? 1 : 0);
+    is_created = is_created && CFE_ES_CreateChildTask(&id, name, roscfe_begin_thread, CFE_ES_TASK_STACK_ALLOCATE,
+                                                      kStackBytes, as<CFE_ES_TaskPriority_Atom_t>(priority),
+                                                      0) == CFE_SUCCESS;
+    thread->has_task = is_created;
     thread->has_failed = !thread->has_task;
     if (thread->has_task)
     {
