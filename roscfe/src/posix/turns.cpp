@@ -127,10 +127,10 @@ void create_task(Thread *thread)
     CFE_ES_TaskId_t id = CFE_ES_TASKID_UNDEFINED;
     bool is_created    = OS_TaskGetInfo(OS_TaskGetId(), &own) == OS_SUCCESS;
     // What takes packets over asks for its turn as soon as one comes: it is more urgent than whom they are for.
-    const std::uint32_t priority = own.priority - (thread == &g_receiver && own.priority > 1 ? 1 : 0);
+    const std::uint32_t less     = thread == &g_receiver && own.priority > 1 ? 1 : 0;
+    const auto          priority = as<CFE_ES_TaskPriority_Atom_t>(own.priority - less);
     is_created = is_created && CFE_ES_CreateChildTask(&id, name, roscfe_begin_thread, CFE_ES_TASK_STACK_ALLOCATE,
-                                                      kStackBytes, as<CFE_ES_TaskPriority_Atom_t>(priority),
-                                                      0) == CFE_SUCCESS;
+                                                      kStackBytes, priority, 0) == CFE_SUCCESS;
     thread->has_task = is_created;
     thread->has_failed = !thread->has_task;
     if (thread->has_task)
