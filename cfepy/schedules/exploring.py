@@ -375,12 +375,14 @@ class CallPointKernel(ExploringKernel):
     Attributes:
         entered: tasks that have called; the user removes them.
         passed: number of calls.
+        longest_ns: the longest computation that was charged at once.
     """
 
     def __init__(self, *arguments: Any) -> None:
         super().__init__(*arguments)
         self.entered: dict[Task, bool] = {}
         self.passed = 0
+        self.longest_ns = 0
 
     def point(self) -> None:
         self.passed += 1
@@ -389,5 +391,6 @@ class CallPointKernel(ExploringKernel):
 
     def charge(self, duration_ns: int) -> None:
         self.passed += 1
+        self.longest_ns = max(self.longest_ns, duration_ns)
         self.entered[self.current] = True
         super().charge(duration_ns)

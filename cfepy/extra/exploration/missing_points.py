@@ -26,8 +26,10 @@ from cfepy.reading.suggestions import did_you_mean, listed
 from cfepy.rtos import AskingPolicy, Decision, Policy, Task
 from cfepy.schedules import CALLS, CallPointKernel, Points, Schedule, name_of, source_names
 from cfepy.status import UsageError
+from cfepy.units import NS_PER_MS
 
 MOST_TOLD = 5
+LONG_NS = NS_PER_MS  # computations of this length decide which deadlines are met
 _SERVICES = (*CORE_APPS, "ROS")  # applications of cFE, and the one of the parameter server and /rosout
 
 
@@ -37,7 +39,8 @@ class Openings(NamedTuple):
     Attributes:
         shared: names of attributes, variables and containers whose accesses by several tasks nothing orders, as
             `Points.names`.
-        overlaps: whether tasks of different priority, one of them of the mission, were ready at once.
+        overlaps: whether tasks of the mission with different priorities were ready at once, and none computes for long.
+            A long computation of one task would delay the other, which has a core of its own on a larger computer.
         gaps: functions that access shared objects twice with no point between; a line each.
         files: files that two tasks used, one of them to change it; a line each.
     """
@@ -60,7 +63,9 @@ def openings_of(trial: Trial, options: Schedule) -> Openings:
     schedule = replace(options.at({}), any_priority=True).with_points(CALLS)
     overlaps = OverlapPolicy(schedule.policy() or Policy())
     plain.fly(schedule, [watch], policy=overlaps)
-    return Openings(watch.shared(), overlaps.found, tuple(watch.lines()), tuple(watch.files.lines()))
+    return Openings(
+        watch.shared(), overlaps.found and not watch.computes, tuple(watch.lines()), tuple(watch.files.lines())
+    )
 
 
 class OverlapPolicy(AskingPolicy):
@@ -176,6 +181,11 @@ class GapWatch(RaceWatch):
         first = touched.setdefault((touch.thing, touch.key, touch.code), touch)
         if first is not touch:
             self._gaps.setdefault((touch.code, touch.name), ((touch.thing, touch.key), first))
+
+    @property
+    def computes(self) -> bool:
+        """Whether a task computed for long."""
+        return self._kernel.longest_ns >= LONG_NS
 
     def shared(self) -> tuple[str, ...]:
         """Return the names under which unordered data is accessed, sorted."""

@@ -152,6 +152,16 @@ def test_tasks_of_different_priority_overlap(apps: RunPlan, plan_of: Plans) -> N
     assert not found_in(plan_of(COUNTERS)).overlaps
 
 
+def test_priorities_stay_strict_if_a_task_computes_for_long(apps: RunPlan) -> None:
+    """The other task would miss its deadlines, although it has a core of its own on a computer with several."""
+    file = Path(apps.words[0]) / "app.py"
+    text = file.read_text(encoding="utf-8")
+    for time_us, overlap in ((900, True), (1000, False)):
+        computing = text.replace("came.append(1)", f"came.append(cfe.psp.compute({time_us}))")
+        file.write_text(computing, encoding="utf-8")
+        assert found_in(apps).overlaps == overlap
+
+
 def test_default_ignores_priorities_unless_the_board_has_one_core(apps: RunPlan, tmp_path: Path) -> None:
     (told,) = explored(apps, 60).findings
     assert told.finding.failure.text.endswith("the less urgent task came first")
