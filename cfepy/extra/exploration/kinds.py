@@ -76,7 +76,7 @@ def seeded_kinds(
 
 
 def in_turn(counts: Sequence[int]) -> list[int]:
-    """Return each kind, by its number, as often as its count says, evenly mixed."""
+    """Return each kind, by its number, repeated by its count, evenly mixed."""
     size = sum(counts)
     given = [0] * len(counts)
     turns = []

@@ -1,4 +1,4 @@
-"""What a first look at a mission finds: data that nothing orders, and tasks of different priority that overlap."""
+"""The first look at a mission finds data without an order, and tasks of different priority that overlap."""
 
 from __future__ import annotations
 
