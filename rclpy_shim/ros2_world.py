@@ -28,7 +28,7 @@ ENVIRONMENT = {
 OF_ROS_1 = ("ROS_ETC_DIR", "ROS_MASTER_URI", "ROS_ROOT")
 """Variables of ROS 1 that a program of ROS 2 does not have."""
 NOT_YET = (
-    *("ament_index_python", "cv_bridge", "launch", "launch_ros", "message_filters", "rosbag2_py", "rosidl_runtime_py"),
+    *("ament_index_python", "cv_bridge", "launch", "launch_ros", "rosbag2_py", "rosidl_runtime_py"),
     *("sensor_msgs_py", "tf2_geometry_msgs", "tf_transformations"),
 )
 """Packages of ROS 2 that cfepy does not have yet; those of ROS 1 with these names do not fit."""

@@ -54,10 +54,30 @@ class EventInfo(SimpleNamespace):
     """The numbers of an event, such as `total_count` and `total_count_change`."""
 
 
-QoSRequestedDeadlineMissedInfo = QoSOfferedDeadlineMissedInfo = EventInfo
-QoSLivelinessChangedInfo = QoSLivelinessLostInfo = QoSMessageLostInfo = EventInfo
-QoSRequestedIncompatibleQoSInfo = QoSOfferedIncompatibleQoSInfo = IncompatibleTypeInfo = EventInfo
-QoSSubscriptionMatchedInfo = QoSPublisherMatchedInfo = EventInfo
+def _info(name: str) -> type[EventInfo]:
+    """Return the class of one kind of event, with rmw's name of it."""
+    return type(f"rclpy._rclpy_pybind11.rmw_{name}_status_t", (EventInfo,), {})
+
+
+QoSRequestedDeadlineMissedInfo = _info("requested_deadline_missed")
+QoSOfferedDeadlineMissedInfo = _info("offered_deadline_missed")
+QoSLivelinessChangedInfo = _info("liveliness_changed")
+QoSLivelinessLostInfo = _info("liveliness_lost")
+QoSMessageLostInfo = _info("message_lost")
+QoSRequestedIncompatibleQoSInfo = QoSOfferedIncompatibleQoSInfo = _info("requested_qos_incompatible_event")
+IncompatibleTypeInfo = _info("incompatible_type")
+QoSSubscriptionMatchedInfo = QoSPublisherMatchedInfo = _info("matched")
+_INFOS: dict[Any, type[EventInfo]] = {
+    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED.name: QoSOfferedDeadlineMissedInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST.name: QoSLivelinessLostInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS.name: QoSOfferedIncompatibleQoSInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_MATCHED.name: QoSPublisherMatchedInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED.name: QoSRequestedDeadlineMissedInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED.name: QoSLivelinessChangedInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS.name: QoSRequestedIncompatibleQoSInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST.name: QoSMessageLostInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED.name: QoSSubscriptionMatchedInfo,
+}
 
 
 class EventHandler(Waitable):
@@ -90,7 +110,7 @@ class EventHandler(Waitable):
         values = self._status.take()
         if "last_policy_kind" in values:
             values["last_policy_kind"] = QoSPolicyKind(values["last_policy_kind"])
-        return self.callback, (EventInfo(**values),)
+        return self.callback, (_INFOS[self.event_type.name](**values),)
 
     def destroy(self) -> None:
         """Do nothing: the entity counts as long as it lives."""
