@@ -170,7 +170,8 @@ def main() -> None:
         "# Public ROS 2 nodes on cfepy and on rclpy\n\n"
         "`python -m dev.ros2` writes this page. Each row is a mission of unmodified public nodes. It flies for "
         f"{SECONDS} s on cfepy,\nand on rclpy 9.1.2 with Fast DDS. Lines that nodes print are compared without times. "
-        "The longer output may go on.\n\n"
+        "The longer output may go on.\n"
+        "Where threads or processes race on rclpy, lines may come in another order there.\n\n"
         f"The nodes are from {commits}. {equal} of {len(rows)} missions are equal.\n\n"
         "| mission | nodes | result |\n|---|---|---|\n" + "".join(rows),
         encoding="utf-8",
