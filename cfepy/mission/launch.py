@@ -347,11 +347,13 @@ def spec_of_node(words: Sequence[str], build: NodeBuilder | None = None) -> Miss
 
 def _setup_of(words: Sequence[str]) -> Path | None:
     """Return the setup.py of the package that a command line names, if it names the node, too."""
-    from rospy_shim.roslaunch.launch_plan import setup_of
+    from rospy_shim.roslaunch.launch_plan import packages_near
+    from rospy_shim.types.entry_points import entry_points, setup_file
 
     if len(words) < 2 or os.path.isfile(words[0]) or words[0].endswith(".py"):
         return None
-    return setup_of(words[0], words[1], Path.cwd() / words[1], os.environ)
+    folders = packages_near(Path.cwd() / words[1], os.environ, words[0]).folders(words[0])
+    return next((setup_file(each) for each in folders if words[1] in entry_points(each)), None)
 
 
 def spec_of_script(script: Path, words: Sequence[str], executable: str = "") -> MissionSpec:

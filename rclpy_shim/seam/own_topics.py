@@ -7,13 +7,10 @@ ROS 1, which has another type, stays free for nodes of ROS 1 in the same mission
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from rclpy_shim.seam.matching import Quality
 from rclpy_shim.seam.topic_ends import TopicReader, TopicWriter
-
-if TYPE_CHECKING:
-    from rclpy_shim.seam.ros2_program import Ros2Program
 
 ROSOUT, PARAMETER_EVENTS = "/rosout", "/parameter_events"
 LOG, PARAMETER_EVENT = "rcl_interfaces/Log", "rcl_interfaces/ParameterEvent"
@@ -33,6 +30,19 @@ class LogLine(NamedTuple):
     line: int
 
 
+class TopicOwner(Protocol):
+    """The program whose topics they are."""
+
+    graph: Any
+    interfaces: Any
+
+    def now_ns(self) -> int:
+        """Return ROS's time in ns."""
+
+    def own_writer(self, name: str, data_class: Any, quality: Quality) -> TopicWriter:
+        """Make a publisher that is not connected yet."""
+
+
 class OwnTopics:
     """/rosout and /parameter_events of one program.
 
@@ -40,7 +50,7 @@ class OwnTopics:
         program: the program.
     """
 
-    def __init__(self, program: Ros2Program) -> None:
+    def __init__(self, program: TopicOwner) -> None:
         self._program = program
         self._lines: deque[LogLine] = deque(maxlen=DEPTH)
         self._rosout: TopicWriter | None = None
@@ -93,6 +103,6 @@ class OwnTopics:
         return message
 
 
-def _is_read(program: Ros2Program, name: str) -> bool:
+def _is_read(program: TopicOwner, name: str) -> bool:
     topic = program.graph.topics.get(name)
     return topic is not None and any(isinstance(each, TopicReader) for each in topic.subscriptions)

@@ -1,7 +1,7 @@
 """Events of the two sides of a topic (rcl_event_t): matches, unequal qualities, missed deadlines, lost liveliness.
 
 A status counts, and is ready when its numbers have changed. Deadlines and liveliness need no timer: an executor looks
-at `due_ns` of each event that somebody listens to.
+at `due_ns` of each event with a callback.
 """
 
 from __future__ import annotations
@@ -190,7 +190,7 @@ class LivelinessChanged(Status):
         self._known: dict[Any, bool | None] = {}
 
     def settle(self) -> None:
-        """Compare the publishers with those of the last look."""
+        """Compare the publishers with the ones of the last look."""
         states = self._states()
         for link in [each for each in self._known if each not in states]:
             self._change(self._known.pop(link), None)

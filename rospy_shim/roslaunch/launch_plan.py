@@ -26,7 +26,6 @@ from cfepy.status import UsageError
 from cfepy.units import NS_PER_S
 from rospy_shim.roslaunch.model import Launch, LaunchNode, LaunchRemark, LaunchTest
 from rospy_shim.roslaunch.reader import read
-from rospy_shim.types.entry_points import entry_points, setup_file
 from rospy_shim.types.msgs import Packages
 from rospy_shim.types.names import SEP
 
@@ -280,19 +279,6 @@ def node_file(package: str, node_type: str, near: Path, environ: Mapping[str, st
         return find_script(packages_near(near, environ, package), package, node_type)
     except ScriptError as error:
         raise UsageError(str(error), field=f"{package} {node_type}") from None
-
-
-def setup_of(package: str, executable: str, near: Path, environ: Mapping[str, str]) -> Path | None:
-    """Return the setup.py or setup.cfg of an ament_python package that names a node; None if there is none.
-
-    Args:
-        package: the package.
-        executable: name of the node.
-        near: a file; packages near it take precedence.
-        environ: environment with ROS_PACKAGE_PATH.
-    """
-    folders = packages_near(near, environ, package).folders(package)
-    return next((setup_file(each) for each in folders if executable in entry_points(each)), None)
 
 
 def node_in_cpp(

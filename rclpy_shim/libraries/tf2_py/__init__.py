@@ -1,6 +1,6 @@
 """tf2_py for ROS 2: the buffer of transforms and its exceptions.
 
-The tree of frames and its arithmetic are those of ROS 1's tf2_py, whose folder is a second place of this package's
+The tree of frames and its arithmetic come from ROS 1's tf2_py, whose folder is a second place of this package's
 modules. Times, messages and error texts are ROS 2's.
 """
 
