@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from cfepy.reading.input_files import read_limited
@@ -11,7 +11,12 @@ from cfepy.reading.input_limits import CPP_BYTES
 from cfepy.status import UsageError
 
 _COMMENT = re.compile(r"/\*.*?\*/|//[^\n]*", re.DOTALL)
+_LEFT_OUT = re.compile(r"^[ \t]*#[ \t]*if[ \t]+0[ \t]*$.*?^[ \t]*#[ \t]*endif[^\n]*$", re.DOTALL | re.MULTILINE)
+"""Lines that no compiler reads; they have no other directive."""
+_DIRECTIVE = re.compile(r"^[ \t]*#", re.MULTILINE)
 _MEMBER = re.compile(r"\s*(?:const\s+)?(?:struct\s+)?(\w+(?:\s+\w+)*?)\s+(\w+)\s*((?:\[[^\]]*\]\s*)*)$")
+_NAME = re.compile(r"\s*(\w+)\s*((?:\[[^\]]*\]\s*)*)$")
+"""A further member of a declaration."""
 _TYPES = {
     "uint8": "u8", "int8": "i8", "uint16": "u16", "int16": "i16", "uint32": "u32", "int32": "i32", "uint64": "u64",
     "int64": "i64", "uint8_t": "u8", "int8_t": "i8", "uint16_t": "u16", "int16_t": "i16", "uint32_t": "u32",
@@ -33,11 +38,11 @@ def header_difference(file: Path, struct: str, compiled: Sequence[tuple[str, str
         text = read_limited(file, CPP_BYTES).decode("utf-8", "replace")
     except (UsageError, OSError):
         return None
-    found = _body(_COMMENT.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text), struct)
+    found = _body(_COMMENT.sub(_blank, text), struct)
     if found is None:
         return None
     start, body = found
-    members = list(_members(body))
+    members = _members(_LEFT_OUT.sub(_without_code, body))
     if not members:
         return None
     known = {name: (kind, count) for name, kind, count in compiled}
@@ -72,14 +77,42 @@ def _body(text: str, struct: str) -> tuple[int, str] | None:
     return None if start < 0 or "}" in body else (start + 1, body)
 
 
-def _members(body: str) -> Iterator[tuple[int, str, str, int]]:
-    """Yield offset in the text, name, type ("" if unknown) and number of items (0 if unknown) of each member."""
+def _members(body: str) -> list[tuple[int, str, str, int]]:
+    """Return offset in the text, name, type ("" if unknown) and number of items (0 if unknown) of each member.
+
+    The list is empty for a struct with other forms, such as members that a condition decides, bits and pointers.
+    """
+    found: list[tuple[int, str, str, int]] = []
+    if _DIRECTIVE.search(body):
+        return found
     at = 0
     for part in body.split(";"):
-        match = _MEMBER.match(part)
+        first, *others = part.split(",")
+        match = _MEMBER.match(first)
         if match is not None:
-            yield at + match.start(2), match[2], _TYPES.get(match[1].strip(), ""), _items(match[3])
+            kind = _TYPES.get(match[1].strip(), "")
+            found.append((at + match.start(2), match[2], kind, _items(match[3])))
+        elif part.strip():
+            return []
+        place = at + len(first) + 1
+        for other in others:
+            name = _NAME.match(other)
+            if name is None or match is None:
+                return []
+            found.append((place + name.start(1), name[1], kind, _items(name[2])))
+            place += len(other) + 1
         at += len(part) + 1
+    return found
+
+
+def _without_code(match: re.Match[str]) -> str:
+    """Return spaces for lines that no compiler reads; other directives in them stay."""
+    return match[0] if len(_DIRECTIVE.findall(match[0])) > 2 else _blank(match)
+
+
+def _blank(match: re.Match[str]) -> str:
+    """Return spaces for a piece of text, with its lines."""
+    return re.sub(r"[^\n]", " ", match[0])
 
 
 def _items(dimensions: str) -> int:
