@@ -348,7 +348,7 @@ def _steps(report: BuildReport, model: TreeModel) -> Iterator[str]:
     for each in report.entries:
         _, found, option = each.text.partition(BUILD_WITH)
         if found and ADVICE in each.text:
-            older[each.name] = option.removesuffix(".)")
+            older[each.name] = option.partition(".)")[0]
     for option in dict.fromkeys(older.values()):
         several = [name for name, wanted in older.items() if wanted == option]
         yield f"build the tree again with {option}, because of names of cFE 6 in {', '.join(several)}"

@@ -96,6 +96,17 @@ def test_cfepys_own_application_stands_in_for_a_missing_one(tmp_path: Path) -> N
     assert "TO_LAB_APP" in console_of(fly(str(tmp_path / "mission")))
 
 
+def test_step_names_the_option_for_an_application_with_a_stand_in(tmp_path: Path) -> None:
+    changed = {
+        "small_defs/targets.cmake": TARGETS.replace("one two", "one two to_lab"),
+        "apps/to_lab/fsw/src/to_lab.c": OLD_NAMES,
+        "apps/to_lab/CMakeLists.txt": TO_LAB,
+    }
+    report = built(tmp_path, changed)
+    assert names(report, STANDS_IN) == ["to_lab"]
+    assert report.steps == ["build the tree again with --cfe 6.7, because of names of cFE 6 in to_lab"]
+
+
 def test_stand_in_replaces_an_application_that_could_be_built(tmp_path: Path) -> None:
     files = {"apps/to_lab/CMakeLists.txt": "add_cfe_app(to_lab a.c)\n", "apps/to_lab/a.c": BROKEN}
     changed = {**files, "small_defs/targets.cmake": TARGETS.replace("one two", "one two to_lab")}
@@ -144,6 +155,7 @@ def test_release_of_cfe_6_is_noted(tmp_path: Path) -> None:
     assert report.notes == ["the tree has cFE 6.7.1; the mission runs on cFE 7.0.1, and the sources need --cfe 6.7"]
 
 
+TO_LAB = "project(TO_LAB C)\nadd_cfe_app(to_lab fsw/src/to_lab.c)\n"
 OLD_NAMES = """
     #include "cfe.h"
     void ONE_Main(void)
