@@ -21,7 +21,7 @@ from cfepy.extra.c.packets import PacketImages
 from cfepy.extra.c.posix.file_tree import PosixFiles
 from cfepy.extra.c.posix.mapped_memory import MappedMemory
 from cfepy.extra.c.posix.open_descriptors import Descriptor, DescriptorTable
-from cfepy.extra.c.posix.signals import Signals
+from cfepy.extra.c.posix.signal_actions import SignalActions
 from cfepy.extra.c.races import CompiledRaceWatch
 from cfepy.extra.c.source_places import CallFrames, CodePlace, PreemptedFrames, raise_at
 from cfepy.extra.c.stacks import LEAST, Stacks
@@ -76,7 +76,7 @@ class CRuntime:
         at_app_end: called when an application has ended.
         at_close: called at the end of the processor, while its memory still exists.
         descriptors, posix_files, file_streams: the descriptors, files and FILEs of POSIX.
-        signals, mapped_memory: what SIGPIPE does, and the memory of mmap.
+        signals, mapped_memory: the action of SIGPIPE, and the memory of mmap.
         openers: called with path, flags and permissions before a file is opened; they return a device or None.
         on_unload: functions that get each image before it is unloaded.
     """
@@ -146,7 +146,7 @@ class CRuntime:
         self.tells_code = cfe.psp.all_memory is None
         self.declared = Declarations(self._libc)
         self.streams = Streams(console.write, lambda: getattr(kernel.current.owner, "name", ""), nodes)
-        self.signals = Signals()
+        self.signals = SignalActions()
         self.descriptors = DescriptorTable()
         self.mapped_memory = MappedMemory(self.arena, self.memory)
         self.openers: list[Callable[[str, int, int], Descriptor | None]] = []

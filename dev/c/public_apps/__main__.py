@@ -10,7 +10,7 @@ import json
 import sys
 from pathlib import Path
 
-from dev.c.public_apps.comparing import compare_mission
+from dev.c.public_apps.comparison import compare_mission
 from dev.c.public_apps.flight import flown
 from dev.c.public_apps.missions import PublicMissions, read_missions
 from dev.c.public_apps.results import (

@@ -1,9 +1,9 @@
 """Fly a public application on cfepy and on NASA's cFE with the same commands, and compare its packets and events.
 
-The same sources are built twice: for cfepy with its headers, for NASA's cFE with those of its build. Each MsgId of a
-command pipe gets the codes 0 to 11 without a payload. If the application answers with the length that it expects, the
-code comes again with that length and a random payload. Behind each command come the requests for telemetry. A MsgId of
-telemetry gets an empty packet.
+The same sources are built twice: for cfepy with its headers, and for NASA's cFE with the headers of its build. Each
+MsgId of a command pipe gets the codes 0 to 11 without a payload. If the application answers with the length that it
+expects, the code comes again with that length and a random payload. Behind each command come the requests for
+telemetry. A MsgId of telemetry gets an empty packet.
 
 Both sides have the configuration of NASA's build, and no devices. The application LINK carries packets to and from the
 ground (`dev/twin/link_app.py`). Times of packets, sequence counts of events and events of flywheel mode are left out.

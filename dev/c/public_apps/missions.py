@@ -44,8 +44,8 @@ class PublicMission:
         libraries: folders of libraries in the repository that an application needs; built with the same options.
         devices: names of devices that are there in a flight, and send nothing.
         host: libraries of this computer that applications need on NASA's cFE, such as "socketcan".
-        events_only: applications of which only the events are compared with those on NASA's cFE, because their
-            telemetry counts what they did in real time.
+        events_only: applications whose telemetry is not compared with NASA's cFE, because it counts steps of real
+            time.
         blank: a regular expression for times in texts of events, which are not compared.
         explained: why applications behave differently on NASA's cFE.
     """

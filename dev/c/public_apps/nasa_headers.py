@@ -1,7 +1,7 @@
 """A C or C++ compiler that takes NASA's headers where `cfepy build` gives cfepy's.
 
 `environment` gives `cfepy build` scripts as CC and CXX, which call `run`. An application is built twice from the same
-sources, definitions and options: once with cfepy's headers, and once with those of the NASA build that it flies on.
+sources, definitions and options: once with cfepy's headers, and once with the headers of the NASA build.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def compiled(source: Path, made: Path, built: Path, *more: str) -> bytes:
 
 
 def with_nasas(command: Sequence[str], nasas: Sequence[str], libraries: Sequence[str]) -> list[str]:
-    """Return the command of a compiler with NASA's headers in place of cfepy's, before those of the mission.
+    """Return the command of a compiler with NASA's headers in place of cfepy's, before the mission's headers.
 
     Args:
         command: the command.

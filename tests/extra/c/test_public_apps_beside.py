@@ -10,7 +10,7 @@ from cfepy.es import entries
 from cfepy.evs.packets import LONG_EVENT_MSG_MID
 from cfepy.msg import command
 from dev.c.public_apps.beside import Rules, differences, planned
-from dev.c.public_apps.comparing import compare_mission
+from dev.c.public_apps.comparison import compare_mission
 from dev.c.public_apps.missions import PublicMission, read_missions
 from dev.c.public_apps.nasa_headers import flags_file, headers, with_nasas
 from dev.c.public_apps.results import (

@@ -22,7 +22,7 @@ from cfepy.extra.c.posix.open_descriptors import (
     Facts,
     failure,
 )
-from cfepy.extra.c.posix.signals import Signals
+from cfepy.extra.c.posix.signal_actions import SignalActions
 from cfepy.osal import LONGEST_DATAGRAM, Datagram, Endpoint, Listener, Mailbox, Network, Place, Stream
 from cfepy.rtos import FOREVER, Kernel
 
@@ -106,7 +106,7 @@ class PosixSocket(AnySocket):
     Args:
         kernel: the processor.
         network: the mission's network.
-        signals: what the process does with SIGPIPE.
+        signals: the action of SIGPIPE.
         is_ip6: whether it belongs to IPv6.
         kind: SOCK_STREAM or SOCK_DGRAM.
         flags: O_NONBLOCK or 0.
@@ -122,7 +122,7 @@ class PosixSocket(AnySocket):
         self,
         kernel: Kernel,
         network: Network,
-        signals: Signals,
+        signals: SignalActions,
         is_ip6: bool,
         kind: int,
         flags: int,

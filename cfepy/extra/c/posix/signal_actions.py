@@ -1,4 +1,4 @@
-"""The signals of a process of Linux, as far as compiled code may choose what they do: to ignore them, or the default.
+"""The signals of a process of Linux, and the actions that compiled code may choose: to ignore one, or the default.
 
 No signal of the host reaches an application. SIGPIPE comes from a write to a pipe or a connection without a reader.
 """
@@ -19,7 +19,7 @@ HANDLER = (
 )
 
 
-class Signals:
+class SignalActions:
     """The actions of a processor's signals: SIG_DFL or SIG_IGN."""
 
     def __init__(self) -> None:
