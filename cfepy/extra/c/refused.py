@@ -80,7 +80,7 @@ BY_REASON: dict[str, tuple[str, ...]] = {
         *("ungetwc", "vfwprintf", "vfwscanf", "vwprintf", "vwscanf", "wcsftime", "wprintf", "wscanf"),
     ),
     "the only language is C's": (
-        *("bind_textdomain_codeset", "bindtextdomain", "dgettext", "gettext", "iconv", "iconv_close", "iconv_open"),
+        *("bind_textdomain_codeset", "bindtextdomain", "dgettext", "iconv", "iconv_close", "iconv_open"),
         *("__strftime_l", "__wcscoll_l", "__wcsftime_l", "__wcsxfrm_l", "mbsnrtowcs", "wcsnrtombs"),
     ),
     "texts in UTF-16 and UTF-32 are not available; the locale C has single bytes": (
