@@ -425,7 +425,7 @@ def add_output(parser: argparse.ArgumentParser, text: str, default: str | None =
 
 def add_cfe(parser: argparse.ArgumentParser) -> None:
     """Add the option for the release of cFE that sources in C are written for."""
-    text = "the sources are for cFE 6: 6.5, 6.7 or 6.8 (default: cFE 7)"
+    text = "the sources are for cFE 6.5, 6.7 or 6.8 (default: 7)"
     parser.add_argument("--cfe", metavar="RELEASE", help=text)
 
 

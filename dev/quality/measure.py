@@ -11,8 +11,8 @@ from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from cfepy.extra.exploration.campaign import Search
-from cfepy.extra.exploration.kinds import NOTHING_FOUND
 from cfepy.extra.exploration.missing_points import openings_of
+from cfepy.extra.exploration.schedule_kinds import NOTHING_FOUND
 from cfepy.extra.exploration.search import make_search
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Findings, Verdict

@@ -16,8 +16,8 @@ from pathlib import Path
 
 from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.fork_server import ForkingJudge
-from cfepy.extra.exploration.kinds import NOTHING_FOUND
 from cfepy.extra.exploration.missing_points import openings_of
+from cfepy.extra.exploration.schedule_kinds import NOTHING_FOUND
 from cfepy.extra.exploration.search import make_search
 from cfepy.extra.exploration.trial import Trial
 from cfepy.extra.exploration.verdict import Verdict

@@ -102,8 +102,8 @@ int main()
     const double               sum    = fly(buffer, bytes.data(), bytes.size());
     std::printf("news: %lu, sum %g\n", g_news - before, sum);
     std::printf("forgotten early: %lu\n", static_cast<unsigned long>(buffer.frames().cut_short()));
-    std::printf("oldest: %d %d\n", buffer.canTransform("map", kNames[0], ros::Time(145, 0)),
-                buffer.canTransform("map", kNames[0], ros::Time(144, 0)));
+    std::printf("oldest: %d %d\n", buffer.canTransform("map", kNames[0], ros::Time(147, 0)),
+                buffer.canTransform("map", kNames[0], ros::Time(145, 0)));
 
     const geometry_msgs::TransformStamped one     = sample(1, 7);
     const roscfe::frames::Transforms      message = {&one, 1};

@@ -118,7 +118,7 @@ def uses_exceptions(sources: SourceSet) -> bool:
     """Return True if sources of a node throw or catch, or ask for types at run time.
 
     Args:
-        sources: also headers; those of the library do not count.
+        sources: also headers. The headers of the library do not count.
     """
     folder = library_folder()
     return any(_EXCEPTIONS.search(text) for file, text in sources.texts.items() if not file.is_relative_to(folder))
@@ -128,7 +128,7 @@ def library_sources(used: Iterable[Path], real_boost: bool = False) -> list[Path
     """Return the library's sources that a node needs, sorted: the core, and the parts whose headers are used.
 
     Args:
-        used: all headers that the node includes; those of the library count.
+        used: all headers that the node includes. The headers of the library count.
         real_boost: as of `library_includes`.
     """
     folder, included = library_folder(), list(used)

@@ -19,13 +19,13 @@ if TYPE_CHECKING:
     from cfepy.extra.exploration.draws import Drawn, draws_of
     from cfepy.extra.exploration.exploration import DEFAULT_SEEDS, Expedition, Report, Told
     from cfepy.extra.exploration.field_measures import FieldMeasure, FieldValue
-    from cfepy.extra.exploration.kinds import seeded_kinds
     from cfepy.extra.exploration.longest import Worst
     from cfepy.extra.exploration.mission_transfer import files_read, ship
     from cfepy.extra.exploration.monte_carlo import Group, Quantity, groups_of
     from cfepy.extra.exploration.monte_carlo_picture import picture_of_draws
     from cfepy.extra.exploration.progress import make_progress
     from cfepy.extra.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
+    from cfepy.extra.exploration.schedule_kinds import seeded_kinds
     from cfepy.extra.exploration.search import SeededSearch
     from cfepy.extra.exploration.shrink import SHRINK_S, Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.extra.exploration.sweep import (

@@ -20,13 +20,13 @@ from cfepy.extra.exploration.campaign import Campaign, Crew, Search, Tally
 from cfepy.extra.exploration.deadlock import waits_of
 from cfepy.extra.exploration.extent import Breadth, PointCounter
 from cfepy.extra.exploration.fork_server import ForkingNotes
-from cfepy.extra.exploration.kinds import NOTHING_FOUND
 from cfepy.extra.exploration.longest import Distribution, MeasuredTrial, Worst, WorstSearch, worst_of
-from cfepy.extra.exploration.missing_points import Openings, SourceWatch, openings_of
+from cfepy.extra.exploration.missing_points import OpenPlaces, SourceWatch, openings_of
 from cfepy.extra.exploration.mission_transfer import files_read, identity_of, ship
 from cfepy.extra.exploration.partial_orders import OrderSearch
 from cfepy.extra.exploration.progress import make_progress
 from cfepy.extra.exploration.results_file import ResultsFile, keep_failure
+from cfepy.extra.exploration.schedule_kinds import NOTHING_FOUND
 from cfepy.extra.exploration.search import SEEDED_POLICIES, NewSwitchSearch, SeededSearch, make_search
 from cfepy.extra.exploration.shrink import SHRINK_S, NotedFlight, Shrinker, Shrunk, budget_of
 from cfepy.extra.exploration.step_accesses import check_visible
@@ -287,7 +287,7 @@ class Expedition:
             report.worst = worst_of(trial, distribution, 0 if tally.interrupted else budget, self.shrink_s)
         return report
 
-    def _openings(self, bare: Trial, first: Tried, options: Schedule) -> Openings | None:
+    def _openings(self, bare: Trial, first: Tried, options: Schedule) -> OpenPlaces | None:
         """Return the places where further schedules could differ; None if the policy does not use them."""
         is_over = self.until_failure and first.verdict.failed
         if self.policy != "all" or self.points or self.worst is not None or is_over or first.verdict.end_ns is None:
@@ -297,7 +297,7 @@ class Expedition:
         found = openings_of(bare, options)
         return found._replace(overlaps=found.overlaps and first.cores != 1)
 
-    def _search(self, first: Tried, options: Schedule, openings: Openings) -> Search:
+    def _search(self, first: Tried, options: Schedule, openings: OpenPlaces) -> Search:
         """Return the search of `make_search`; with a measure, the search for the longest value that begins with it."""
         holds = self.worst is None  # a delayed task is late by the delay, not by the mission
         steps, tick_ns = first.verdict.decisions, first.tick_ns

@@ -33,7 +33,7 @@ LONG_NS = NS_PER_MS  # computations of this length decide which deadlines are me
 _SERVICES = (*CORE_APPS, "ROS")  # applications of cFE, and the one of the parameter server and /rosout
 
 
-class Openings(NamedTuple):
+class OpenPlaces(NamedTuple):
     """The places where further schedules could differ.
 
     Attributes:
@@ -51,7 +51,7 @@ class Openings(NamedTuple):
     files: tuple[str, ...] = ()
 
 
-def openings_of(trial: Trial, options: Schedule) -> Openings:
+def openings_of(trial: Trial, options: Schedule) -> OpenPlaces:
     """Fly the run once more. Returns the places that all schedules with these options leave open.
 
     Args:
@@ -63,7 +63,7 @@ def openings_of(trial: Trial, options: Schedule) -> Openings:
     schedule = replace(options.at({}), any_priority=True).with_points(CALLS)
     overlaps = OverlapPolicy(schedule.policy() or Policy())
     plain.fly(schedule, [watch], policy=overlaps)
-    return Openings(
+    return OpenPlaces(
         watch.shared(), overlaps.found and not watch.computes, tuple(watch.lines()), tuple(watch.files.lines())
     )
 

@@ -13,9 +13,9 @@ from collections import Counter, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from cfepy.extra.exploration.kinds import NOTHING_FOUND, Kind, in_turn, seeded_kinds
-from cfepy.extra.exploration.missing_points import Openings
+from cfepy.extra.exploration.missing_points import OpenPlaces
 from cfepy.extra.exploration.partial_orders import OrderSearch
+from cfepy.extra.exploration.schedule_kinds import NOTHING_FOUND, ScheduleKind, in_turn, seeded_kinds
 from cfepy.extra.exploration.switch_kinds import SwitchKinds
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.mission import CORE_APPS
@@ -38,7 +38,7 @@ class SeededSearch:
         first_seed: of the first one.
     """
 
-    def __init__(self, kinds: tuple[Kind, ...], first_seed: int = 0) -> None:
+    def __init__(self, kinds: tuple[ScheduleKind, ...], first_seed: int = 0) -> None:
         self._kinds = tuple(each.schedule for each in kinds)
         self._round = in_turn([each.turns for each in kinds])
         self._number = 0
@@ -85,7 +85,7 @@ class NewSwitchSearch(SeededSearch):
         switches: the kinds so far.
     """
 
-    def __init__(self, kinds: tuple[Kind, ...], first_seed: int = 0) -> None:
+    def __init__(self, kinds: tuple[ScheduleKind, ...], first_seed: int = 0) -> None:
         super().__init__(kinds, first_seed)
         self.switches = SwitchKinds()
         self._size = TURNS * len(kinds)
@@ -159,7 +159,7 @@ def make_search(
     *,
     holds: bool = True,
     new_switches: bool = False,
-    openings: Openings = NOTHING_FOUND,
+    openings: OpenPlaces = NOTHING_FOUND,
 ) -> AnySearch:
     """Return the search for the options of a command.
 

@@ -10,8 +10,8 @@ import pytest
 
 from cfepy.extra.exploration import Expedition, Report, Worst
 from cfepy.extra.exploration.commands.explore import show
-from cfepy.extra.exploration.kinds import Kind
 from cfepy.extra.exploration.longest import FROM_SEEDS, MeasuredTrial, WorstSearch
+from cfepy.extra.exploration.schedule_kinds import ScheduleKind
 from cfepy.extra.exploration.search import SeededSearch
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.monitors.durations import Measure
@@ -135,7 +135,7 @@ def test_invalid_measure_is_refused(text: str) -> None:
 
 
 def test_generation_waits_for_earlier_verdicts_and_varies_the_longest() -> None:
-    search = WorstSearch(SeededSearch((Kind(Schedule("random")),)))
+    search = WorstSearch(SeededSearch((ScheduleKind(Schedule("random")),)))
     given = [search.next() for _ in range(FROM_SEEDS)]
     assert None not in given
     assert search.next() is None

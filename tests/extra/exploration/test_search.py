@@ -7,8 +7,8 @@ from itertools import islice
 
 import pytest
 
-from cfepy.extra.exploration.kinds import NOTHING_FOUND
-from cfepy.extra.exploration.missing_points import Openings
+from cfepy.extra.exploration.missing_points import OpenPlaces
+from cfepy.extra.exploration.schedule_kinds import NOTHING_FOUND
 from cfepy.extra.exploration.search import NewSwitchSearch, SeededSearch, SystematicSearch, make_search, shares
 from cfepy.extra.exploration.verdict import Verdict
 from cfepy.schedules.schedule import Schedule
@@ -26,7 +26,7 @@ def first(
     depth: int | None = None,
     options: str = "at",
     seed: int = 0,
-    openings: Openings = NOTHING_FOUND,
+    openings: OpenPlaces = NOTHING_FOUND,
 ) -> list[str]:
     search = make_search(policy, depth, 50, Schedule.parse(options), seed, openings=openings)
     found = search.next()
@@ -89,20 +89,22 @@ def test_with_points_between_calls_random_has_the_most_turns() -> None:
 
 
 def test_one_schedule_of_four_has_points_at_shared_data() -> None:
-    found = first("all", 32, openings=Openings(("goals", "total")))
+    found = first("all", 32, openings=OpenPlaces(("goals", "total")))
     assert sum(text.endswith(":points=shared,goals,total") for text in found) == 8
     assert found[:6] == first("all", 6)
     assert {text.split(":")[0] for text in found if "shared" in text} == {"random", "pct"}
 
 
 def test_any_priority_has_turns_if_tasks_of_different_priority_overlap() -> None:
-    found = first("all", 32, openings=Openings(overlaps=True))
+    found = first("all", 32, openings=OpenPlaces(overlaps=True))
     assert sum(text.endswith(":any") for text in found) == 8
-    assert not any(":any:any" in text for text in first("all", 32, options="at:any", openings=Openings(overlaps=True)))
+    assert not any(
+        ":any:any" in text for text in first("all", 32, options="at:any", openings=OpenPlaces(overlaps=True))
+    )
 
 
 def test_other_policies_do_not_use_openings() -> None:
-    openings = Openings(("total",), overlaps=True)
+    openings = OpenPlaces(("total",), overlaps=True)
     assert first("random", 20, openings=openings) == first("random", 20)
     with_points = first("all", 20, options="at:points=lines", openings=openings)
     assert with_points == first("all", 20, options="at:points=lines")

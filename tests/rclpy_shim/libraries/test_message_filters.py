@@ -1,4 +1,4 @@
-"""message_filters of ROS 2. It is not among the packages of the real rclpy; the rules are those of its sources."""
+"""message_filters of ROS 2. It is not among the packages of the real rclpy; its rules come from its sources."""
 
 from __future__ import annotations
 

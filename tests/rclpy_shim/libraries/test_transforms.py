@@ -1,4 +1,4 @@
-"""tf2_ros of ROS 2. There is no rclpy with tf2 to compare with; texts and rules are those of its sources."""
+"""tf2_ros of ROS 2. There is no rclpy with tf2 to compare with; texts and rules come from its sources."""
 
 from __future__ import annotations
 

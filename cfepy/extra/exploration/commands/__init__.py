@@ -84,7 +84,7 @@ def _add_search(explore: argparse.ArgumentParser) -> None:
         "--points",
         default="",
         metavar="KIND",
-        help="preempt at lines, attributes or calls[:MODULE,...], or shared:NAME,...",
+        help="preempt at lines, attributes or calls, or shared:NAME",
     )
     explore.add_argument(
         "--from",

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from cfepy.extra.exploration.missing_points import Openings
+from cfepy.extra.exploration.missing_points import OpenPlaces
 from cfepy.schedules import SHARED, Points, Schedule
 
 PCT_DEPTH = 3
@@ -20,10 +20,10 @@ PORTFOLIO_HOLD_NS = 1_000_000
 A race with a timer, or with a more urgent task that waits for one, shows only when code takes time. A longer delay
 would break a mission's justified assumptions about its own sleeps; less than a tick would reach no timer."""
 USUAL_TURNS = 2  # of each other kind; so one schedule of four has points at shared data, and one of four any priority
-NOTHING_FOUND = Openings()
+NOTHING_FOUND = OpenPlaces()
 
 
-class Kind(NamedTuple):
+class ScheduleKind(NamedTuple):
     """A kind of schedules.
 
     Attributes:
@@ -43,8 +43,8 @@ def seeded_kinds(
     tick_ns: int = 0,
     *,
     holds: bool = True,
-    openings: Openings = NOTHING_FOUND,
-) -> tuple[Kind, ...]:
+    openings: OpenPlaces = NOTHING_FOUND,
+) -> tuple[ScheduleKind, ...]:
     """Return the kinds of schedules of a policy. The arguments are the same as in `search.make_search`.
 
     With points between calls there are many decisions, so PCT rarely hits the ones of a bug. In 13 programs that need
@@ -56,22 +56,22 @@ def seeded_kinds(
     depths = PORTFOLIO_DEPTHS if depth is None and is_mixed else (PCT_DEPTH if depth is None else depth,)
     pct = tuple(replace(options, kind="pct", depth=each, steps=max(steps, 1)) for each in depths)
     if not is_mixed:
-        return tuple(map(Kind, {"random": (random,), "pct": pct, "abreast": (abreast,)}[policy]))
+        return tuple(map(ScheduleKind, {"random": (random,), "pct": pct, "abreast": (abreast,)}[policy]))
     delay_ns = options.hold_ns or max(PORTFOLIO_HOLD_NS, tick_ns)
     held = [replace(random, hold_ns=delay_ns)] if holds or options.hold_ns else []
     deepest = max(pct, key=lambda each: each.depth)
     if options.points:
         often = held or [random]
-        return tuple(map(Kind, (random, deepest, abreast, *often, random, *often)))
+        return tuple(map(ScheduleKind, (random, deepest, abreast, *often, random, *often)))
     late = [replace(each, late_ns=delay_ns) for each in held]
-    rows = [Kind(each, USUAL_TURNS) for each in (random, pct[0], abreast, *late, *pct[1:])]
+    rows = [ScheduleKind(each, USUAL_TURNS) for each in (random, pct[0], abreast, *late, *pct[1:])]
     if openings.shared:
         points = Points(SHARED, names=openings.shared).text()
-        rows.append(Kind(random.with_points(points), 2))
-        rows += [Kind(each.with_points(points)) for each in (deepest, *late)]
+        rows.append(ScheduleKind(random.with_points(points), 2))
+        rows += [ScheduleKind(each.with_points(points)) for each in (deepest, *late)]
     if openings.overlaps and not options.any_priority:
-        rows.append(Kind(replace(random, any_priority=True), 2))
-        rows += [Kind(replace(each, any_priority=True)) for each in (pct[0], deepest)]
+        rows.append(ScheduleKind(replace(random, any_priority=True), 2))
+        rows += [ScheduleKind(replace(each, any_priority=True)) for each in (pct[0], deepest)]
     return tuple(rows)
 
 
