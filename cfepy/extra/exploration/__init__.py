@@ -172,7 +172,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "Finding",
                 "Verdict",
             ),
-            ".kinds": ("seeded_kinds",),
+            ".schedule_kinds": ("seeded_kinds",),
             ".longest": ("Worst",),
         },
     )
