@@ -10,7 +10,7 @@ import pytest
 
 from cfepy.cli.main import main
 from cfepy.extra.exploration import Expedition, Report, Trial
-from cfepy.extra.exploration.missing_points import Openings, openings_of
+from cfepy.extra.exploration.missing_points import OpenPlaces, openings_of
 from cfepy.pilot import RunPlan
 from cfepy.schedules import SHARED, Points, Schedule, name_of
 from cfepy.status import UsageError
@@ -95,7 +95,7 @@ def apps(tmp_path: Path) -> RunPlan:
     return RunPlan((str(tmp_path),), seconds=1.0)
 
 
-def found_in(plan: RunPlan) -> Openings:
+def found_in(plan: RunPlan) -> OpenPlaces:
     return openings_of(Trial(plan), Schedule("at"))
 
 
