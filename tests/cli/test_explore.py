@@ -53,11 +53,12 @@ def test_a_failure_is_told_once_with_its_command_and_timeline(
 
 def test_a_mission_that_always_goes_well(late: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert explore(late, "--for", 0.7, "--seeds", 5, "--jobs", 1, "--events", "none") == ENDED_WELL
-    told, orders, points, chance = capsys.readouterr().out.splitlines()
+    told, orders, points, chance, kinds = capsys.readouterr().out.splitlines()
     assert told == "5 schedules, 0 failed: no failure"
     assert orders == "  5 different orders"
     assert points.startswith("  under fifo others can get in at 16 points: ")
     assert chance.endswith(" at depth 3 (PCT's bound for 13 tasks and 16 points)")
+    assert kinds.startswith("  schedules of special kinds: 1 with tasks held up for up to 1ms; ")
 
 
 @pytest.mark.slow

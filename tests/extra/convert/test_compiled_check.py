@@ -93,12 +93,13 @@ FILES = """
 int main(int argc, char **argv)
 {
     ros::init(argc, argv, "files");
+    char name[] = "/tmp/xXXXXXX";
     if (pause() == 0)
     {
-        std::freopen("/tmp/x", "w", stdout);
+        mkstemp(name);
     }
     usleep(10);
-    return freopen("/tmp/y", "r", stdin) == nullptr;
+    return mkstemp(name);
 }
 """
 
@@ -144,7 +145,7 @@ def test_function_of_the_host_that_ends_the_node_is_an_error(tmp_path: Path) -> 
     report = checked(tmp_path, FILES)
     errors = [(each.rule, each.place.line, each.message.partition(":")[0]) for each in report.at(Level.ERROR)]
     assert errors == [
-        ("host-function", line, call) for line, call in ((8, "pause()"), (10, "freopen()"), (13, "freopen()"))
+        ("host-function", line, call) for line, call in ((9, "pause()"), (11, "mkstemp()"), (14, "mkstemp()"))
     ]
     assert {each.rule for each in report.at(Level.WARNING)} == {"sleep"}
 

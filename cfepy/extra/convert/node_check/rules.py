@@ -227,7 +227,7 @@ RULES: dict[str, CheckRule] = {
         ),
         CheckRule(
             *("host-function", _E, _E, _E),
-            "a call of a function of C or POSIX that needs the operating system, such as pipe() or freopen()",
+            "a call of a function of C or POSIX that needs the operating system, such as tmpfile() or mkfifo()",
             "cfepy ends the node at the call",
             "use the function of OSAL or cFE that the message names, or a call of ROS",
         ),

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """The twin of src/twin.cpp: lists that keep the last messages, as long as roscpp's queues."""
 
+import threading
 from collections import deque
 
 import rospy
@@ -24,6 +25,7 @@ class Twin:
     def __init__(self):
         self.queues = [Queue("small", 1), Queue("medium", 4), Queue("own", 3)]
         self.at_once = False
+        self.end = None
         rospy.Subscriber("in", Int32, self.take, queue_size=20)
 
     def take(self, message):
@@ -31,6 +33,9 @@ class Twin:
             queue.waiting.append(message.data)
         if self.at_once:
             self.spin_once()
+        if self.end:
+            self.at_once = False
+            self.end.set()
 
     def spin_once(self):
         """Call the waiting entries of the global queue: in the order of the first messages, one callback each."""
@@ -57,14 +62,15 @@ class Twin:
         out.publish("asynchronous")
         self.at_once = True
         rospy.sleep(2.2)
-        self.at_once = False
-        rospy.sleep(0.02)  # the thread of roscpp's spinner looks each 0.1 s whether it is stopped
+        self.end = threading.Event()  # roscpp's spinner ends with the callbacks of the next message
+        self.end.wait()
         out.publish("stopped")
-        rospy.sleep(0.5)
+        rospy.sleep(0.55)
         out.publish("not empty" if own.waiting else "empty")
         own.waiting.clear()
         out.publish("cleared")
         self.spin_once()
+        self.end = None
         self.at_once = True
         rospy.spin()
 

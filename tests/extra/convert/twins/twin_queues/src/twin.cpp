@@ -44,7 +44,7 @@ int main(int argc, char **argv)
     ros::Duration(2.2).sleep();
     spinner.stop();
     say("stopped");
-    ros::Duration(0.5).sleep();
+    ros::Duration(0.55).sleep();
     say(queue.isEmpty() ? "empty" : "not empty");
     queue.clear();
     say("cleared");
