@@ -18,8 +18,11 @@ FILES = 4096  # number of files whose owner is cached
 PACKAGE = str(Path(__file__).resolve().parents[1])
 _CFEPY = os.path.join(PACKAGE, "")
 _COMPILED = "cfepy/"
-_ROSPY = os.path.join(os.path.dirname(PACKAGE), "rospy_shim", "")
-_LIBRARIES = os.path.join(os.path.dirname(PACKAGE), "ros_libraries", "")
+BESIDE = ("rospy_shim", "rclpy_shim", "ros_libraries")
+"""Folders with cfepy's own code beside the package: what stands for ROS 1 and ROS 2, and ROS's libraries."""
+_ROSPY, _ROS2, _ROS1_LIBRARIES = (os.path.join(os.path.dirname(PACKAGE), each, "") for each in BESIDE)
+_ROS2_LIBRARIES = os.path.join(_ROS2, "libraries", "")
+_RCLPY = os.path.join(_ROS2_LIBRARIES, "rclpy", "")
 _STANDARD_LIBRARY = os.path.join(os.path.dirname(linecache.__file__), "")
 _INSTALLED = ("site-packages", "dist-packages")
 
@@ -35,14 +38,18 @@ def source_file(file: str) -> str:
 @functools.lru_cache(maxsize=FILES)
 def is_shown(file: str) -> bool:
     """Return whether code is from the mission or a library, not from the simulator."""
-    return not source_file(file).startswith((_CFEPY, _ROSPY, "<"))
+    path = source_file(file)
+    if path.startswith(_ROS2_LIBRARIES):
+        return not path.startswith(_RCLPY)
+    return not path.startswith((_CFEPY, _ROSPY, _ROS2, "<"))
 
 
 @functools.lru_cache(maxsize=FILES)
 def is_library(file: str) -> bool:
     """Return whether a source file belongs to the standard library or to an installed package."""
     parts = Path(file).parts
-    return file.startswith((_STANDARD_LIBRARY, _LIBRARIES)) or any(name in parts for name in _INSTALLED)
+    own = (_STANDARD_LIBRARY, _ROS1_LIBRARIES, _ROS2_LIBRARIES)
+    return (file.startswith(own) and not file.startswith(_RCLPY)) or any(name in parts for name in _INSTALLED)
 
 
 @functools.lru_cache(maxsize=FILES)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 from cfepy import __version__
 from cfepy.config.versions import RELEASES
+from cfepy.interpreter.own_code import BESIDE
 from cfepy.mission import KEPT_ENVIRONMENT, MissionSpec
 from cfepy.reading.resources import shipped
 
@@ -29,7 +30,7 @@ def versions() -> dict[str, str]:
 def own_places() -> tuple[str, ...]:
     """Return the folders of cfepy's own files, including its applications and boards."""
     package = Path(__file__).resolve().parents[1]
-    beside = (package.parent / each for each in ("rospy_shim", "ros_libraries"))
+    beside = (package.parent / each for each in BESIDE)
     return tuple(map(str, (package, *beside, shipped("apps"), shipped("boards"))))
 
 

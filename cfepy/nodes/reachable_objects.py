@@ -30,13 +30,15 @@ from types import (
 from typing import Any
 from weakref import ReferenceType
 
+from cfepy.interpreter.own_code import BESIDE
+
 _ANYTHING = frozenset(
     ["__dict__", "__import__", "eval", "exec", "get_objects", "globals", "import_module", "locals", "modules", "vars"]
 )
 """Names through which code can reach everything in its module."""
 _BY_NAME = frozenset(["attrgetter", "getattr", "methodcaller"])
 """Functions through which code can call a method that it does not name."""
-_OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", "ros_libraries", "rospy_shim"])
+_OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", *BESIDE])
 _WITH = ("BEFORE_WITH", "BEFORE_ASYNC_WITH", "LOAD_SPECIAL")
 _JUMPS = frozenset((*dis.hasjrel, *dis.hasjabs))
 _LEAVES = frozenset([CodeType, FrameType, GetSetDescriptorType, WrapperDescriptorType, MethodDescriptorType])

@@ -21,6 +21,9 @@ LIBRARIES = PACKAGE.parent / "ros_libraries"
         (PACKAGE / "rtos" / "kernel.py", False, False),
         ("cfepy/rtos/kernel.py", False, False),  # as a compiled module names its source
         (PACKAGE.parent / "rospy_shim" / "runtime.py", False, False),
+        (PACKAGE.parent / "rclpy_shim" / "seam" / "waiting.py", False, False),
+        (PACKAGE.parent / "rclpy_shim" / "libraries" / "rclpy" / "executors.py", False, False),
+        (PACKAGE.parent / "rclpy_shim" / "libraries" / "tf2_ros" / "buffer.py", True, False),
         ("<string>", False, False),
         (LIBRARIES / "tf2_ros" / "__init__.py", True, False),
         (os.__file__, True, False),

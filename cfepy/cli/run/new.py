@@ -16,6 +16,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cfepy.cli.main import ENDED_WELL
+from cfepy.interpreter.own_code import BESIDE
 from cfepy.plugins import Hook
 from cfepy.reading.resources import shipped
 from cfepy.status import UsageError
@@ -26,7 +27,7 @@ APP_SUFFIX = "_app"
 LONGEST_APP = 14  # its entry point, NAME_Main, must fit the 19 characters that cFE permits
 LONGEST = {"app": LONGEST_APP, "mission": LONGEST_APP - len(APP_SUFFIX)}
 SHIPPED = ("ci_lab", "hk", "sample_app", "sample_lib", "sch", "sch_lab", "sch_lib", "to_lab")
-TAKEN = ("cfepy", "ros_libraries", "rospy", "rospy_shim", "std_msgs", *SHIPPED)
+TAKEN = ("cfepy", "rclpy", "rospy", "std_msgs", *BESIDE, *SHIPPED)
 OF_CFE = ("cfe_", "ccsds_", "os_", "osal_")
 LIBRARY = "library"  # the sample's use of the sample library, which a new application does not need
 FIRST_TOPIC, TOPIC_PAIRS = 0xA0, 0x30  # topic ids of new apps: after NASA's apps, before ROS topics

@@ -179,9 +179,11 @@ def code_owner(file: str) -> str:
         package = parts[1] if len(parts) > 2 else ""
         if parts[0] == "cfepy":
             return SERVICES.get(package, f"cfepy, {package}" if package else "cfepy")
-        return ROSPY.get(package, "ROS in cfepy")
+        return "ROS 2 in cfepy" if parts[0] == "rclpy_shim" else ROSPY.get(package, "ROS in cfepy")
     if parts and parts[0] in ("apps", "ros_libraries") and len(parts) > 2:
         return f"{parts[0]}/{parts[1]}"
+    if parts[:2] == ("rclpy_shim", "libraries") and len(parts) > 3:
+        return f"{parts[0]}/{parts[2]}"
     if is_standard(file):
         return STANDARD
     return _installed(file) if is_library(file) else os.path.basename(file)

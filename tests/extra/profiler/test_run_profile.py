@@ -84,6 +84,8 @@ def test_collapsed_stacks_have_a_line_each(profile: RunProfile, suffix: str) -> 
         (str(ROOT / "rospy_shim/runtime.py"), "ROS in cfepy"),
         (str(ROOT / "apps/hk/app.py"), "apps/hk"),
         (str(ROOT / "ros_libraries/tf2_ros/buffer.py"), "ros_libraries/tf2_ros"),
+        (str(ROOT / "rclpy_shim/libraries/tf2_ros/buffer.py"), "rclpy_shim/tf2_ros"),
+        (str(ROOT / "rclpy_shim/libraries/rclpy/executors.py"), "ROS 2 in cfepy"),
         (sysconfig.get_paths()["stdlib"] + "/json/decoder.py", "Python's standard library"),
         ("<frozen importlib._bootstrap>", "Python's standard library"),
         ("<string>", "generated code of messages"),
