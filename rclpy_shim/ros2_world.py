@@ -10,8 +10,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rclpy_shim.interfaces import Interfaces
 from rclpy_shim.seam.ros2_program import Ros2Program
 from rospy_shim.library_parts import STAND_INS
+from rospy_shim.types.msgs import OnDisk, Packages
 
 if TYPE_CHECKING:
     from cfepy.nodes import Factory, NodeConfig
@@ -67,6 +69,23 @@ class Ros2World:
             found += ["-p", f"{name}:={_written(value)}"]
         return [*config.args, *(["--ros-args", *found] if found else [])]
 
+    def library_names(self) -> frozenset[str]:
+        """Return the names of the libraries, such as "rclpy"."""
+        return frozenset(place.parent.name for place in LIBRARIES.glob("*/__init__.py"))
+
+    def types_near(self, packages: Packages, environ: Mapping[str, str]) -> Interfaces:
+        """Return the message types of a program.
+
+        Args:
+            packages: the packages near the program.
+            environ: its environment variables.
+        """
+        return Interfaces([OnDisk(packages)], environ)
+
+    def refusal(self, name: str) -> str:
+        """Return why a program cannot import a module; see `refusal`."""
+        return refusal(name)
+
     def finder(self, program: Ros2Program) -> Callable[[str], Factory | None]:
         """Return the finder of the program's modules: the seam, message packages, and packages that are refused.
 
@@ -81,18 +100,11 @@ class Ros2World:
             top, _, rest = name.partition(".")
             if name == SEAM:
                 return lambda universe: program.module()
+            if why := "" if top in NOT_YET and program.universe.importer.has_own(top) else refusal(name):
+                kind = ImportError if top == "rospy" else ModuleNotFoundError
+                raise kind(why, name=name)
             if top == "rclpy":
-                place = LIBRARIES.joinpath("rclpy", *rest.split("."))
-                if rest and not place.with_suffix(".py").is_file() and not (place / "__init__.py").is_file():
-                    raise _refused(name)
                 return None
-            if top in NOT_YET and not program.universe.importer.has_own(top):
-                raise _refused(name)
-            if top == "rospy":
-                raise ImportError(
-                    "a program of ROS 2 cannot import rospy; use two nodes, or write `ros: 1` for it in mission.yaml",
-                    name=name,
-                )
             if not rest and program.universe.importer.has_own(name):
                 return None
             module = program.interfaces.module(name)
@@ -101,10 +113,20 @@ class Ros2World:
         return find
 
 
-def _refused(name: str) -> ImportError:
-    return ModuleNotFoundError(
-        f"cfepy does not have {name} for nodes of ROS 2 yet; docs/how_to/run_a_ros2_node.md lists what works", name=name
-    )
+def refusal(name: str) -> str:
+    """Return why a program cannot import a module of ROS; empty if nothing refuses it.
+
+    Args:
+        name: full name of the module.
+    """
+    top, _, rest = name.partition(".")
+    if top == "rospy":
+        return "a program of ROS 2 cannot import rospy; use two nodes, or write `ros: 1` for it in mission.yaml"
+    place = LIBRARIES.joinpath(top, *rest.split("."))
+    is_there = not rest or place.with_suffix(".py").is_file() or (place / "__init__.py").is_file()
+    if top in NOT_YET or (top == "rclpy" and name != SEAM and not is_there):
+        return f"cfepy does not have {name} for nodes of ROS 2 yet; docs/how_to/run_a_ros2_node.md lists what works"
+    return ""
 
 
 def _flat(params: Mapping[str, Any], prefix: str = "") -> dict[str, Any]:

@@ -7,7 +7,7 @@ that ended is started again, left alone, or ends the whole run.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import count
 from pathlib import Path
@@ -41,6 +41,8 @@ if TYPE_CHECKING:
     from cfepy.rtos import Kernel
     from cfepy.writing.console import Console
     from rospy_shim.graph.outside import OutsideGraph
+    from rospy_shim.types.msgs import Packages
+    from rospy_shim.types.msgs.definition_sources import Kind
 
 CRASHED = 139  # 128 + SIGSEGV, as in a shell
 APP_ERROR = 3  # CFE_ES_RunStatus_APP_ERROR
@@ -122,6 +124,21 @@ class ProcessMonitor:
         self._console.write(f"launch: {text}")
 
 
+class TypeNames(Protocol):
+    """The names of message types."""
+
+    def packages(self) -> Iterable[str]:
+        """Return the names of all packages."""
+
+    def names(self, package: str, kind: Kind) -> Sequence[str] | None:
+        """Return the names of the types of a package, if it has any.
+
+        Args:
+            package: its name.
+            kind: "msg", "srv", or for ROS 2 also "action".
+        """
+
+
 class Ros2(Protocol):
     """The world of nodes of ROS 2 (`rclpy_shim.ros2_world`), which stands above this package."""
 
@@ -145,6 +162,15 @@ class Ros2(Protocol):
 
     def finder(self, program: Any) -> Callable[[str], Factory | None]:
         """Return the finder of the program's modules."""
+
+    def library_names(self) -> frozenset[str]:
+        """Return the names of the libraries."""
+
+    def types_near(self, packages: Packages, environ: Mapping[str, str]) -> TypeNames:
+        """Return the message types of a program, for the packages near it and its environment."""
+
+    def refusal(self, name: str) -> str:
+        """Return why a program cannot import a module; empty if nothing refuses it."""
 
 
 def _shows_all(module: str) -> None:

@@ -69,7 +69,7 @@ if TYPE_CHECKING:
     )
     from cfepy.mission.outside import Arrival, OutsideStream
     from cfepy.mission.packet_watch import HOST, PacketWatch, Seen, hearing, receivers
-    from cfepy.mission.processor import CORE_APPS, Processor
+    from cfepy.mission.processor import CORE_APPS, Processor, make_ros2
     from cfepy.mission.python_code import find_code, find_declarations, find_node
     from cfepy.mission.record import DataRace, Overwrite, Reset, StackUse, Traffic
     from cfepy.mission.run_pieces import FIRST_PIECE_NS, PieceLength
@@ -152,6 +152,7 @@ __all__ = [
     "is_node",
     "launch_file",
     "lines_for",
+    "make_ros2",
     "matches",
     "mission_environment",
     "mission_file_of",
@@ -271,6 +272,7 @@ if not TYPE_CHECKING:  # type checkers see only the names above
             ".processor": (
                 "CORE_APPS",
                 "Processor",
+                "make_ros2",
             ),
             ".python_code": (
                 "find_code",

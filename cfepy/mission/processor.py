@@ -338,7 +338,7 @@ class Processor:
             accesses=machine.accesses,
             traps=machine.record.traps,
             on_bad_end=machine.on_bad_end,
-            make_ros2=_make_ros2,
+            make_ros2=make_ros2,
         )
 
     @property
@@ -374,7 +374,7 @@ class Processor:
         self.loader.forget()
 
 
-def _make_ros2() -> Ros2:
+def make_ros2() -> Ros2:
     """Return the world of nodes of ROS 2; a mission without any does not load it.
 
     Raises:

@@ -160,8 +160,8 @@ def _nodes_of(folder: Path, started: list[StartupEntry], said: MissionSections) 
     """Return the scripts of the nodes in the startup script."""
     nodes = [entry for entry in started if entry.kind == CFE_APP and entry.symbol == NODE_SYMBOL]
     found = ((entry.name, find_node(entry.path, folder)) for entry in nodes if entry.path.startswith("/cf/"))
+    known = ((script, said.nodes.get(name)) for name, script in found if script is not None)
     return [
-        NodeScript(script, dict(said.nodes[name].env) if name in said.nodes else {})
-        for name, script in found
-        if script is not None
+        NodeScript(script, {}) if config is None else NodeScript(script, dict(config.env), config.ros)
+        for script, config in known
     ]

@@ -111,9 +111,20 @@ class _GivenToNode:
         from rospy_shim.types.msgs import Packages
 
         self._packages = Packages(script.file, script.environ)
-        self._names = {"rospy", "rospy_shim", *library_names(), *(path.stem for path in STAND_INS.iterdir())}
+        self._ros2 = script.ros2()
+        self._environ = script.environ
+        names = {"rospy", "rospy_shim", *library_names()} if self._ros2 is None else self._ros2.library_names()
+        self._names = {*names, *(path.stem for path in STAND_INS.iterdir())}
         on_path = [folder for folder in script.environ.get("PYTHONPATH", "").split(os.pathsep) if folder]
         self.folders = [str(script.file.parent), *on_path, *map(str, self._packages.code_folders())]
+
+    def refusal(self, name: str) -> str:
+        """Return why a run does not make a module of ROS for this node; empty if nothing refuses it."""
+        if self._ros2 is not None:
+            return self._ros2.refusal(name)
+        if name.partition(".")[0] == "rclpy" and not is_installed("rclpy"):
+            return "a program of ROS 1 cannot import rclpy; use two nodes, or write `ros: 2` for it in mission.yaml"
+        return ""
 
     def __call__(self, top: str) -> bool:
         return top in self._names or top in self._message_packages or self._has_settings(top)
@@ -122,6 +133,8 @@ class _GivenToNode:
     def _message_packages(self) -> frozenset[str]:
         from rospy_shim.types.msgs import Library, OnDisk, shipped
 
+        if self._ros2 is not None:
+            return frozenset(self._ros2.types_near(self._packages, self._environ).packages())
         return frozenset(Library([OnDisk(self._packages, Mistakes())], base=shipped()).packages())
 
     def _has_settings(self, package: str) -> bool:
@@ -139,7 +152,7 @@ def check_imports_of_nodes(scripts: Iterable[NodeScript]) -> Iterator[MissionPro
     """
     for script in scripts:
         given = _GivenToNode(script)
-        yield from _missing(script.file, given.folders, given)
+        yield from _missing(script.file, given.folders, given, given.refusal)
 
 
 def check_imports_of_app(source: Path, folder: Path) -> Iterator[MissionProblem]:
@@ -155,10 +168,17 @@ def check_imports_of_app(source: Path, folder: Path) -> Iterator[MissionProblem]
     yield from _missing(source, [str(folder)], lambda top: False)
 
 
-def _missing(file: Path, folders: Sequence[str], is_given: Callable[[str], bool]) -> Iterator[MissionProblem]:
+def _missing(
+    file: Path,
+    folders: Sequence[str],
+    is_given: Callable[[str], bool],
+    refusal: Callable[[str], str] = lambda name: "",
+) -> Iterator[MissionProblem]:
     for each in imports_of(file, folders):
         top = each.name.partition(".")[0]
-        if not (is_installed(top) or _finds(top, folders) or is_given(top)):
+        if why := "" if _finds(top, folders) else refusal(each.name):
+            yield MissionProblem(each.file, each.line, why, each.is_late)
+        elif not (is_installed(top) or _finds(top, folders) or is_given(top)):
             yield _problem(each, top)
 
 

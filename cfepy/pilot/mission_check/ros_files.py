@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cfepy.mission import CppNodesConfig, CppNodesError
+from cfepy.mission import CppNodesConfig, CppNodesError, make_ros2
 from cfepy.mission import app_sources as sources
 from cfepy.nodes import CppNode
 from cfepy.pilot.mission_check.problem import MissionProblem, problem_of
@@ -24,16 +24,35 @@ from cfepy.status import UsageError
 
 if TYPE_CHECKING:
     from rospy_shim.roslaunch.launch_plan import LaunchPlan
+    from rospy_shim.runtime import Ros2, TypeNames
     from rospy_shim.types.msgs import Packages
+    from rospy_shim.types.msgs.definition_sources import Kind
 
-_KINDS = ("msg", "srv")
+_KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
 
 
 class NodeScript(NamedTuple):
-    """A node's script and its environment."""
+    """A node's script.
+
+    Attributes:
+        file: the script.
+        environ: its environment.
+        ros: version of ROS in the mission file, 1 or 2; None if it has none.
+    """
 
     file: Path
     environ: Mapping[str, str]
+    ros: int | None = None
+
+    def ros2(self) -> Ros2 | None:
+        """Return the world of ROS 2 if the node is written for it, else None.
+
+        Raises:
+            UsageError: this installation has no rclpy_shim.
+        """
+        from rospy_shim.types.worlds import is_of_ros2
+
+        return make_ros2() if is_of_ros2(self.file, self.ros) else None
 
 
 def check_launch(
@@ -121,6 +140,8 @@ def check_definitions_of(scripts: Iterable[NodeScript], near: Path) -> Iterator[
     from rospy_shim.types.msgs import Packages, check_definitions
 
     for script in scripts:
+        if script.ros2() is not None:
+            continue  # the rules of ROS 2 are others
         packages = Packages(script.file, script.environ)
         imported = {package for package, _, _, _ in _message_imports(script.file)}
         own = packages.package_of(script.file)
@@ -136,18 +157,24 @@ def _is_below(folders: list[Path], top: Path) -> bool:
     return any(folder.is_relative_to(top) for folder in folders)
 
 
-def _message_imports(file: Path) -> Iterator[tuple[str, str, list[str], int]]:
-    """Yield the messages and services that a script imports unconditionally: (package, "msg" or "srv", names, line)."""
+def _message_imports(file: Path) -> Iterator[tuple[str, Kind, list[str], int]]:
+    """Yield the messages, services and actions that a script imports unconditionally: (package, kind, names, line)."""
     for node in sources.tree_of(file).body:
         if isinstance(node, ast.ImportFrom) and node.level == 0 and node.module is not None:
-            package, _, kind = node.module.partition(".")
-            if kind in _KINDS:
+            package, kind = _type_module(node.module)
+            if kind is not None:
                 yield package, kind, [alias.name for alias in node.names if alias.name != "*"], node.lineno
         elif isinstance(node, ast.Import):
             for alias in node.names:
-                package, _, kind = alias.name.partition(".")
-                if kind in _KINDS:
+                package, kind = _type_module(alias.name)
+                if kind is not None:
                     yield package, kind, [], node.lineno
+
+
+def _type_module(name: str) -> tuple[str, Kind | None]:
+    """Return the package and the kind of a module's types; the kind is None if the module has none."""
+    package, _, part = name.partition(".")
+    return package, next((kind for kind in _KINDS if kind == part), None)
 
 
 def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
@@ -158,16 +185,21 @@ def _check_imports(script: NodeScript) -> Iterator[MissionProblem]:
     if not imports:
         return
     packages = Packages(script.file, script.environ)
-    library = Library([OnDisk(packages, Mistakes())], base=shipped())
+    ros2 = script.ros2()
+    types: TypeNames = (
+        Library([OnDisk(packages, Mistakes())], base=shipped())
+        if ros2 is None
+        else ros2.types_near(packages, script.environ)
+    )
     for package, kind, names, line in imports:
         if _is_code(package, script, packages):
             continue
-        if package not in library.packages():
+        if package not in types.packages():
             what_to_do = "add it beside the node, or put it on ROS_PACKAGE_PATH"
-            hint = did_you_mean(package, library.packages(), what_to_do)
+            hint = did_you_mean(package, types.packages(), what_to_do)
             yield MissionProblem(script.file, line, f"unknown message package {package}; {hint}")
             continue
-        known = library.names(package, "msg" if kind == "msg" else "srv") or []
+        known = types.names(package, kind) or []
         parts = {f"{name}{part}" for name in known for part in ("Request", "Response") if kind == "srv"}
         for name in names:
             if name not in known and name not in parts and not name.startswith("_"):

@@ -168,3 +168,38 @@ def test_application_and_node_of_a_mission(tmp_path: Path) -> None:
 def test_tables_name_things_once() -> None:
     assert not OF_PYTHON_2.keys() & DISTRIBUTIONS.keys()
     assert not OF_ROS & {*DISTRIBUTIONS, *OF_PYTHON_2}
+
+
+ROS2_NODE = """import rclpy
+from rclpy.node import Node
+import message_filters, tf2_ros
+from example_interfaces.action import Fibonacci
+from example_interfaces.srv import AddTwoInts
+from std_msgs.msg import String
+rclpy.init()
+"""
+
+
+def test_node_of_ros2_gets_its_libraries_and_messages_from_a_run(tmp_path: Path) -> None:
+    assert texts(ROS2_NODE, tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "problem"),
+    [
+        ("from std_msgs.msg import Strin", "package std_msgs has no msg Strin; did you mean String"),
+        ("from example_interfaces.srv import Add", "package example_interfaces has no srv Add"),
+        ("from nonesuch_msgs.msg import A", "unknown message package nonesuch_msgs"),
+        ("import rospy", "node.py:1: a program of ROS 1 cannot import rclpy"),
+        ("# ament\nimport rospy", "node.py:3: a program of ROS 2 cannot import rospy"),
+        ("import launch_ros", "cfepy does not have launch_ros for nodes of ROS 2 yet"),
+        ("import rclpy.nonesuch", "cfepy does not have rclpy.nonesuch for nodes of ROS 2 yet"),
+        ("import nonesuch", "the package nonesuch is not installed; pip install nonesuch"),
+    ],
+)
+def test_import_that_a_node_of_ros2_cannot_have_is_a_problem(line: str, problem: str, tmp_path: Path) -> None:
+    if "ament" in line:
+        manifest = "<package><name>a</name><depend>rclpy</depend></package>"
+        (tmp_path / "package.xml").write_text(manifest, encoding="utf-8")
+    (found,) = texts(f"import rclpy\n{line}\n", tmp_path)
+    assert (problem if problem.startswith("node.py:") else f"node.py:2: {problem}") in found
