@@ -8,7 +8,7 @@ topic. Types with other fields have another md5sum, and the graph refuses to joi
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -276,16 +276,16 @@ class Interfaces:
         for name in self.names(package, kind):
             full_name = f"{package}/{name}"
             if kind == "msg":
-                found[name] = lambda full_name=full_name: self.message_class(full_name)  # type: ignore[misc]
+                found[name] = partial(self.message_class, full_name)
                 continue
             if kind == "action":
-                found[name] = lambda full_name=full_name: self.action_class(full_name)  # type: ignore[misc]
+                found[name] = partial(self.action_class, full_name)
                 for part in action_parts.PARTS:
-                    found[f"{name}_{part}"] = lambda key=f"{full_name}_{part}": self.message_class(key)  # type: ignore[misc]
+                    found[f"{name}_{part}"] = partial(self.message_class, f"{full_name}_{part}")
                 continue
-            found[name] = lambda full_name=full_name: self.service_class(full_name)  # type: ignore[misc]
+            found[name] = partial(self.service_class, full_name)
             for part in PARTS:
-                found[f"{name}_{part}"] = lambda key=full_name + part: self.message_class(key)  # type: ignore[misc]
+                found[f"{name}_{part}"] = partial(self.message_class, full_name + part)
         return found
 
 

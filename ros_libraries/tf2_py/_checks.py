@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from tf2_py._rotation import Rigid
 
+_SELF_TRANSFORM = 'with frame_id and child_frame_id  "{}" because they are the same'
 _TOLERANCE = 0.01  # of a quaternion's squared length
 
 
-def problems_of(child: str, parent: str, rigid: Rigid, authority: str) -> list[str]:
-    """Why a transform cannot be used."""
+def problems_of(child: str, parent: str, rigid: Rigid, authority: str, same: str = _SELF_TRANSFORM) -> list[str]:
+    """Return the reasons why a transform cannot be used.
+
+    Args:
+        child, parent: names of its frames.
+        rigid: translation and rotation.
+        authority: name of the sender.
+        same: text for a frame that is its own parent, which is not the same in ROS 1 and ROS 2.
+    """
     found = []
     by = f'from authority "{authority}"'
     if child == parent:
-        why = f'with frame_id and child_frame_id  "{child}" because they are the same'
-        found.append(f"TF_SELF_TRANSFORM: Ignoring transform {by} {why}")
+        found.append(f"TF_SELF_TRANSFORM: Ignoring transform {by} {same.format(child)}")
     if not child:
         found.append(f"TF_NO_CHILD_FRAME_ID: Ignoring transform {by} because child_frame_id not set ")
     if not parent:

@@ -21,7 +21,7 @@ from tf2_py._exceptions import (
 )
 from tf2_py._messages import duration_to_ns, message_of, rigid_of, time_of, to_ns
 from tf2_py._process_end import part_of, text_of
-from tf2_py._rotation import IDENTITY, Rigid, compose, inverse, product
+from tf2_py._rotation import IDENTITY, Rigid, product
 from tf2_py._tree import Tree
 
 __all__ = [
@@ -165,13 +165,7 @@ class BufferCore:
         if target not in tree.caches or source not in tree.caches:
             self.__validate("lookupTransform argument target_frame", target)
             self.__validate("lookupTransform argument source_frame", source)
-        path = tree.path(target, source, time)
-        if not path.down:
-            return path.time, compose(path.up)
-        back = inverse(compose(path.down))
-        if not path.up:
-            return path.time, back
-        return path.time, compose((("", *compose(path.up)), ("", *back)))
+        return tree.transform(target, source, time)
 
     def __validate(self, role: str, name: str) -> None:
         problem = name_problem(role, name)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from tf2_py._cache import StaticCache, TimeCache
 from tf2_py._exceptions import ConnectivityException, ExtrapolationException, LookupException
-from tf2_py._rotation import Sample
+from tf2_py._rotation import Rigid, Sample, compose, inverse
 
 Cache = TimeCache | StaticCache
 MAX_DEPTH = 1000  # a path as long as this means a loop
@@ -69,6 +69,19 @@ class Tree:
             looking = f"when looking up transform from frame [{source}] to frame [{target}]"
             raise ExtrapolationException(f"{complaint}, {looking}")
         return Path(time, up, down)
+
+    def transform(self, target: str, source: str, time: int) -> tuple[int, Rigid]:
+        """Return the time of the path between two different frames, and the transform along it.
+
+        Args and errors: as of `path`.
+        """
+        path = self.path(target, source, time)
+        if not path.down:
+            return path.time, compose(path.up)
+        back = inverse(compose(path.down))
+        if not path.up:
+            return path.time, back
+        return path.time, compose((("", *compose(path.up)), ("", *back)))
 
     def _climb(self, frame: str, wanted: str, top: str, time: int, samples: list[Sample]) -> tuple[str, str | None]:
         """Walk towards the root, collecting samples, until `wanted`, `top` or the end.

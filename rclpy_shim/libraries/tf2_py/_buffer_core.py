@@ -10,12 +10,13 @@ from rclpy.time import Time
 
 from tf2_py import _reports
 from tf2_py._cache import StaticCache, TimeCache, seconds
+from tf2_py._checks import problems_of
 from tf2_py._exceptions import InvalidArgumentException, LookupException, TransformException
-from tf2_py._rotation import IDENTITY, Rigid, Sample, compose, inverse, product
+from tf2_py._rotation import IDENTITY, Rigid, Sample, product
 from tf2_py._tree import Tree
 
 _CACHE_TIME_NS = 10_000_000_000
-_TOLERANCE = 0.01  # of a quaternion's squared length
+_SELF_TRANSFORM = 'with frame_id and  child_frame_id "{}" because they are the same'
 _NS_PER_S = 1_000_000_000
 _OLD_DATA = (
     "TF_OLD_DATA ignoring data from the past for frame {} at time {} according to authority {}\n"
@@ -97,7 +98,7 @@ class BufferCore:
         parent = message.header.frame_id.removeprefix("/")
         t, r = message.transform.translation, message.transform.rotation
         rigid: Rigid = (t.x, t.y, t.z, r.x, r.y, r.z, r.w)
-        problems = _problems_of(child, parent, rigid, authority)
+        problems = problems_of(child, parent, rigid, authority, _SELF_TRANSFORM)
         for text in problems:
             self.__log.error(text)
         if problems:
@@ -171,13 +172,7 @@ class BufferCore:
         if target == source:
             cache = None if time else tree.caches.get(target)
             return (time if cache is None else cache.latest()[0]), IDENTITY
-        path = tree.path(target, source, time)
-        if not path.down:
-            return path.time, compose(path.up)
-        back = inverse(compose(path.down))
-        if not path.up:
-            return path.time, back
-        return path.time, compose((("", *compose(path.up)), ("", *back)))
+        return tree.transform(target, source, time)
 
     def __validate(self, role: str, name: str) -> None:
         if problem := _name_problem(name):
@@ -256,29 +251,6 @@ def _name_problem(name: str) -> str:
     if not name:
         return "in tf2 frame_ids cannot be empty"
     return "in tf2 frame_ids cannot start with a '/'" if name.startswith("/") else ""
-
-
-def _problems_of(child: str, parent: str, rigid: Rigid, authority: str) -> list[str]:
-    """Return the reasons why a transform cannot be used."""
-    found = []
-    by = f'from authority "{authority}"'
-    if child == parent:
-        why = f'with frame_id and  child_frame_id "{child}" because they are the same'
-        found.append(f"TF_SELF_TRANSFORM: Ignoring transform {by} {why}")
-    if not child:
-        found.append(f"TF_NO_CHILD_FRAME_ID: Ignoring transform {by} because child_frame_id not set ")
-    if not parent:
-        why = "because frame_id not set"
-        found.append(f'TF_NO_FRAME_ID: Ignoring transform with child_frame_id "{child}"  {by} {why}')
-    x, y, z, w = rigid[3:]
-    rotation = f"({x:f} {y:f} {z:f} {w:f})"
-    of = f'Ignoring transform for child_frame_id "{child}" {by} because of'
-    if any(number != number for number in rigid):
-        translation = f"({rigid[0]:f} {rigid[1]:f} {rigid[2]:f})"
-        found.append(f"TF_NAN_INPUT: {of} a nan value in the transform {translation} {rotation}")
-    if not abs(x * x + y * y + z * z + w * w - 1.0) < _TOLERANCE:
-        found.append(f"TF_DENORMALIZED_QUATERNION: {of} an invalid quaternion in the transform {rotation}")
-    return found
 
 
 def _message(target: str, source: str, time: int, rigid: Rigid) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy import _seam
@@ -46,11 +47,13 @@ class ActionNames:
         return str(self._node.resolve_topic_name(f"{self._action}/_action/{kind}"))
 
 
-class ServerEnds:
-    """The entities of a server.
+class _Ends:
+    """The entities of a server or of a client: three services and two topics.
 
     Args:
-        node: its node.
+        add_service: makes the end of a service.
+        add_topic: makes the end of a topic.
+        node: the node of the server or client.
         names: their names.
         action_type: class of the action.
         feedback_qos: quality of service of the feedback.
@@ -60,58 +63,45 @@ class ServerEnds:
 
     def __init__(
         self,
+        add_service: Callable[..., Any],
+        add_topic: Callable[..., Any],
         node: Any,
         names: ActionNames,
         action_type: Any,
         feedback_qos: QoSProfile,
         status_qos: QoSProfile,
-        depths: tuple[int, int, int],
+        depths: Sequence[int],
     ) -> None:
-        program, impl, warn = _seam.program, action_type.Impl, node.get_logger().warning
-        self.goal = program.add_service(names.service("send_goal"), impl.SendGoalService, depths[0])
-        self.cancel = program.add_service(names.service("cancel_goal"), impl.CancelGoalService, depths[1])
-        self.result = program.add_service(names.service("get_result"), impl.GetResultService, depths[2])
-        self.feedback = program.add_publisher(
-            names.topic("feedback"), impl.FeedbackMessage, feedback_qos.quality(), warn
-        )
-        self.status = program.add_publisher(names.topic("status"), impl.GoalStatusMessage, status_qos.quality(), warn)
-
-    def close(self) -> None:
-        """Close all of them."""
-        for each in (self.goal, self.cancel, self.result, self.feedback, self.status):
-            _seam.program.close(each)
-
-
-class ClientEnds:
-    """The entities of a client; see `ServerEnds`."""
-
-    def __init__(
-        self,
-        node: Any,
-        names: ActionNames,
-        action_type: Any,
-        feedback_qos: QoSProfile,
-        status_qos: QoSProfile,
-        depths: tuple[int, int, int],
-    ) -> None:
-        program, impl, warn = _seam.program, action_type.Impl, node.get_logger().warning
-        self.goal = program.add_client(names.service("send_goal"), impl.SendGoalService, depths[0])
-        self.cancel = program.add_client(names.service("cancel_goal"), impl.CancelGoalService, depths[1])
-        self.result = program.add_client(names.service("get_result"), impl.GetResultService, depths[2])
-        self.feedback = program.add_subscription(
-            names.topic("feedback"), impl.FeedbackMessage, feedback_qos.quality(), warn
-        )
-        self.status = program.add_subscription(
-            names.topic("status"), impl.GoalStatusMessage, status_qos.quality(), warn
-        )
+        impl, warn = action_type.Impl, node.get_logger().warning
+        self.goal = add_service(names.service("send_goal"), impl.SendGoalService, depths[0])
+        self.cancel = add_service(names.service("cancel_goal"), impl.CancelGoalService, depths[1])
+        self.result = add_service(names.service("get_result"), impl.GetResultService, depths[2])
+        self.feedback = add_topic(names.topic("feedback"), impl.FeedbackMessage, feedback_qos.quality(), warn)
+        self.status = add_topic(names.topic("status"), impl.GoalStatusMessage, status_qos.quality(), warn)
         self.all = (self.goal, self.cancel, self.result, self.feedback, self.status)
-
-    def is_server_available(self) -> bool:
-        """Return True if a server offers the three services, and publishes."""
-        services = (self.goal, self.cancel, self.result)
-        return all(each.is_available() for each in services) and bool(self.feedback.count() and self.status.count())
 
     def close(self) -> None:
         """Close all of them."""
         for each in self.all:
             _seam.program.close(each)
+
+
+class ServerEnds(_Ends):
+    """The entities of a server; see `_Ends`."""
+
+    def __init__(self, *args: Any) -> None:
+        program = _seam.program
+        super().__init__(program.add_service, program.add_publisher, *args)
+
+
+class ClientEnds(_Ends):
+    """The entities of a client; see `_Ends`."""
+
+    def __init__(self, *args: Any) -> None:
+        program = _seam.program
+        super().__init__(program.add_client, program.add_subscription, *args)
+
+    def is_server_available(self) -> bool:
+        """Return True if a server offers the three services, and publishes."""
+        services = (self.goal, self.cancel, self.result)
+        return all(each.is_available() for each in services) and bool(self.feedback.count() and self.status.count())

@@ -127,7 +127,7 @@ class ActionClient(Waitable):
         depths = tuple(max(each.depth, 1) for each in profiles)
         feedback = feedback_sub_qos_profile or QoSProfile(depth=10)
         names = ActionNames(node, action_name)
-        self._ends = ClientEnds(node, names, action_type, feedback, status_sub_qos_profile, depths)  # type: ignore[arg-type]
+        self._ends = ClientEnds(node, names, action_type, feedback, status_sub_qos_profile, depths)
         self._goal_handles: dict[bytes, weakref.ref[ClientGoalHandle]] = {}
         self._pending: dict[str, dict[int, tuple[Future, Any]]] = {"goal": {}, "cancel": {}, "result": {}}
         self._feedback_callbacks: dict[bytes, Callable[[Any], Any]] = {}

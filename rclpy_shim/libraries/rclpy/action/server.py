@@ -234,7 +234,7 @@ class ActionServer(Waitable):
         depths = tuple(max(each.depth, 1) for each in profiles)
         feedback = feedback_pub_qos_profile or QoSProfile(depth=10)
         names = ActionNames(node, action_name)
-        self._ends = ServerEnds(node, names, action_type, feedback, status_pub_qos_profile, depths)  # type: ignore[arg-type]
+        self._ends = ServerEnds(node, names, action_type, feedback, status_pub_qos_profile, depths)
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
         self._result_futures: dict[bytes, Future] = {}
         self._logger = node.get_logger().get_child("action_server")
