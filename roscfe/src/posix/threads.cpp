@@ -151,13 +151,15 @@ int lock(const Mutex &mutex, std::int64_t until_ns)
     return 0;
 }
 
+// As glibc's: any thread may unlock a mutex of the usual kind.
 int unlock(const Mutex &mutex)
 {
-    if (mutex.holder != number_of(current_thread()))
+    const bool is_usual = (mutex.kind & 3) == PTHREAD_MUTEX_NORMAL || (mutex.kind & 3) == PTHREAD_MUTEX_ADAPTIVE_NP;
+    if (mutex.holder != number_of(current_thread()) && !is_usual)
     {
         return EPERM;
     }
-    if (--mutex.count == 0)
+    if (mutex.count > 0 && --mutex.count == 0)
     {
         mutex.holder = 0;
         tell_change();
@@ -165,7 +167,7 @@ int unlock(const Mutex &mutex)
     return 0;
 }
 
-// -- readers and writers: of glibc's type, the number of readers, or -1 for a writer ------------------------------------
+// -- readers and writers: of glibc's type, the number of readers, or the writer's number below 0 -------------------------
 
 int &readers_of(pthread_rwlock_t *lock)
 {
@@ -182,7 +184,7 @@ bool try_read(int &readers)
 bool try_write(int &readers)
 {
     const bool may = readers == 0;
-    readers        = may ? -1 : readers;
+    readers        = may ? -number_of(current_thread()) : readers;
     return may;
 }
 
@@ -191,6 +193,10 @@ int wait_to(bool (*try_it)(int &), int &state, std::int64_t until_ns)
     let_others_run();
     while (!try_it(state))
     {
+        if (state == -number_of(current_thread()))
+        {
+            return EDEADLK; // it waits for itself
+        }
         if (is_over(until_ns))
         {
             return ETIMEDOUT;
@@ -251,21 +257,17 @@ void destroy_locals(Thread *thread)
 
 bool wait_condition(pthread_cond_t *condition, pthread_mutex_t *mutex, std::int64_t until_ns, const bool *ends)
 {
-    Waiter    waiter(condition);
+    Waiter      waiter(condition);
     const Mutex held(mutex);
-    const unsigned int count = held.count;
-    held.count               = 1;
-    if (const int status = unlock(held); status != 0)
+    if (unlock(held) != 0)
     {
-        held.count = count;
-        return true; // as undefined as in POSIX: it looks again at once
+        return true; // the caller looks again at once
     }
     while (!waiter.is_woken && !is_over(until_ns) && (ends == nullptr || !*ends))
     {
         wait_a_while(until_ns);
     }
     lock(held, kForever);
-    held.count = count;
     return waiter.is_woken;
 }
 
@@ -476,7 +478,7 @@ int pthread_equal(pthread_t one, pthread_t other)
 [[noreturn]] void pthread_exit(void *result)
 {
     current_thread()->result = result;
-    roscfe::end_thread();
+    roscfe::leave_thread();
 }
 int pthread_cancel(pthread_t)
 {

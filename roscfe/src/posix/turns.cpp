@@ -28,6 +28,7 @@ Thread        g_main;
 Thread        g_receiver;
 Thread *      g_begun    = nullptr; // those whose tasks have not begun yet, and that no task was created for
 std::uint32_t g_created  = 0; // tasks
+std::uint32_t g_living   = 0; // threads of the node that have begun, without the main one
 bool          g_is_asked = false; // the main thread is to create tasks
 
 thread_local Thread *t_current = nullptr; // null in the main thread
@@ -111,7 +112,8 @@ extern "C" void roscfe_begin_thread()
     if (thread != nullptr) // there are as many as tasks
     {
         remove(g_begun, thread);
-        t_current      = thread;
+        t_current = thread;
+        g_living += thread != &g_receiver ? 1 : 0;
         thread->result = thread->start(thread->argument);
     }
     end_thread();
@@ -243,6 +245,7 @@ void end_thread()
     if (thread != nullptr)
     {
         destroy_locals(thread);
+        g_living -= thread != &g_receiver ? 1 : 0;
         thread->is_done = true;
         if (thread->is_detached)
         {
@@ -255,6 +258,19 @@ void end_thread()
     {
         CFE_ES_ExitChildTask();
     }
+}
+
+void leave_thread()
+{
+    if (t_current != nullptr)
+    {
+        end_thread();
+    }
+    while (g_living > 0 || g_begun != nullptr)
+    {
+        wait_a_while(kForever);
+    }
+    end(0);
 }
 
 void *join_thread(Thread *thread)

@@ -30,6 +30,9 @@ bool start_thread(Thread *thread);
 // End the calling thread: an object that is detached is deleted, any other one remains until another thread joins it.
 [[noreturn]] void end_thread();
 
+// End the calling thread at any place: the main one waits for all others, and ends the node then.
+[[noreturn]] void leave_thread();
+
 // Wait until a thread has ended, and delete its object.
 void *join_thread(Thread *thread);
 

@@ -78,6 +78,14 @@ int main(int argc, char **argv)
     g_mutex.lock();
     g_mutex.lock();
   }
+  if (what == "leave")
+  {
+    std::thread([] {
+      ros::Duration(0.5).sleep();
+      ROS_INFO("still here");
+    }).detach();
+    pthread_exit(nullptr);
+  }
   if (what == "inner")
   {
     std::thread outer([] {
@@ -152,6 +160,12 @@ def test_threads_run_the_same_on_both_kinds_of_tasks(launch: Path) -> None:
 
 def test_thread_starts_a_thread(launch: Path) -> None:
     assert said(flown(launch, "inner")) == ["inner", "outer"]
+
+
+def test_main_thread_that_leaves_waits_for_the_others(launch: Path) -> None:
+    run = flown(launch, "leave")
+    assert said(run) == ["still here"]
+    assert run.now < 2
 
 
 def test_threads_end_where_the_target_has_no_task_left(launch: Path) -> None:

@@ -301,6 +301,18 @@ static void posix_threads()
     pthread_mutex_unlock(&again);
     std::thread([&] { say("free", pthread_mutex_trylock(&again)); }).join();
 
+    pthread_mutex_t usual = PTHREAD_MUTEX_INITIALIZER;
+    pthread_mutex_lock(&usual);
+    std::thread([&] { say("unlocked by another", pthread_mutex_unlock(&usual)); }).join();
+    say("free", pthread_mutex_trylock(&usual));
+    pthread_mutex_unlock(&usual);
+    say("unlocked without a lock", pthread_mutex_unlock(&usual));
+    pthread_rwlock_t both = PTHREAD_RWLOCK_INITIALIZER;
+    pthread_rwlock_wrlock(&both);
+    say("writes again", pthread_rwlock_wrlock(&both) == EDEADLK);
+    say("reads what it writes", pthread_rwlock_rdlock(&both) == EDEADLK);
+    pthread_rwlock_unlock(&both);
+
     sem_t semaphore;
     sem_init(&semaphore, 0, 1);
     sem_wait(&semaphore);

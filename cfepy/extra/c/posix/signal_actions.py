@@ -14,7 +14,7 @@ SIG_DFL, SIG_IGN = 0, 1
 SIGKILL, SIGPIPE, SIGSTOP = 9, 13, 19
 MOST_SIGNALS = 64
 HANDLER = (
-    "signals are those of the host's process, so a handler is never called; "
+    "signals belong to the host's process, and cfepy calls no handler; "
     "a fault is reported by cFE, and OS_TimerCreate calls at times"
 )
 

@@ -26,7 +26,7 @@ from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 LONGEST_PACKET = 32768
 """Bytes of a packet on NASA's Software Bus (CFE_MISSION_SB_MAX_SB_MSG_SIZE)."""
 OF_TRANSFORMS = ("tf/transform_listener.h", "tf2_ros/transform_listener.h", "tf2_ros/buffer.h", "tf2/buffer_core.h")
-"""Headers of what has a buffer of transforms."""
+"""Headers that give a node a buffer of transforms."""
 KEPT = 4
 """Messages that a node may hold in addition to the waiting ones."""
 
