@@ -39,6 +39,8 @@ _ANYTHING = frozenset(
 _BY_NAME = frozenset(["attrgetter", "getattr", "methodcaller"])
 """Functions through which code can call a method that it does not name."""
 _OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", *BESIDE])
+_CLOSED = ("cfepy.", "rospy_shim.types.")
+"""Modules whose objects lead to no object of the program. Message types lead to what other nodes added to their classes."""
 _WITH = ("BEFORE_WITH", "BEFORE_ASYNC_WITH", "LOAD_SPECIAL")
 _JUMPS = frozenset((*dis.hasjrel, *dis.hasjabs))
 _LEAVES = frozenset([CodeType, FrameType, GetSetDescriptorType, WrapperDescriptorType, MethodDescriptorType])
@@ -137,7 +139,7 @@ def _next(here: object) -> Iterator[object]:
         yield from () if _is_opaque(vars(here).get("__name__")) else vars(here).values()
     elif issubclass(kind, type) and isinstance(here, type):
         yield from () if _is_opaque(getattr(here, "__module__", "")) else (*vars(here).values(), *here.__bases__)
-    elif kind not in _LEAVES and not str(kind.__module__).startswith("cfepy."):
+    elif kind not in _LEAVES and not str(kind.__module__).startswith(_CLOSED):
         yield from gc.get_referents(here)
 
 

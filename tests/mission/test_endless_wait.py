@@ -10,6 +10,7 @@ from cfepy.attachment import Attachment
 from cfepy.mission import EndlessWaits, Mission, endless_waits
 from cfepy.pilot import RunPlan, fly
 from cfepy.schedules import Schedule
+from rospy_shim.types.msgs import message_class
 from tests.extra.exploration import missions
 
 HEAD = """
@@ -271,6 +272,19 @@ def test_worker_without_a_sentinel_waits_forever_when_it_is_joined(tmp_path: Pat
 def test_full_queue_is_endless_when_its_reader_needs_the_lock_of_its_writer(tmp_path: Path) -> None:
     (wait,) = in_node(tmp_path, FULL.format(call="put(message)", end="filler.join()")).alone
     assert (wait.task, wait.what, wait.place) == ("PAIR.pair.2.3", "the end of Queue.put()", "pair.py:22")
+
+
+def test_endless_wait_is_found_whatever_another_node_added_to_a_message_class(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """All nodes of a process share the classes, and actionlib adds a method to one of them."""
+
+    def named(kind: type, name: str) -> object:
+        return getattr(kind, name)
+
+    monkeypatch.setattr(message_class("actionlib_msgs/GoalStatus"), "named", classmethod(named), raising=False)
+    (wait,) = in_node(tmp_path, FULL.format(call="put(message)", end="filler.join()")).alone
+    assert wait.task == "PAIR.pair.2.3"
 
 
 def test_full_queue_that_a_callback_may_empty_is_not_reported(tmp_path: Path) -> None:
