@@ -40,7 +40,7 @@ _BY_NAME = frozenset(["attrgetter", "getattr", "methodcaller"])
 """Functions through which code can call a method that it does not name."""
 _OPAQUE = frozenset([*sys.stdlib_module_names, "cfepy", "numpy", *BESIDE])
 _CLOSED = ("cfepy.", "rospy_shim.types.")
-"""Modules whose objects lead to no object of the program. Message types lead to what other nodes added to their classes."""
+"""Modules whose objects lead to no object of the program, but to what other nodes added to classes of messages."""
 _WITH = ("BEFORE_WITH", "BEFORE_ASYNC_WITH", "LOAD_SPECIAL")
 _JUMPS = frozenset((*dis.hasjrel, *dis.hasjabs))
 _LEAVES = frozenset([CodeType, FrameType, GetSetDescriptorType, WrapperDescriptorType, MethodDescriptorType])
