@@ -3,6 +3,7 @@
 
 #include "core/core.h"
 #include "ros/spinner.h"
+#include "roscfe/helpers.h"
 #include "roscfe/waiting.h"
 
 namespace ros
@@ -31,7 +32,7 @@ void AsyncSpinner::stop()
         started_ = false;
         if (thread_ != nullptr)
         {
-            roscfe::stop_spinner(thread_);
+            roscfe::stop_helper(thread_);
             thread_ = nullptr;
         }
         else

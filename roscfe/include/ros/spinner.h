@@ -6,6 +6,7 @@
 
 #include "ros/callback_queue.h"
 #include "ros/forwards.h"
+#include "roscfe/helpers.h"
 
 namespace ros
 {
@@ -48,7 +49,7 @@ class AsyncSpinner
 
   private:
     CallbackQueue *queue_;
-    void *         thread_  = nullptr;
+    roscfe::Helper *thread_ = nullptr;
     bool           started_ = false;
 };
 

@@ -189,10 +189,6 @@ ROSCFE_HOOK void wait_in_turn(std::int64_t until_ns); // others run until someth
 ROSCFE_HOOK void let_others_run();                    // those that want to
 ROSCFE_HOOK void receive_in_thread();                 // from now on, if there are threads
 
-// spinners.cpp: asynchronous spinners that are threads. Without it their callbacks run while the node waits.
-ROSCFE_HOOK void *start_spinner(ros::CallbackQueue *queue); // null when there is no task for it
-ROSCFE_HOOK void  stop_spinner(void *spinner);
-
 // services.cpp, timers.cpp, exact_waits.cpp, async.cpp, sim_time.cpp, parameters.cpp, private_parameters.cpp, master.cpp
 // and logging.cpp.
 ROSCFE_HOOK bool take_request(std::uint16_t msg_id, const std::uint8_t *packet, std::size_t size);

@@ -7,7 +7,6 @@
 
 #include <cstdio>
 
-#include "ros/spinner.h"
 #include "roscfe/refuse.h"
 
 namespace roscfe

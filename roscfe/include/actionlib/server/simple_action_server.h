@@ -9,6 +9,7 @@
 #include <optional>
 
 #include <string>
+#include <utility>
 
 #if defined(ROSCFE_PROFILE_HOST) // these three come with ROS's header, and nodes rely on it
 #include "boost/thread/condition_variable.hpp"
@@ -17,13 +18,15 @@
 #endif
 
 #include "actionlib/server/action_server.h"
+#include "roscfe/helpers.h"
 #include "roscfe/waiting.h"
 
 namespace actionlib
 {
 
-// The execute callback runs from the node's spinning. While it waits, in Rate::sleep or Duration::sleep, goals and
-// cancellations are taken, and the node's other callbacks run, as they would in the main thread of a roscpp node.
+// The execute callback runs in a thread of its own in a node for the host. In other nodes it runs from the node's spinning:
+// while it waits, in Rate::sleep or Duration::sleep, goals and cancellations are taken, and the node's other callbacks run,
+// as they would in the main thread of a roscpp node.
 template <class ActionSpec>
 class SimpleActionServer
 {
@@ -58,7 +61,11 @@ class SimpleActionServer
           server_(
               node, name, [this](GoalHandle goal) { take(goal); }, [this](GoalHandle goal) { cancel(goal); }, false)
     {
-        if (execute_)
+        if (execute_ && roscfe::start_helper != nullptr)
+        {
+            thread_ = roscfe::start_helper(execute_in_thread, this);
+        }
+        if (execute_ && thread_ == nullptr)
         {
             task_ = boost::make_shared<Execution>(this);
             queue_->expect(1);
@@ -76,6 +83,10 @@ class SimpleActionServer
         if (task_)
         {
             task_->server = nullptr;
+        }
+        if (thread_ != nullptr)
+        {
+            roscfe::stop_helper(std::exchange(thread_, nullptr));
         }
     }
 
@@ -218,6 +229,10 @@ class SimpleActionServer
             task_->waiting = true;
             queue_->addCallback(task_);
         }
+        if (thread_ != nullptr)
+        {
+            roscfe::wake_helper(thread_);
+        }
     }
 
     void execute()
@@ -226,20 +241,40 @@ class SimpleActionServer
         roscfe::start_async(queue_); // the node's other callbacks, while this one waits
         while (new_goal_ && !ros::isShuttingDown())
         {
-            const GoalConstPtr goal = acceptNewGoal();
-            execute_(goal);
-            if (isActive())
-            {
-                ROS_WARN_NAMED("actionlib",
-                               "Your executeCallback did not set the goal to a terminal status.\n"
-                               "This is a bug in your ActionServer implementation. Fix your code!\n"
-                               "For now, the ActionServer will set this goal to aborted");
-                setAborted(Result(), "This goal was aborted by the simple action server. The user should have set a "
-                                     "terminal status on this goal and did not");
-            }
+            execute_next();
         }
         roscfe::stop_async(queue_);
         executing_ = false;
+    }
+
+    void execute_next()
+    {
+        const GoalConstPtr goal = acceptNewGoal();
+        execute_(goal);
+        if (isActive())
+        {
+            ROS_WARN_NAMED("actionlib", "Your executeCallback did not set the goal to a terminal status.\n"
+                                        "This is a bug in your ActionServer implementation. Fix your code!\n"
+                                        "For now, the ActionServer will set this goal to aborted");
+            setAborted(Result(), "This goal was aborted by the simple action server. The user should have set a "
+                                 "terminal status on this goal and did not");
+        }
+    }
+
+    static void execute_in_thread(void *thing, const bool &is_stopped)
+    {
+        auto *server = static_cast<SimpleActionServer *>(thing);
+        while (!is_stopped && !ros::isShuttingDown())
+        {
+            if (server->new_goal_ && !server->isActive())
+            {
+                server->execute_next();
+            }
+            else
+            {
+                roscfe::wait_in_helper(ros::WallDuration(0.1)); // how often roscpp's looks
+            }
+        }
     }
 
     ros::CallbackQueue *         queue_;
@@ -253,6 +288,7 @@ class SimpleActionServer
     bool                         new_goal_preempt_request_ = false;
     bool                         executing_                = false;
     boost::shared_ptr<Execution> task_;
+    roscfe::Helper *             thread_ = nullptr;
     ActionServer<ActionSpec>     server_;
 };
 
