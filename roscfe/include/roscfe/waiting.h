@@ -3,11 +3,13 @@
 #define ROSCFE_WAITING_H
 
 #include <cstdint>
+#include <utility>
 
 #include "ros/callback_queue.h"
 #include "ros/duration.h"
 #include "ros/init.h"
 #include "ros/time.h"
+#include "roscfe/helpers.h"
 
 namespace roscfe
 {
@@ -71,6 +73,38 @@ class WhileWaiting
 
   private:
     ros::CallbackQueue *queue_ = nullptr;
+};
+
+// A queue whose callbacks run in a thread of their own in a node for the host, and in other nodes while the node waits.
+class OwnThread
+{
+  public:
+    OwnThread() = default;
+    ~OwnThread() { stop(); }
+    OwnThread(const OwnThread &) = delete;
+    OwnThread &operator=(const OwnThread &) = delete;
+
+    void start(ros::CallbackQueue *queue)
+    {
+        stop();
+        thread_ = start_spinner != nullptr ? start_spinner(queue) : nullptr;
+        if (thread_ == nullptr)
+        {
+            waiting_.start(queue);
+        }
+    }
+    void stop()
+    {
+        if (thread_ != nullptr)
+        {
+            stop_helper(std::exchange(thread_, nullptr));
+        }
+        waiting_.stop();
+    }
+
+  private:
+    Helper *     thread_ = nullptr;
+    WhileWaiting waiting_;
 };
 
 } // namespace roscfe

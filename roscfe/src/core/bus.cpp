@@ -139,6 +139,23 @@ bool is_threaded()
     return has_threads != nullptr && has_threads();
 }
 
+// Until the task that takes packets over has begun, a thread that waits does it, for a millisecond at a time.
+bool wait_for_receiver(std::int64_t until_ns)
+{
+    let_others_run();
+    if (!g_node.has_pipe || has_receiver() || (until_ns != kForever && until_ns - now_ns() < kMillisecond))
+    {
+        return false;
+    }
+    const CFE_SB_Buffer_t *packet = wait_for_packet(2); // of which the Software Bus waits for one
+    if (packet != nullptr)
+    {
+        dispatch(packet);
+    }
+    queue_timers();
+    return true;
+}
+
 // With threads, one of them takes packets over, and the others only wait.
 bool wait_for_threads(std::int64_t until_ns)
 {
@@ -147,6 +164,10 @@ bool wait_for_threads(std::int64_t until_ns)
     {
         let_others_run();
         return false;
+    }
+    if (!has_receiver() && wait_for_receiver(until_ns))
+    {
+        return true;
     }
     const NextTimer timer = next_timer != nullptr ? next_timer() : NextTimer();
     const bool is_first = timer.ns != kForever && (until_ns == kForever || timer.ns < until_ns);

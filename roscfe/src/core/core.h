@@ -185,6 +185,7 @@ ROSCFE_HOOK void mark_work(bool begins);
 
 // turns.cpp: threads of the node, one of which runs at a time.
 ROSCFE_HOOK bool has_threads();                       // there are others than the main thread
+ROSCFE_HOOK bool has_receiver();                      // one of them takes packets over
 ROSCFE_HOOK void wait_in_turn(std::int64_t until_ns); // others run until something changes, or a time
 ROSCFE_HOOK void let_others_run();                    // those that want to
 ROSCFE_HOOK void receive_in_thread();                 // from now on, if there are threads

@@ -32,6 +32,7 @@ void spin_queue(void *queue, const bool &is_stopped)
     while (!is_stopped && !g_node.shutting_down)
     {
         static_cast<ros::CallbackQueue *>(queue)->callAvailable(ros::WallDuration(0.1)); // how often roscpp's looks
+        tell_change(); // others may wait for what a callback did
     }
 }
 

@@ -29,6 +29,7 @@ Thread *      g_begun    = nullptr; // those whose tasks have not begun yet, and
 std::uint32_t g_created  = 0; // tasks
 std::uint32_t g_living   = 0; // threads of the node that have begun, without the main one
 bool          g_is_asked = false; // the main thread is to create tasks
+bool          g_is_receiving = false; // the receiver has begun
 
 thread_local Thread *t_current = nullptr; // null in the main thread
 
@@ -193,6 +194,7 @@ bool get_task(Thread *thread)
 
 void *receive_for_ever(void *)
 {
+    g_is_receiving = true;
     for (;;)
     {
         give_turn();
@@ -212,6 +214,11 @@ void *receive_for_ever(void *)
 bool has_threads()
 {
     return g_created > 0;
+}
+
+bool has_receiver()
+{
+    return g_is_receiving;
 }
 
 Thread *current_thread()

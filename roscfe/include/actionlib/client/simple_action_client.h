@@ -40,15 +40,16 @@ class SimpleActionClient
         : SimpleActionClient(ros::NodeHandle(), name, spin_thread)
     {
     }
-    // With a thread of its own in ROS, the client's callbacks run here whenever the node waits.
+    // The client's callbacks run in a thread of its own, or, in a node that is not for the host, whenever the node waits.
     SimpleActionClient(ros::NodeHandle node, const std::string &name, bool spin_thread = true)
         : client_(node, name, spin_thread ? &queue_ : nullptr)
     {
         if (spin_thread)
         {
-            waiting_.start(&queue_);
+            thread_.start(&queue_);
         }
     }
+    ~SimpleActionClient() { thread_.stop(); }
     SimpleActionClient(const SimpleActionClient &) = delete;
     SimpleActionClient &operator=(const SimpleActionClient &) = delete;
 
@@ -198,7 +199,7 @@ class SimpleActionClient
 
     ros::CallbackQueue       queue_;
     ActionClient<ActionSpec> client_;
-    roscfe::WhileWaiting     waiting_;
+    roscfe::OwnThread        thread_;
     GoalHandle               goal_;
     SimpleDoneCallback       on_done_;
     SimpleActiveCallback     on_active_;
