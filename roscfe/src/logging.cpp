@@ -168,6 +168,10 @@ void set_level(int level)
 
 void print(int level, const char *file, int line, const char *function, const char *format, ...)
 {
+    if (g_node.is_shut)
+    {
+        return; // ros::shutdown() ends rosconsole in roscpp
+    }
     static char  text[kLongest];
     std::va_list arguments;
     va_start(arguments, format);

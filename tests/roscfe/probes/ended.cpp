@@ -16,7 +16,10 @@ int main(int argc, char **argv)
     ros::Publisher before = nh.advertise<std_msgs::String>("before", 1);
     ros::ServiceServer server = nh.advertiseService("server", serve);
     ros::ServiceClient own = nh.serviceClient<std_srvs::Trigger>("server");
+    ROS_WARN("P| a line of the log before the end");
     ros::shutdown();
+    ROS_WARN("P| a line of the log after the end");
+    ROS_FATAL_STREAM("P| a fatal one");
     std::printf("P| ok %d, shutting down %d, started %d\n", ros::ok(), ros::isShuttingDown(), ros::isStarted());
     ros::Publisher pub = nh.advertise<std_msgs::String>("p", 1);
     std::printf("P| publisher %d, subscribers %u, topic [%s]\n", static_cast<bool>(pub), pub.getNumSubscribers(),

@@ -119,6 +119,19 @@ static void published(ros::NodeHandle &nh)
     spin();
     asked.setCanceled(result(51), "by all");
     spin();
+    std::printf("P| the text of an accepted goal that is cancelled\n");
+    goal.goal.goal     = 6;
+    goal.goal_id.id    = "texts";
+    goal.goal_id.stamp = ros::Time::now();
+    goals.publish(goal);
+    spin();
+    asked.setAccepted("taken");
+    cancels.publish(actionlib_msgs::GoalID());
+    spin();
+    std::printf("P| status %d '%s'\n", asked.getGoalStatus().status, asked.getGoalStatus().text.c_str());
+    asked.setSucceeded(result(61));
+    spin();
+    std::printf("P| status %d '%s'\n", asked.getGoalStatus().status, asked.getGoalStatus().text.c_str());
 }
 
 static void refused_by_the_server()

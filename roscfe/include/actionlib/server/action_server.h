@@ -66,8 +66,8 @@ class ServerGoalHandle
     // A client wants it to end; whether it can still be ended.
     bool setCancelRequested()
     {
-        return move(Status::PENDING, Status::RECALLING, Status::ACTIVE, Status::PREEMPTING, std::string()) &&
-               publish_status();
+        const std::string text = has_goal() ? tracker_->status.text.c_str() : "";
+        return move(Status::PENDING, Status::RECALLING, Status::ACTIVE, Status::PREEMPTING, text) && publish_status();
     }
 
     void publishFeedback(const Feedback &feedback)
