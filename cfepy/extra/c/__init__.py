@@ -21,7 +21,7 @@ from cfepy.interpreter.faces import face
 if TYPE_CHECKING:
     from cfepy.extra.c.abi import AbiProfile, abi_profile
     from cfepy.extra.c.api import function_names
-    from cfepy.extra.c.build_cache import cache_folder, writing_cache
+    from cfepy.extra.c.build_cache import cache_folder, mark_used, remove_unused, writing_cache
     from cfepy.extra.c.devices import Device
     from cfepy.extra.c.elf import ElfError, check_elf_reader, read_shared_object
     from cfepy.extra.c.engine import GDB_SYMBOLS
@@ -81,8 +81,10 @@ __all__ = [
     "ground_differences",
     "headers_folder",
     "macros_of",
+    "mark_used",
     "read_shared_object",
     "refusal_of",
+    "remove_unused",
     "split_list",
     "start_bounded",
     "structs_of",
@@ -97,7 +99,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
         {
             ".abi": ("AbiProfile", "abi_profile"),
             ".api": ("function_names",),
-            ".build_cache": ("cache_folder", "writing_cache"),
+            ".build_cache": ("cache_folder", "mark_used", "remove_unused", "writing_cache"),
             ".devices": ("Device",),
             ".elf": ("ElfError", "check_elf_reader", "read_shared_object"),
             ".engine": ("GDB_SYMBOLS",),

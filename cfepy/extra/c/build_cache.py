@@ -9,16 +9,24 @@ from __future__ import annotations
 
 import errno
 import os
+import shutil
 import stat
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import NamedTuple, Self
 
 from cfepy.status import UsageError
 
 VARIABLE = "CFEPY_CACHE"
+MOST_BYTES = 4 << 30
+"""How large a folder of the cache becomes before entries that were not used for long are removed."""
+KEPT_BYTES = 2 << 30
+"""How large it is afterwards."""
+KEPT_S = 86_400.0
+"""How long an entry stays after its last use, in seconds: other processes may be using it."""
 _ADVICE = f"set {VARIABLE} to a writable folder with free space"
 
 
@@ -61,6 +69,56 @@ def writing_cache(folder: Path) -> Iterator[None]:
         if not (at.is_relative_to(folder) or folder.is_relative_to(at)):
             raise
         raise UsageError(f"cannot be written: {error.strerror or error}; {_ADVICE}", file=at) from None
+
+
+def mark_used(*entries: Path) -> None:
+    """Note that files or folders of the cache are used now, so that they stay in it.
+
+    Args:
+        entries: their paths; those that are missing are left out.
+    """
+    for each in entries:
+        with suppress(OSError):
+            os.utime(each)
+
+
+def remove_unused(folder: Path) -> None:
+    """Remove what was not used for the longest time, if a folder of the cache has grown above `MOST_BYTES`.
+
+    Args:
+        folder: the folder, whose files and folders are each one entry. One of them was used just now.
+    """
+    entries = sorted(_Entry.of(each) for each in folder.iterdir())
+    size = sum(each.size for each in entries)
+    if size <= MOST_BYTES:
+        return
+    for entry in entries:
+        if size <= KEPT_BYTES or entry.used_s > entries[-1].used_s - KEPT_S:
+            break
+        if entry.path.is_dir():
+            shutil.rmtree(entry.path, ignore_errors=True)
+        else:
+            with suppress(OSError):
+                entry.path.unlink()
+        size -= entry.size
+
+
+class _Entry(NamedTuple):
+    """A file or folder of the cache: when it was used last, in seconds since 1970, and its bytes."""
+
+    used_s: float
+    size: int
+    path: Path
+
+    @classmethod
+    def of(cls, path: Path) -> Self:
+        """Look at a file or folder. One that another process has removed is empty."""
+        used_s, size = 0.0, 0
+        with suppress(OSError):
+            used_s = path.lstat().st_mtime
+            inside = [path] if path.is_file() else path.rglob("*")
+            size = sum(each.lstat().st_size for each in inside)
+        return cls(used_s, size, path)
 
 
 def _fallback(reason: str) -> Path:

@@ -25,6 +25,8 @@ from cfepy.extra.c import (
     cpp_compiler,
     end_bounded,
     headers_folder,
+    mark_used,
+    remove_unused,
     start_bounded,
     writing_cache,
 )
@@ -269,6 +271,7 @@ class NodeBuild:
         core = core_units(self._options, self._real_boost, self._types, self.sources.contents)
         key = _digest(*link_flags(self._options.profile), *(each.key for each in (*core, *units)))
         made = _folder() / f"{entry.app.lower()}-{key}.so"
+        mark_used(made, messages, configurations)
         if not made.is_file():
             archive = built_core(self._options.profile, core)
             compile_units(units, entry.name)
@@ -277,6 +280,8 @@ class NodeBuild:
                 made,
                 link_flags(self._options.profile),
             )
+            with writing_cache(_folder()):
+                remove_unused(_folder())
         return BuiltNode(made, entry.symbol, self.sources, self.types)
 
     def _support(self, source: Path, flags: Sequence[str], includes: Sequence[Path]) -> CompileUnit:
@@ -383,6 +388,7 @@ def built_core(profile: Profile, units: Sequence[CompileUnit]) -> Path:
     """
     key = _digest(*(each.key for each in units), identity())
     archive = _folder() / f"libroscfe-{profile.value}-{key}.a"
+    mark_used(archive)
     if not archive.is_file():
         print("cfepy: compiling the interface library of ROS nodes in C++, once", file=sys.stderr, flush=True)
         compile_units(units, "the interface library")
@@ -446,6 +452,8 @@ def compile_units(units: Iterable[CompileUnit], name: str) -> None:
         CompilerError: the compiler refused a source.
         UsageError: there is no compiler, or a header of a ROS on this computer was used.
     """
+    units = list(units)
+    mark_used(*(each.object for each in units))
     missing = [each for each in units if not each.object.is_file()]
     with WorkProgress(Stopwatch().elapsed_ns) as progress:
         for at in range(0, len(missing), MOST_AT_ONCE):

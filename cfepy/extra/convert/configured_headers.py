@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from cfepy.extra.c import cache_folder, writing_cache
+from cfepy.extra.c import cache_folder, mark_used, writing_cache
 from cfepy.extra.convert.cpp_package import CppPackage
 from cfepy.reading.contained_files import write_contained
 
@@ -85,6 +85,7 @@ def _kept(headers: Mapping[str, str]) -> Path:
         digest.update(f"{name}\0{text}\0".encode())
     cache = cache_folder() / "roscfe"
     kept = cache / f"configured-{digest.hexdigest()[:16]}"
+    mark_used(kept)
     if not kept.is_dir():
         with writing_cache(cache):
             cache.mkdir(exist_ok=True)

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from cfepy.extra.c.build_cache import cache_folder, writing_cache
+from cfepy.extra.c import build_cache
+from cfepy.extra.c.build_cache import KEPT_S, cache_folder, mark_used, remove_unused, writing_cache
 from cfepy.extra.c.toolchain import headers_folder
 from cfepy.status import UsageError
 from tests.extra.c.building import needs_compiler
@@ -109,3 +110,45 @@ def test_application_is_built_and_flown_without_a_home(tmp_path: Path) -> None:
     flown = subprocess.run([*cfepy, "run", str(tmp_path), "--for", "1"], capture_output=True, text=True, check=False)
     assert flown.returncode == 0, flown.stdout + flown.stderr
     assert "CFEPY_CACHE" not in flown.stderr
+
+
+def entry(path: Path, size: int, used_s: float) -> Path:
+    """Write a file of a cache that was used at a time, in seconds since 1970."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(bytes(size))
+    for each in (path, path.parent):  # writing changes the folder, too
+        os.utime(each, (used_s, used_s))
+    return path
+
+
+def test_a_large_cache_loses_what_was_not_used_for_longest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(build_cache, "MOST_BYTES", 1000)
+    monkeypatch.setattr(build_cache, "KEPT_BYTES", 500)
+    folder = tmp_path / "roscfe"
+    entry(folder / "messages/std_msgs/String.h", 400, 0)
+    os.utime(folder / "messages", (1000, 1000))
+    entry(folder / "second.o", 300, 2000)
+    entry(folder / "third.o", 200, 3000)
+    now = entry(folder / "node.so", 200, 4000 + KEPT_S)
+    remove_unused(folder)
+    assert sorted(each.name for each in folder.iterdir()) == [now.name, "third.o"]
+
+
+def test_a_large_cache_keeps_what_was_used_within_a_day(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(build_cache, "MOST_BYTES", 1000)
+    monkeypatch.setattr(build_cache, "KEPT_BYTES", 500)
+    entry(tmp_path / "old.o", 300, 1000)
+    entry(tmp_path / "library.a", 300, 2000)
+    used = tmp_path / "old.o"
+    mark_used(used, tmp_path / "missing.o")
+    newest = used.stat().st_mtime
+    entry(tmp_path / "young.o", 600, newest - KEPT_S + 1)
+    remove_unused(tmp_path)
+    assert sorted(each.name for each in tmp_path.glob("*.*")) == ["old.o", "young.o"]
+
+
+def test_a_small_cache_keeps_what_is_old(tmp_path: Path) -> None:
+    entry(tmp_path / "old.o", 300, 1000)
+    entry(tmp_path / "node.so", 300, 2000 + 10 * KEPT_S)
+    remove_unused(tmp_path)
+    assert (tmp_path / "old.o").is_file()
