@@ -172,6 +172,8 @@ def fly(sources: Path, tree: Path, scratch: Path) -> list[Verdict]:
 def table(found: Sequence[Verdict]) -> str:
     """Return the table for the document: the nodes that do not fly on both."""
     both = sum(each.here == each.there == FLIES for each in found)
+    if both == len(found):
+        return f"All {both} nodes of {PACKAGE} fly on both."
     lines = [f"{both} of the {len(found)} nodes of {PACKAGE} fly on both. The others:", ""]
     lines += ["| node | beside | cfepy | NASA's cFE 7.0.0 |", "|---|---|---|---|"]
     for each in found:
