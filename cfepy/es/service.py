@@ -55,7 +55,7 @@ class ChildTaskApi(InfoApi, AppEnd):
         """Start a task that belongs to the calling application (CFE_ES_CreateChildTask).
 
         Args:
-            name: unique, 1 to 19 characters.
+            name: unique, at most 19 characters.
             entry: called without arguments, at least 50 ms later.
             stack_size: bytes.
             priority: 0 (most urgent) to 255.
@@ -79,8 +79,8 @@ class ChildTaskApi(InfoApi, AppEnd):
             raise CfeError(CFE_ES_ERR_CHILD_TASK_CREATE, "only the main task of an application can create child tasks")
         return self.start_task(app, name, entry, stack_size, priority)
 
-    def _check_child(self, name: str, entry: Callable[[], object]) -> None:
-        if not name:
+    def _check_child(self, name: str | None, entry: Callable[[], object]) -> None:
+        if name is None:
             text = "TaskName Parameter is NULL"
         elif not callable(entry):
             text = f"Function Pointer Parameter is NULL for Task '{name}'"

@@ -169,6 +169,10 @@ def test_child_tasks(make_lab: Callable[..., Lab]) -> None:
         seen["info"] = cfe.es.get_task_info(task_id)
         cfe.os.task_delay(200)
         seen["gone"] = status_of(lambda: cfe.es.get_task_name(task_id))
+        nameless = cfe.es.create_child_task("", lambda: cfe.os.task_delay(10**6), 4096, 60)
+        seen["nameless"] = cfe.es.get_task_name(nameless)
+        seen["second nameless"] = status_of(lambda: cfe.es.create_child_task("", print, 4096, 60))
+        seen["no name"] = status_of(lambda: cfe.es.create_child_task(None, print, 4096, 60))  # type: ignore[arg-type]
         sleeper = cfe.es.create_child_task("SLEEPER", lambda: cfe.os.task_delay(10**6), 4096, 60)
         cfe.os.task_delay(100)
         cfe.es.delete_child_task(sleeper)
@@ -187,6 +191,8 @@ def test_child_tasks(make_lab: Callable[..., Lab]) -> None:
     assert seen["grandchild"] == CFE_ES_ERR_CHILD_TASK_CREATE
     assert seen["gone"] == seen["deleted"] == CFE_ES_ERR_RESOURCEID_NOT_VALID
     assert seen["main"] == CFE_ES_ERR_CHILD_TASK_DELETE_MAIN_TASK
+    assert (seen["nameless"], seen["second nameless"]) == ("", CFE_STATUS_EXTERNAL_RESOURCE_FAIL)
+    assert seen["no name"] == CFE_ES_BAD_ARGUMENT
     assert "CFE_ES_CreateChildTask: Error: Cannot call from a Child Task (for Task 'TOO_DEEP')." in lab.log()
 
 
