@@ -24,6 +24,7 @@ from cfepy.status import (
     OS_ERR_NO_FREE_IDS,
     OS_ERR_NOT_IMPLEMENTED,
     OS_FS_ERR_DEVICE_NOT_FREE,
+    OS_FS_ERR_DRIVE_NOT_CREATED,
     OS_FS_ERR_PATH_INVALID,
     OS_FS_ERR_PATH_TOO_LONG,
     OsalError,
@@ -56,13 +57,15 @@ class OsDisk(OsObject):
     Attributes:
         volume: its files.
         physical: the result of OS_FS_GetPhysDriveName.
-        mount_point: where it is mounted; "" if it is not.
+        mount_point: where it is mounted; None if it is not.
         is_known: whether NASA's Linux OSAL would recognize the kind of disk and mount it.
     """
 
     __slots__ = ("block_size", "is_known", "mount_point", "physical", "volume")
 
-    def __init__(self, name: str, volume: Volume, block_size: int, physical: str = "", mount_point: str = "") -> None:
+    def __init__(
+        self, name: str, volume: Volume, block_size: int, physical: str = "", mount_point: str | None = None
+    ) -> None:
         super().__init__(name)
         self.volume = volume
         self.block_size = block_size
@@ -129,27 +132,27 @@ class DiskApi(Core):
         """
         self._check(devname, OS_MAX_PATH_LEN)
         disk = self._disk(devname)
-        if disk.mount_point:
-            self._mounts.unmount(disk.mount_point)
+        self._leave_mount(disk)
         self._unregister(self._disks, disk)
 
     def mount(self, devname: str, mountpoint: str) -> None:
         """Mount a disk at a virtual path (OS_mount).
 
+        Args:
+            devname: the device.
+            mountpoint: the path. OSAL accepts any text, but only files behind one such as "/scratch" can be reached.
+
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG; OS_ERR_NAME_NOT_FOUND if the disk does not exist, its volume is not a
-                RAM disk ("RAM..."), it is already mounted, another disk is mounted there, or the path is invalid.
+                RAM disk ("RAM..."), it is already mounted, or another disk is mounted there.
         """
         self._check(devname, OS_FS_DEV_NAME_LEN)
         self._check(mountpoint, OS_MAX_PATH_LEN)
         disk = self._disk(devname)
-        if disk.mount_point or mountpoint in self._mounts.mount_points() or not disk.is_known:
+        taken = mountpoint in self._mounts.mount_points()
+        if disk.mount_point is not None or taken or not disk.is_known:
             raise OsalError(OS_ERR_NAME_NOT_FOUND, f"{devname} cannot be mounted at {mountpoint}")
-        try:
-            self._mounts.mount(mountpoint, disk.volume, guest=True)
-        except OsalError as error:
-            raise OsalError(OS_ERR_NAME_NOT_FOUND, error.text) from error
-        disk.mount_point = mountpoint
+        self._enter_mount(disk, mountpoint)
 
     def unmount(self, mountpoint: str) -> None:
         """Unmount a disk, which keeps its files (OS_unmount).
@@ -157,32 +160,30 @@ class DiskApi(Core):
         Raises:
             OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_NOT_FOUND.
         """
-        disk = self._mounted(mountpoint)
-        self._mounts.unmount(disk.mount_point)
-        disk.mount_point = ""
+        self._leave_mount(self._mounted(mountpoint))
 
     def file_sys_add_fixed_map(self, phys_path: str | Path, virt_path: str) -> int:
         """Map a folder of the host permanently to a virtual path (OS_FileSysAddFixedMap). The folder is only read.
 
         Args:
             phys_path: the folder, relative to the mission's folder; a missing folder appears empty.
-            virt_path: the virtual path, e.g. "/data".
+            virt_path: the virtual path, e.g. "/data"; see `mount`.
 
         Returns:
             The id of the file system.
 
         Raises:
-            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_FS_ERR_PATH_INVALID, OS_ERR_NAME_TAKEN, OS_ERR_NO_FREE_IDS.
+            OsalError: OS_FS_ERR_PATH_TOO_LONG, OS_ERR_NAME_TAKEN, OS_ERR_NO_FREE_IDS; OS_FS_ERR_DRIVE_NOT_CREATED
+                without phys_path.
         """
         self._check(virt_path, OS_MAX_PATH_LEN)
         volume = Volume(self._folder / phys_path, last_position=LAST_OF_EXT4)
-        disk = OsDisk(virt_path, volume, RAM_BLOCK_BYTES, str(phys_path), virt_path)
+        disk = OsDisk(virt_path, volume, RAM_BLOCK_BYTES, str(phys_path))
         disk_id = self._register(self._disks, disk, "disk", 0)
-        try:
-            self._mounts.mount(virt_path, volume, guest=True)
-        except OsalError:
+        if not str(phys_path):
             self._unregister(self._disks, disk)
-            raise
+            raise OsalError(OS_FS_ERR_DRIVE_NOT_CREATED, f"fixed map {virt_path} requires a folder")
+        self._enter_mount(disk, virt_path)
         return disk_id
 
     def file_sys_stat_volume(self, name: str) -> VolumeStat:
@@ -243,9 +244,18 @@ class DiskApi(Core):
     def _forget_disks(self) -> None:
         """Unmount and remove all file systems."""
         for _, disk in self._disks.items():
-            if disk.mount_point:
-                self._mounts.unmount(disk.mount_point)
+            self._leave_mount(disk)
             self._unregister(self._disks, disk)
+
+    def _enter_mount(self, disk: OsDisk, mount_point: str) -> None:
+        disk.mount_point = mount_point
+        if mount_point:
+            self._mounts.mount(mount_point, disk.volume, guest=True)
+
+    def _leave_mount(self, disk: OsDisk) -> None:
+        point, disk.mount_point = disk.mount_point, None
+        if point and self._mounts.volume(point) is disk.volume:
+            self._mounts.unmount(point)
 
     def _check(self, name: str, limit: int) -> None:
         if len(to_bytes(name)) >= limit:

@@ -63,16 +63,16 @@ class FileSystem:
     def mount(self, mount_point: str, volume: Volume, guest: bool = False) -> None:
         """Mount a volume at a path such as "/data".
 
+        OSAL accepts any text. Files behind "data" cannot be reached, and those behind "/data/" as "/data//file" only.
+
         Args:
             mount_point: the path.
             volume: the volume.
-            guest: flight software mounts it, so a reset removes it, unless it replaced a permanent volume.
-
-        Raises:
-            OsalError: OS_FS_ERR_PATH_INVALID.
+            guest: flight software mounts it, so a reset removes it, unless it replaced a permanent volume. While
+                another volume is mounted there, it cannot be reached.
         """
-        if not mount_point.startswith("/") or mount_point.endswith("/"):
-            raise OsalError(OS_FS_ERR_PATH_INVALID, f"invalid mount point {mount_point!r}; expected /NAME")
+        if guest:
+            volume = self._mounts.setdefault(mount_point, volume)
         self._mounts[mount_point] = volume
         if not guest or mount_point in self._own:
             self._own[mount_point] = volume

@@ -7,12 +7,14 @@ from pathlib import Path
 import pytest
 
 from cfepy.osal import FileSystem
+from cfepy.osal.limits import OS_FILE_FLAG_CREATE, OS_READ_WRITE
 from cfepy.status import (
     OS_ERR_NAME_NOT_FOUND,
     OS_ERR_NAME_TAKEN,
     OS_ERR_NOT_IMPLEMENTED,
     OS_ERROR,
     OS_FS_ERR_DEVICE_NOT_FREE,
+    OS_FS_ERR_DRIVE_NOT_CREATED,
     OS_FS_ERR_PATH_INVALID,
     OS_FS_ERR_PATH_TOO_LONG,
 )
@@ -86,7 +88,7 @@ def test_a_fixed_map(bench: Bench, tmp_path: Path) -> None:
     add = bench.os.file_sys_add_fixed_map
     assert status_of(add, tmp_path, "/data") == OS_ERR_NAME_TAKEN
     assert status_of(add, tmp_path, "/" + "d" * 63) == OS_FS_ERR_PATH_TOO_LONG
-    assert status_of(add, tmp_path, "data") == OS_FS_ERR_PATH_INVALID
+    assert status_of(add, "", "/without_a_folder") == OS_FS_ERR_DRIVE_NOT_CREATED
     add(tmp_path / "nothing", "/a_path/of_more_than/the_32_characters/of_a_device")
     assert bench.os.files.list_dir("/a_path/of_more_than/the_32_characters/of_a_device") == []
     bench.os.unmount("/data")
@@ -114,8 +116,38 @@ def test_disk_may_be_removed_while_it_is_mounted(bench: Bench) -> None:
 def test_mount_requires_a_ram_disk(bench: Bench) -> None:
     bench.os.mkfs("/ssrdev0", "SSR1", 512, 4)
     assert status_of(bench.os.mount, "/ssrdev0", "/ssr") == OS_ERR_NAME_NOT_FOUND
-    bench.os.mkfs("/ramdev1", "RAM1", 512, 4)
-    assert status_of(bench.os.mount, "/ramdev1", "scratch") == OS_ERR_NAME_NOT_FOUND
+
+
+@pytest.mark.parametrize(
+    ("point", "reached", "missed"),
+    [("scratch", None, "/scratch/f"), ("/x/", "/x//f", "/x/f"), ("/", "//f", "/f"), ("", None, "/f")],
+)
+def test_disk_is_mounted_at_any_text_but_reached_only_through_it(
+    bench: Bench, tmp_path: Path, point: str, reached: str | None, missed: str
+) -> None:
+    os = bench.os
+    os.mkfs("/ramdev1", "RAM1", 512, 4)
+    os.mount("/ramdev1", point)
+    assert status_of(os.mount, "/ramdev1", "/again") == OS_ERR_NAME_NOT_FOUND
+    assert status_of(os.open_create, missed, OS_FILE_FLAG_CREATE, OS_READ_WRITE) == OS_FS_ERR_PATH_INVALID
+    if reached is not None:
+        os.close(os.open_create(reached, OS_FILE_FLAG_CREATE, OS_READ_WRITE))
+    if point:
+        os.unmount(point)
+    else:
+        assert status_of(os.unmount, point) == OS_ERR_NAME_NOT_FOUND
+    os.rmfs("/ramdev1")
+    os.file_sys_add_fixed_map(tmp_path, point)
+    assert status_of(os.file_sys_add_fixed_map, tmp_path, point) == OS_ERR_NAME_TAKEN
+
+
+def test_fixed_map_at_the_place_of_a_mounted_disk_is_not_reached(bench: Bench, tmp_path: Path) -> None:
+    (tmp_path / "x").write_bytes(b"host")
+    bench.os.file_sys_add_fixed_map(tmp_path, "/ram")
+    assert not bench.os.files.exists("/ram/x")
+    bench.os.rmfs("/ram")
+    bench.os.files.write_file("/ram/x", b"disk")
+    assert bench.os.files.read_file("/ram/x") == b"disk"
 
 
 def test_disk_in_memory_can_be_mounted_with_any_name(bench: Bench) -> None:
