@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 from cfepy.osal.network import Place
 from cfepy.status import (
     OS_ERR_BAD_ADDRESS,
+    OS_ERR_EMPTY_SET,
     OS_ERR_INVALID_ARGUMENT,
     OS_ERR_NOT_IMPLEMENTED,
-    OS_ERROR,
+    OS_ERR_TRY_AGAIN,
     OS_INVALID_POINTER,
     OsalError,
 )
@@ -18,6 +21,9 @@ OS_SocketDomain_INET6 = 2
 
 ANY_HOST = {OS_SocketDomain_INET: "0.0.0.0", OS_SocketDomain_INET6: "::"}
 HIGHEST_PORT = 0xFFFF
+LOOPBACK, LOOPBACK_NAME = "127.0.0.1", "localhost"
+_PART = re.compile(r"0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*", re.ASCII)
+_HOST_NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_-]*(\.[A-Za-z0-9_-]+)*\.?", re.ASCII)
 
 
 class SockAddr:
@@ -70,13 +76,19 @@ def socket_addr_init(domain: int) -> SockAddr:
 
 
 def socket_addr_to_string(addr: SockAddr) -> str:
-    """Return the host of an address as text, without the port (OS_SocketAddrToString).
+    """Return the host of an address as text, without the port (OS_SocketAddrToString): "localhost" for 127.0.0.1, and
+    the numbers of others.
 
     Raises:
         OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain.
     """
     check_address(addr)
-    return addr.host
+    return host_name(addr.host)
+
+
+def host_name(host: str) -> str:
+    """Return the name of a host; a computer knows no other than "localhost" without a name server."""
+    return LOOPBACK_NAME if host == LOOPBACK else host
 
 
 def socket_addr_from_string(addr: SockAddr, string: str) -> None:
@@ -84,23 +96,49 @@ def socket_addr_from_string(addr: SockAddr, string: str) -> None:
 
     Args:
         addr: the address to change.
-        string: numbers as inet_pton takes them, "127.0.0.1" or "::1"; names are not looked up.
+        string: numbers as getaddrinfo takes them, such as "127.0.0.1", "127.1", "0x7f000001" or "::1"; or "localhost".
 
     Raises:
-        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain; OS_ERROR for a text that is not
-            an address of this domain.
+        OsalError: OS_INVALID_POINTER; OS_ERR_BAD_ADDRESS for an address without domain; OS_ERR_TRY_AGAIN for another
+            name, because the network has no name server; OS_ERR_EMPTY_SET for an address of the other domain, and for
+            a text that cannot be a name.
     """
+    check_address(addr)
+    ip4, ip6 = _ip4_of(string), _ip6_of(string)
+    host = ip4 if addr.domain == OS_SocketDomain_INET else ip6
+    if host is not None:
+        addr.host = host
+    elif ip4 is None and ip6 is None and _HOST_NAME.fullmatch(string):
+        raise OsalError(OS_ERR_TRY_AGAIN, f"host {string!r} cannot be looked up; the network has no name server")
+    else:
+        raise OsalError(OS_ERR_EMPTY_SET, f"invalid network address {string!r}")
+
+
+def _ip4_of(string: str) -> str | None:
+    """Return the numbers of "localhost", or of a text that inet_aton takes: one to four parts, decimal, octal or
+    hexadecimal, of which the last fills the bytes that are left.
+    """
+    if string == LOOPBACK_NAME:
+        return LOOPBACK
+    parts = string.split(".")
+    if len(parts) > 4 or not all(map(_PART.fullmatch, parts)):
+        return None
+    *firsts, last = (int(part, 8 if re.fullmatch("0[0-7]+", part) else 0) for part in parts)
+    room = 4 - len(firsts)
+    if last >= 256**room or any(first > 255 for first in firsts):
+        return None
+    return ".".join(map(str, bytes(firsts) + last.to_bytes(room, "big")))
+
+
+def _ip6_of(string: str) -> str | None:
+    """Return an IPv6 address in its usual form, or None for another text or an address that names an interface."""
     import ipaddress
 
-    check_address(addr)
-    kind = ipaddress.IPv4Address if addr.domain == OS_SocketDomain_INET else ipaddress.IPv6Address
     try:
-        host = str(kind(string))
+        host = str(ipaddress.IPv6Address(string))
     except ValueError:
-        raise OsalError(OS_ERROR, f"invalid network address {string!r}") from None
-    if "%" in host:
-        raise OsalError(OS_ERROR, f"invalid network address {string!r}; it must not name an interface")
-    addr.host = host
+        return None
+    return None if "%" in host else host
 
 
 def socket_addr_get_port(addr: SockAddr) -> int:

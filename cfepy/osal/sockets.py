@@ -103,6 +103,16 @@ class DatagramApi(StreamApi):
         return data, from_place(datagram.source)
 
 
+class NoName(Exception):
+    """A read of the name of a socket that has none: on Linux, SIGSEGV.
+
+    Attributes:
+        ends_process: SIGSEGV ends NASA's process on Linux.
+    """
+
+    ends_process = True
+
+
 class SocketInfo(NamedTuple):
     """The result of `socket_get_info` (OS_socket_prop_t)."""
 
@@ -148,13 +158,15 @@ class SocketApi(DatagramApi):
         Raises:
             OsalError: OS_INVALID_POINTER, OS_ERR_INVALID_ID, OS_ERR_INCORRECT_OBJ_TYPE for a file,
                 OS_ERR_INCORRECT_OBJ_STATE if it is bound or connected, OS_ERR_BAD_ADDRESS; OS_ERROR if the address is
-                taken or is not on this network.
+                taken, is not on this network, or is of another domain.
         """
         check_given(addr)
         record = self._socket(sock_id)
         if record.bound or record.connected:
             raise OsalError(OS_ERR_INCORRECT_OBJ_STATE, f"socket {record.name} is bound or connected")
         check_address(addr)
+        if addr.domain != record.domain:
+            raise record.error(f"cannot be bound to {addr!r}, an address of another domain")
         self._take_place(record, addr.place)
         self._entitle(record, addr.place)
         record.bound = True
@@ -311,7 +323,7 @@ class SocketApi(DatagramApi):
     def socket_get_id_by_name(self, sock_name: str) -> int:
         """Return the id of a socket by its name (OS_SocketGetIdByName).
 
-        The name is its address, such as "127.0.0.1:1234", or "REMOTE-LOCAL" for a connection.
+        The name is its address, such as "localhost:1234", or "REMOTE-LOCAL" for a connection.
 
         Raises:
             OsalError: OS_ERR_NAME_NOT_FOUND, or OS_ERR_NAME_TOO_LONG for 20 characters and more.
@@ -323,11 +335,22 @@ class SocketApi(DatagramApi):
         raise OsalError(OS_ERR_NAME_NOT_FOUND, f"unknown socket {sock_name!r}")
 
     def socket_get_info(self, sock_id: int) -> SocketInfo:
-        """Return facts about a socket (OS_SocketGetInfo); the name is cut to 19 characters. It raises
-        OS_ERR_INVALID_ID.
+        """Return facts about a socket (OS_SocketGetInfo).
+
+        Args:
+            sock_id: the socket, or a file.
+
+        Returns:
+            The name, cut to 19 characters, and the creator. A safe mission gives a socket without address a name.
+
+        Raises:
+            OsalError: OS_ERR_INVALID_ID.
+            NoName: the socket has no address, and the mission is not safe.
         """
         record = self._stream(sock_id)
-        return SocketInfo(record.name[: OS_MAX_API_NAME - 1], record.creator)
+        if not record.path and self._is_strict:
+            raise NoName("OS_SocketGetInfo of a socket without address; bind it first (SIGSEGV in strncpy)")
+        return SocketInfo((record.path or record.name)[: OS_MAX_API_NAME - 1], record.creator)
 
     def socket_get_option(self, sock_id: int, opt_id: int) -> int:
         """Return an option of a socket (OS_SocketGetOption).
@@ -371,7 +394,7 @@ class SocketApi(DatagramApi):
     def _entitle(self, record: OsSocket, place: Place, more: str = "") -> None:
         """Name a socket after its address, like OS_CreateSocketName."""
         self._streams.names.pop(record.name, None)
-        record.name = record.path = f"{place.host}:{place.port}{more}"
+        record.name = record.path = f"{sockaddr.host_name(place.host)}:{place.port}{more}"
 
 
 class FdSet:

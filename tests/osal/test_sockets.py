@@ -11,12 +11,14 @@ from cfepy.osal.limits import OS_CHECK
 from cfepy.osal.network import DATAGRAM_BUFFER, DATAGRAM_OVERHEAD, Datagram, Network, Place
 from cfepy.osal.sockaddr import OS_SocketDomain_INVALID, SockAddr
 from cfepy.osal.sockets import (
+    NoName,
     OS_socket_option_IP_DSCP,
     OS_socket_option_UNDEFINED,
 )
 from cfepy.rtos import CpuCosts
 from cfepy.status import (
     OS_ERR_BAD_ADDRESS,
+    OS_ERR_EMPTY_SET,
     OS_ERR_INCORRECT_OBJ_STATE,
     OS_ERR_INCORRECT_OBJ_TYPE,
     OS_ERR_INVALID_ARGUMENT,
@@ -26,6 +28,7 @@ from cfepy.status import (
     OS_ERR_NAME_TOO_LONG,
     OS_ERR_NOT_IMPLEMENTED,
     OS_ERR_OPERATION_NOT_SUPPORTED,
+    OS_ERR_TRY_AGAIN,
     OS_ERROR,
     OS_INVALID_POINTER,
     OsalError,
@@ -38,7 +41,7 @@ from tests.osal.test_queues import status_of
 
 
 @pytest.mark.parametrize(
-    ("domain", "text"), [(INET, "127.0.0.1"), (INET, "10.1.2.3"), (INET6, "::1"), (INET6, "fe80::2")]
+    ("domain", "text"), [(INET, "localhost"), (INET, "10.1.2.3"), (INET6, "::1"), (INET6, "fe80::2")]
 )
 def test_an_address_is_filled_in_step_by_step(bench: Bench, domain: int, text: str) -> None:
     addr = bench.os.socket_addr_init(domain)
@@ -48,11 +51,43 @@ def test_an_address_is_filled_in_step_by_step(bench: Bench, domain: int, text: s
     assert (bench.os.socket_addr_to_string(addr), bench.os.socket_addr_get_port(addr)) == (text, 1234)
 
 
-@pytest.mark.parametrize("text", ["invalid", "localhost", "127.0.0", "127.0.0.1 ", "::1", "", "01.2.3.4"])
-def test_a_text_that_is_no_address_changes_nothing(bench: Bench, text: str) -> None:
+@pytest.mark.parametrize(
+    ("text", "host"),
+    [
+        *(("127.1", "localhost"), ("0x7f000001", "localhost"), ("0177.0.0.1", "localhost"), ("010.1.2.3", "8.1.2.3")),
+        *(("1.2.65535", "1.2.255.255"), ("4294967295", "255.255.255.255"), ("0", "0.0.0.0")),
+    ],
+)
+def test_numbers_of_an_address_are_read_as_the_c_library_reads_them(bench: Bench, text: str, host: str) -> None:
     addr = bench.os.socket_addr_init(INET)
-    assert status_of(bench.os.socket_addr_from_string, addr, text) == OS_ERROR
+    bench.os.socket_addr_from_string(addr, text)
+    assert bench.os.socket_addr_to_string(addr) == host
+
+
+@pytest.mark.parametrize("text", ["nohost", "256.0.0.1", "1.2.3.4.5", "1.2.3.4x", "1.2.3.", "09.1", "0x"])
+def test_name_of_a_host_requires_a_name_server(bench: Bench, text: str) -> None:
+    addr = bench.os.socket_addr_init(INET)
+    assert status_of(bench.os.socket_addr_from_string, addr, text) == OS_ERR_TRY_AGAIN
     assert bench.os.socket_addr_to_string(addr) == "0.0.0.0"
+
+
+@pytest.mark.parametrize("text", ["::1", "", " ", "127.0.0.1 ", "1..2", "-1", "bad name", "\u0661.1.1.1"])
+def test_text_that_cannot_be_a_name_of_a_host_is_refused(bench: Bench, text: str) -> None:
+    addr = bench.os.socket_addr_init(INET)
+    assert status_of(bench.os.socket_addr_from_string, addr, text) == OS_ERR_EMPTY_SET
+    assert bench.os.socket_addr_to_string(addr) == "0.0.0.0"
+
+
+@pytest.mark.parametrize("text", ["1.2.3.4", "localhost", "fe80::1%lo"])
+def test_address_of_another_domain_is_refused(bench: Bench, text: str) -> None:
+    assert status_of(bench.os.socket_addr_from_string, bench.os.socket_addr_init(INET6), text) == OS_ERR_EMPTY_SET
+
+
+@pytest.mark.parametrize("kind", [DATAGRAM, STREAM])
+def test_socket_is_not_bound_to_an_address_of_another_domain(bench: Bench, kind: int) -> None:
+    sock_id = bench.os.socket_open(INET, kind)
+    assert status_of(bench.os.socket_bind, sock_id, SockAddr(INET6, "::1", 9999)) == OS_ERROR
+    bench.os.socket_bind(sock_id, address(9999))
 
 
 def test_addresses_without_domain_and_missing_ones(bench: Bench) -> None:
@@ -254,16 +289,34 @@ def test_two_processors_exchange_datagrams_on_one_network() -> None:
 
 def test_names_and_facts(bench: Bench) -> None:
     os, sock_id = bench.os, bound(bench, 9999)
-    assert os.socket_get_info(sock_id) == ("127.0.0.1:9999", 0)
-    assert os.socket_get_id_by_name("127.0.0.1:9999") == sock_id
-    assert os.get_resource_name(sock_id) == "127.0.0.1:9999"
+    assert os.socket_get_info(sock_id) == ("localhost:9999", 0)
+    assert os.socket_get_id_by_name("localhost:9999") == sock_id
+    assert os.get_resource_name(sock_id) == "localhost:9999"
     _, _, served = connection(bench)
-    assert os.get_resource_name(served) == "127.0.0.1:32768-127.0.0.1:9997"
-    assert os.socket_get_info(served).name == "127.0.0.1:32768-127"
+    assert os.get_resource_name(served) == "localhost:32768-localhost:9997"
+    assert os.socket_get_info(served).name == "localhost:32768-loc"
     assert status_of(os.socket_get_id_by_name, "NF") == OS_ERR_NAME_NOT_FOUND
     assert status_of(os.socket_get_id_by_name, "N" * 20) == OS_ERR_NAME_TOO_LONG
     assert status_of(os.socket_get_info, NO_SOCKET) == OS_ERR_INVALID_ID
-    assert bench.run(lambda: os.socket_get_info(os.socket_open(INET, STREAM)).creator == os.task_get_id())
+    assert os.socket_get_info(a_file(bench)).name == "/ram/test.txt"
+
+
+def test_facts_about_a_socket_without_address_end_the_process_as_on_linux(bench: Bench) -> None:
+    os, caught = bench.os, []
+
+    def ask() -> None:
+        for sock_id in (os.socket_open(INET, STREAM), os.socket_open(INET, DATAGRAM)):
+            with pytest.raises(NoName) as failure:
+                os.socket_get_info(sock_id)
+            caught.append(failure.value.ends_process)
+
+    bench.run(ask)
+    assert caught == [True, True]
+
+
+def test_facts_about_a_socket_without_address_are_given_in_a_safe_mission(safe_bench: Bench) -> None:
+    os = safe_bench.os
+    assert safe_bench.run(lambda: os.socket_get_info(os.socket_open(INET, STREAM)).creator == os.task_get_id())
 
 
 def test_options(bench: Bench) -> None:

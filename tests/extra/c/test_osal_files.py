@@ -153,7 +153,7 @@ def test_addresses_of_the_network(tmp_path: Path) -> None:
     """
     assert results(tmp_path, body, before=ADDRESS) == [
         *("16 bytes: 2 0, port 12 34, 127.0.0.1", "0", "0", "28 bytes: 10, 1", "0", "::1"),
-        *("-1", "-40", "-1", "0", "1234", "-34", "-34", "-34", "-34", "-28", "-2"),
+        *("-1", "-40", "-43", "0", "1234", "-34", "-34", "-34", "-34", "-28", "-2"),
     ]
 
 
@@ -190,7 +190,7 @@ def test_datagrams(tmp_path: Path) -> None:
     """
     assert results(tmp_path, body, before=ADDRESS) == [
         *("-28", "0", "0", "0", "-35", "0", "-4", "-4", "6", "-34", "6", "hello from 5001"),
-        *("0", "0", "3", "-42", "0", "127.0.0.1:5000"),
+        *("0", "0", "3", "-42", "0", "localhost:5000"),
     ]
 
 
