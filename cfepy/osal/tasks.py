@@ -146,7 +146,7 @@ class TaskApi(Core):
         self._task(self.task_get_id()).on_delete = handler
 
     def task_delay(self, milliseconds: int) -> None:
-        """Sleep (OS_TaskDelay); other tasks can run even with 0 ms.
+        """Sleep (OS_TaskDelay). With 0 ms tasks of the same priority can run, and less urgent ones cannot.
 
         Raises:
             OsalError: OS_ERR_INVALID_ARGUMENT for a negative time.
@@ -155,7 +155,10 @@ class TaskApi(Core):
             self.kernel.charge(self._cost)
         if milliseconds < 0:
             raise OsalError(OS_ERR_INVALID_ARGUMENT, f"invalid delay: {milliseconds} ms")
-        self.kernel.delay(milliseconds * NS_PER_MS)
+        if milliseconds:
+            self.kernel.delay(milliseconds * NS_PER_MS)
+        else:
+            self.kernel.delay_nothing(self._costs.polling_ns)
 
     def task_set_priority(self, task_id: int, priority: int) -> None:
         """Change a task's priority (OS_TaskSetPriority).

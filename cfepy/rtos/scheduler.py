@@ -197,6 +197,15 @@ class Scheduler:
             self._push_back(task)
             self._switch(task, self._take())
 
+    def delay_nothing(self, cost_ns: int) -> None:
+        """Sleep for no time, as Linux does: tasks of the same priority run first, and less urgent ones do not run.
+
+        Args:
+            cost_ns: CPU time of the call, so that a loop of such calls comes to an end; at least 1 is charged.
+        """
+        self.charge(max(cost_ns, 1))
+        self.yield_cpu()
+
     def charge(self, duration_ns: int) -> None:
         """Charge the current task `duration_ns` of virtual CPU time; due timers fire, and other tasks may run."""
         task = self.current

@@ -98,6 +98,27 @@ def test_delay_in_virtual_milliseconds(bench: Bench) -> None:
     assert bench.log == [250 * MS]
 
 
+def test_delay_of_0_ms_lets_equal_tasks_run_and_no_less_urgent_ones(bench: Bench) -> None:
+    def main() -> None:
+        for turn in range(3):
+            bench.log.append(turn)
+            bench.os.task_delay(0)
+        bench.os.task_delay(1)
+
+    def equal() -> None:
+        bench.log.append("equal")
+
+    def lower() -> None:
+        bench.log.append("lower")
+
+    bench.task(main, 100)
+    bench.task(equal, 100)
+    bench.task(lower, 101)
+    bench.kernel.run(until_ns=10 * MS)
+    assert bench.log == [0, "equal", 1, 2, "lower"]
+    assert bench.kernel.now >= 3
+
+
 def test_a_negative_delay_is_refused(bench: Bench) -> None:
     with pytest.raises(OsalError) as caught:
         bench.os.task_delay(-1)

@@ -58,7 +58,7 @@ def test_task_of_osal_belongs_to_no_application(tmp_path: Path, tasks: str) -> N
     assert said == [*("-2", "-2", "-2", "-13", "-40", "9", "0"), "KID 60 5000 1", "-16", "[] -16"]
 
 
-def test_delay_lasts_its_time_and_0_ms_yields(tmp_path: Path) -> None:
+def test_delay_lasts_its_time_and_0_ms_use_time(tmp_path: Path) -> None:
     body = """
         Time then, now;
         OS_GetMonotonicTime(&then);
@@ -73,6 +73,34 @@ def test_delay_lasts_its_time_and_0_ms_yields(tmp_path: Path) -> None:
         SAY("polled");
     """
     assert results(tmp_path, body) == ["500010", "polled"]
+
+
+def test_wait_of_no_time_keeps_less_urgent_tasks_back(tmp_path: Path) -> None:
+    before = """
+    static volatile int turns;
+    static void less_urgent(void)
+    {
+        for (;;) {
+            turns++;
+            OS_TaskDelay(1);
+        }
+    }
+    static const long nothing[2];
+    extern int usleep(unsigned), nanosleep(const long *, long *);
+    """
+    body = """
+        Id id;
+        OS_TaskCreate(&id, "LESS", less_urgent, NULL, 4096, 200, 0);
+        OS_TaskDelay(5);
+        for (int way = 0; way < 3; way++) {
+            int before = turns;
+            for (int i = 0; i < 20000; i++)
+                way == 0 ? OS_TaskDelay(0) : way == 1 ? usleep(0) : nanosleep(nothing, NULL);
+            SAY("%d", turns - before);
+            OS_TaskDelay(5);
+        }
+    """
+    assert results(tmp_path, body, before=before) == ["0", "0", "0"]
 
 
 def test_task_runs_on_a_stack_of_the_application(tmp_path: Path) -> None:

@@ -32,11 +32,6 @@ def declare(api: Declarations, c: CRuntime) -> None:
 
         return os.task_create(name, run, size, priority, flags, owner=NOBODY, brings_stack=bool(stack))
 
-    def delay(milliseconds: int) -> None:
-        if not milliseconds:  # other tasks get their turn, and code may poll in this way
-            c.kernel.charge(c.polling_ns)
-        os.task_delay(milliseconds)
-
     def set_priority(task_id: int, priority: int) -> None:
         os.task_set_priority(task_id, priority)
 
@@ -62,7 +57,7 @@ def declare(api: Declarations, c: CRuntime) -> None:
     api.add("OS_TaskDelete", "I", os.task_delete)
     api.add("OS_TaskExit", "", os.task_exit)
     api.add("OS_TaskInstallDeleteHandler", "p", install_delete_handler)
-    api.add("OS_TaskDelay", "I", delay)
+    api.add("OS_TaskDelay", "I", os.task_delay)
     api.add("OS_TaskSetPriority", "IB", set_priority)
     api.add("OS_TaskGetId", "", os.task_get_id)
     api.add("OS_TaskGetIdByName", "$4S", os.task_get_id_by_name, BAD)

@@ -73,11 +73,11 @@ class PosixTime:
         return base
 
     def sleep(self, seconds: int) -> int:
-        self._c.kernel.delay(seconds * NS_PER_S)
+        self._delay(seconds * NS_PER_S)
         return 0
 
     def sleep_us(self, microseconds: int) -> int:
-        self._c.kernel.delay(microseconds * NS_PER_US)
+        self._delay(microseconds * NS_PER_US)
         return 0
 
     def sleep_ns(self, wanted: int, rest: int) -> int:
@@ -90,8 +90,14 @@ class PosixTime:
         if clock not in CLOCKS or seconds < 0 or not 0 <= nanoseconds < NS_PER_S:
             return errno.EINVAL
         end = seconds * NS_PER_S + nanoseconds
-        self._c.kernel.delay(max(end - self._now(clock), 0) if flags & TIMER_ABSTIME else end)
+        self._delay(max(end - self._now(clock), 0) if flags & TIMER_ABSTIME else end)
         return 0
+
+    def _delay(self, duration_ns: int) -> None:
+        if duration_ns:
+            self._c.kernel.delay(duration_ns)
+        else:
+            self._c.kernel.delay_nothing(self._c.polling_ns)
 
     def _fail(self, number: int) -> int:
         self._c.memory.put_u32(self._c.thread_locals.errno(), number)
