@@ -69,14 +69,13 @@ Parts = tuple[Callable[[], bytes], Callable[[], dict[str, str]]]
 def message_parts(topic: str, message: Any) -> Parts:
     """Return functions that make a message's bytes and its connection header."""
     kind = message.__class__
-    type_name = kind._type  # before the message is serialized, as in ROS
 
     def data() -> bytes:
         buffer = io.BytesIO()
         message.serialize(buffer)
         return buffer.getvalue()
 
-    return data, lambda: _header(topic, type_name, kind._md5sum, message._full_text)
+    return data, lambda: _header(topic, kind._type, kind._md5sum, message._full_text)
 
 
 def raw_parts(topic: str, message: Any) -> Parts:

@@ -106,8 +106,8 @@ class BagFile:
 
         Raises:
             ROSBagException: the file has no valid header.
-            UnsupportedOperation: the file cannot be written, and has no index; as in ROS the last chunk is then
-                missing.
+            UnsupportedOperation: the file cannot be written, and has no index, or has bytes after the last valid
+                chunk; as in ROS the last chunk is then missing.
         """
         is_indexed = records.uint64_field(self._file_header(), "index_pos") > 0
         self._file_header()
@@ -117,7 +117,7 @@ class BagFile:
         if not is_indexed and not self.file.writable():
             del self.contents.chunks[-1:]
             raise UnsupportedOperation("truncate")
-        if start < end < self.file.seek(0, 2) and self.file.writable():
+        if start < end < self.file.seek(0, 2):
             self.file.truncate(end)
 
     def read(self, entry: Entry | tuple[int, int]) -> Message:

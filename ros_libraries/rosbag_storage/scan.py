@@ -56,12 +56,12 @@ def _read_chunk(file: BinaryIO, contents: Contents, at: int, end: int) -> None:
             chunk.start = chunk.end = entry.time
         chunk.add(number, entry.time)
     indexed = _skip_index(file, end)
-    if indexed is not None and indexed != len(entries):
-        raise ROSBagException(f"index shorter than expected ({indexed} vs {len(entries)})")
     for connection in connections:
         contents.connections.setdefault(connection.id, connection)
     for number, entry in entries:
         contents.indexes.setdefault(number, []).append(entry)
+    if indexed is not None and indexed != len(entries):  # as in ROS, the messages remain, and cannot be read
+        raise ROSBagException(f"index shorter than expected ({indexed} vs {len(entries)})")
     contents.chunks.append(chunk)
 
 

@@ -119,6 +119,39 @@ def test_unclosed_bag_is_reindexed(tmp_path: Path) -> None:
     assert printed(tmp_path, code) == ["Unindexed bag 58 True", "99"]
 
 
+def test_failed_write_leaves_an_entry_that_breaks_the_index_as_on_ros(tmp_path: Path) -> None:
+    code = """
+        def tried(call):
+            try:
+                print(call())
+            except Exception as error:
+                print(type(error).__name__, error)
+        def values():
+            return [m.message.data for m in bag.read_messages()]
+        bag = Bag("out.bag", "w", chunk_threshold=60)
+        for i in range(4):
+            bag.write("/a", String(str(i)), at(i + 1))
+        tried(lambda: bag.write("/a", "text", at(4)))
+        tried(lambda: bag.write("/new", "text", at(4)))
+        bag.close()
+        bag = Bag("out.bag")
+        print(bag.get_message_count())
+        tried(lambda: list(bag.reindex()))
+        tried(values)
+        bag = Bag("out.bag", "a")
+        print(len(list(bag.reindex())))
+        tried(values)
+    """
+    warning, *lines = printed(tmp_path, code)
+    assert warning.startswith("cfepy: a message on /a could not be serialized")
+    assert lines == [
+        "AttributeError 'str' object has no attribute 'serialize'",
+        "AttributeError type object 'str' has no attribute '_type'",
+        *("5", "UnsupportedOperation truncate", "ROSBagException no chunk at position 4669"),
+        *("3", "ROSBagException no chunk at position 4669"),
+    ]
+
+
 def test_records_of_a_later_version_are_skipped(tmp_path: Path) -> None:
     code = """
         from rosbag import bag
