@@ -152,6 +152,7 @@ OWN = (
             "procedure_tests": ".procedure_items:ProcedureTests",
             "cosmos_plugin": ".cosmos_plugin:plugin_files",
         },
+        needs=("exploration",),
     ),
     _own("profiler", hooks={"flight_options": ".profile_option:Profiler"}),
     _own("attach", hooks={"realtime_flights": ".attach_door:AttachDoor"}),

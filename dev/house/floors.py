@@ -59,6 +59,7 @@ PEERS_THAT_MEET: dict[tuple[str, str], str] = {
     ("dictionaries", "c"): "the packets of a compiled application are in its debug data",
     ("reports", "c"): "a report about a board reads how large compiled code is",
     ("exploration", "reports"): "a sweep is drawn with the curves of reports",
+    ("procedures", "exploration"): "the cause of a racy test is found as the cause of any failure of a run",
     ("__main__", "cli"): "`python -m cfepy` is the command",
 }
 """Who may import a peer, and why."""

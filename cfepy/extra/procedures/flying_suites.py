@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import io
+import sys
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
+from cfepy.attachment import Attachment
 from cfepy.extra.procedures.answers import Answers
 from cfepy.extra.procedures.connection import CfepyConnection, methods_of, test_classes
 from cfepy.extra.procedures.definition_reader import ruby_variables
+from cfepy.extra.procedures.pauses import AskedPauses, Pauses, line_of
 from cfepy.extra.procedures.procedure_errors import SkipScript, StopScript, UnsupportedError
 from cfepy.extra.procedures.procedure_loader import Procedures, group_output, has_second_door, suites_in
 from cfepy.extra.procedures.requirements import Requirements, marked
@@ -25,7 +28,7 @@ from cfepy.ground import dictionary_of, topics_of
 from cfepy.interpreter.host_system import command_line
 from cfepy.journal import JournalRecorder
 from cfepy.pilot import RunPlan
-from cfepy.rtos import Stopwatch
+from cfepy.rtos import Policy, Stopwatch
 from cfepy.schedules import Schedule
 from cfepy.status import CfeError, UsageError
 from cfepy.units import NS_PER_S
@@ -147,6 +150,18 @@ def fly_procedures(
     return result
 
 
+class Observed(NamedTuple):
+    """How the flight of a racy test is observed; each of its pauses is a question to the policy.
+
+    Attributes:
+        policy: decides in place of the schedule's own.
+        attachments: observers of the run.
+    """
+
+    policy: Policy
+    attachments: Sequence[Attachment] = ()
+
+
 class OfflineStation(Station):
     """A station without a flight, to find the tests of files."""
 
@@ -170,6 +185,7 @@ class FlyingSuite:
         settings: how it flies.
         requirements: where its tests write the states of requirements.
         offline: whether there is no mission, to find the tests only.
+        observed: for the analysis of a racy test, how its flight is observed.
 
     Attributes:
         steps: its methods, in order.
@@ -179,7 +195,13 @@ class FlyingSuite:
     """
 
     def __init__(
-        self, file: Path, suite: str, settings: Settings, requirements: Requirements, offline: bool = False
+        self,
+        file: Path,
+        suite: str,
+        settings: Settings,
+        requirements: Requirements,
+        offline: bool = False,
+        observed: Observed | None = None,
     ) -> None:
         self.steps: list[ProcedureStep] = []
         self.notes: list[str] = []
@@ -187,7 +209,7 @@ class FlyingSuite:
         self.journal: Path | None = None
         self._file, self._suite, self._settings = file, suite, settings
         self._requirements = requirements
-        self._offline = offline
+        self._offline, self._observed = offline, observed
         self._lines: list[str] = []
         self._failed = False
         self._recorder: JournalRecorder | None = None
@@ -239,6 +261,9 @@ class FlyingSuite:
         plan = self._settings.plan
         attachments: list[Any] = [telemetry.watch]
         policy = plan.schedule.policy()
+        if self._observed is not None:
+            attachments += self._observed.attachments
+            policy = self._observed.policy
         if self._settings.journals is not None:
             self._settings.journals.mkdir(parents=True, exist_ok=True)
             name = f"{self._file.stem}{'-' if self._suite else ''}{self._suite}"
@@ -249,7 +274,14 @@ class FlyingSuite:
         self.flight = Flight(plan, policy=policy, attachments=attachments, again=self.command)
         self._stack.callback(self.flight.close)
         self.flight.run_until_operational()
-        return FlightStation(self.flight, telemetry, self._settings.through_lab, self._settings.ground_seed)
+        return FlightStation(self.flight, telemetry, self._settings.through_lab, self._pauses(self.flight))
+
+    def _pauses(self, flight: Flight) -> Pauses:
+        seed = self._settings.ground_seed
+        if self._observed is None or not seed:
+            return Pauses(seed)
+        kernel = flight.mission.kernel
+        return AskedPauses(seed, kernel.answer, lambda: line_of(sys._getframe(1), self._procedures.files))
 
     def _read_trackers(self) -> None:
         self._requirements.current = self._suite or self._file.stem

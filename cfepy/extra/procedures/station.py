@@ -6,7 +6,6 @@ connect to a network. Both keep the newest packet of each MsgId with its count, 
 
 from __future__ import annotations
 
-import random
 import socket
 import time
 from abc import ABC, abstractmethod
@@ -14,6 +13,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from cfepy import msg
+from cfepy.extra.procedures.pauses import Pauses
 from cfepy.flight import Flight
 from cfepy.ground import GroundLink
 from cfepy.mission import PACKET, PacketWatch, Seen
@@ -22,8 +22,6 @@ from cfepy.units import NS_PER_S
 
 CI_PORT, TO_PORT = 1234, 1235
 """The UDP ports of CI_LAB and TO_LAB on processor 1."""
-LATEST_S = 0.05
-"""By how much a pause of a busy ground computer lasts longer."""
 _FIRST_HEADER = 6
 _EPSILON_S = 1e-9
 
@@ -177,12 +175,12 @@ class FlightStation(Station):
         flight: the mission.
         telemetry: the observer of its bus, which was attached at the boot.
         through_lab: whether to use CI_LAB and TO_LAB; None if both are in the startup script.
-        seed: lets each pause last up to 50 ms longer, as on a ground computer with other work; 0 for exact pauses.
+        pauses: gives each pause its additional time.
     """
 
-    def __init__(self, flight: Flight, telemetry: BusTelemetry, through_lab: bool | None = None, seed: int = 0) -> None:
+    def __init__(self, flight: Flight, telemetry: BusTelemetry, through_lab: bool | None, pauses: Pauses) -> None:
         super().__init__()
-        self._late = random.Random(seed) if seed else None
+        self._pauses = pauses
         self.flight = flight
         names = {app.name for app in flight.mission.cfe.es.apps}
         self.through_lab = {"CI_LAB", "TO_LAB"} <= names if through_lab is None else through_lab
@@ -197,8 +195,7 @@ class FlightStation(Station):
         return self.flight.mission.kernel.now / NS_PER_S
 
     def wait(self, seconds: float) -> None:
-        late = 0.0 if self._late is None else self._late.uniform(0.0, LATEST_S)
-        self.flight.run_for(seconds + late)
+        self.flight.run_for(seconds + self._pauses.additional())
 
     def _put(self, packet: bytes) -> None:
         self.flight.touched = True

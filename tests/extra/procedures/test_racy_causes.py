@@ -1,0 +1,43 @@
+"""The decisions that change the verdict of a racy test."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from cfepy.extra.procedures import Verdicts, explore_procedures
+from tests.extra.procedures.demo import settings
+
+
+def explored(folder: Path, text: str, schedules: int, probes: int = 10) -> Verdicts:
+    """Return the verdicts of a script under schedules."""
+    file = folder / "script.py"
+    file.write_text(text, encoding="utf-8")
+    (found,) = explore_procedures([file], settings(through_lab=False, line_delay=0.0), schedules, probes=probes)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("text", "schedules", "cause"),
+    [
+        ("wait(1.92)\nassert get_tlm_cnt('LAB CFE_ES_HK') == 0\n", 3, "it fails if a pause at script.py:1 lasts 48 ms"),
+        ("wait(1.92)\nassert get_tlm_cnt('LAB CFE_ES_HK') == 1\n", 3, "it passes if a pause at script.py:1 lasts"),
+    ],
+)
+def test_late_pause_that_changes_the_verdict_is_named(tmp_path: Path, text: str, schedules: int, cause: str) -> None:
+    found = explored(tmp_path, text, schedules)
+    assert found.is_racy
+    assert found.cause.startswith(cause)
+
+
+def test_late_pauses_of_one_line_are_counted(tmp_path: Path) -> None:
+    text = "for each in range(4):\n    wait(0.25)\nwait(0.88)\nassert get_tlm_cnt('LAB CFE_ES_HK') == 0\n"
+    found = explored(tmp_path, text, 2, probes=40)
+    assert found.is_racy
+    assert found.cause.startswith("it fails if 2 pauses at script.py:2 last ")
+
+
+def test_test_with_one_verdict_has_no_cause(tmp_path: Path) -> None:
+    found = explored(tmp_path, "wait(1)\nassert False\n", 2)
+    assert (found.is_racy, found.decided, found.deviant) == (False, "", None)
