@@ -6,6 +6,7 @@ else is refused with its file and line, because cfepy does not run Ruby.
 
 from __future__ import annotations
 
+import ast
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -22,8 +23,9 @@ _REQUIRE = re.compile(r"require(_relative)?\b")
 _ASSIGN = re.compile(r"(\$?\w+)\s*=(?!=)\s*(.+)$", re.DOTALL)
 _GLOBAL = "ruby_global_"
 _MOST_ROUNDS = 100_000
-_RUBY = re.compile(r"\"[^\"]*\"|'[^']*'|&&|\|\||/|\$\w+")
-_OPERATORS = {"&&": " and ", "||": " or ", "/": "//"}  # whole numbers are divided to whole numbers
+_RUBY = re.compile(r"\"[^\"]*\"|'[^']*'|&&|\|\||\$\w+")
+_OPERATORS = {"&&": " and ", "||": " or "}
+_DIVIDE = "ruby_divide"
 _LITERALS: Mapping[str, Any] = {"true": True, "false": False, "nil": None}
 _UNBOUND = re.compile(r"name '(?P<name>\w+)' is not defined")
 
@@ -181,8 +183,8 @@ class Template:
             if helper is not None:
                 known[name] = helper
         try:
-            return value_of(text, {**known, **_LITERALS})
-        except (SyntaxError, ExpressionError):
+            return value_of(_with_division(text), {**known, **_LITERALS, _DIVIDE: _divided})
+        except (SyntaxError, ExpressionError, RecursionError):
             raise UsageError(f"Ruby is not executed: {shown}", file=file, line=line) from None
         except UsageError as error:
             raise UsageError(error.text, file=file, line=line) from None
@@ -191,6 +193,27 @@ class Template:
             raise UsageError(what, file=file, line=line) from None
         except (TypeError, ValueError, ArithmeticError, LookupError, AttributeError) as error:
             raise UsageError(f"{shown}: {error}", file=file, line=line) from None
+
+
+class _Division(ast.NodeTransformer):
+    """Replaces each division by a call."""
+
+    def visit_BinOp(self, node: ast.BinOp) -> ast.AST:
+        """Replace a division by a call."""
+        self.generic_visit(node)
+        if not isinstance(node.op, ast.Div):
+            return node
+        return ast.Call(ast.Name(_DIVIDE, ast.Load()), [node.left, node.right], [])
+
+
+def _with_division(text: str) -> str:
+    """Return an expression that divides as Ruby does."""
+    return ast.unparse(_Division().visit(ast.parse(text, mode="eval"))) if "/" in text else text
+
+
+def _divided(left: Any, right: Any) -> Any:
+    """Return a quotient as Ruby has it: a whole number, rounded down, if both numbers are whole."""
+    return left // right if isinstance(left, int) and isinstance(right, int) else left / right
 
 
 def _in_python(found: re.Match[str]) -> str:

@@ -45,6 +45,14 @@ def test_template_divides_whole_numbers_and_keeps_texts() -> None:
     assert Template({"$size": 7}).render("<%= $size / 2 %> <%= 'a/b && c' %>", FILE) == "3 a/b && c"
 
 
+@pytest.mark.parametrize(
+    ("ruby", "text"),
+    [("7 / 2", "3"), ("-7 / 2", "-4"), ("7.0 / 2", "3.5"), ("(1 + 1.0) / 4 / 2", "0.25"), ("9 / (5 / 2)", "4")],
+)
+def test_division_gives_a_whole_number_of_whole_numbers_only(ruby: str, text: str) -> None:
+    assert Template({}).render(f"<%= {ruby} %>", FILE) == text
+
+
 def test_template_prints_values_as_ruby_does() -> None:
     variables = {"$yes": True, "$none": None, "text": "a"}
     assert Template(variables).render("<%= $yes %> <%= $none %>|<%= text %> <%= 2 * 3 %>", FILE) == "true |a 6"
