@@ -21,7 +21,7 @@ from cfepy.extra.procedures.procedure_loader import Procedures, group_output, ha
 from cfepy.extra.procedures.requirements import Requirements, marked
 from cfepy.extra.procedures.script_api import ScriptApi
 from cfepy.extra.procedures.station import BusTelemetry, FlightStation, Station, UdpStation
-from cfepy.extra.procedures.suites import ProcedureStep, ProcedureSuite, is_suite, steps_of
+from cfepy.extra.procedures.suites import ProcedureGroup, ProcedureStep, ProcedureSuite, is_suite, steps_of
 from cfepy.extra.procedures.target_packets import TargetPackets
 from cfepy.flight import Flight
 from cfepy.ground import dictionary_of, topics_of
@@ -358,6 +358,7 @@ class FlyingSuite:
             self._targets.learn()
         self._station.begin_test()
         start, watch = self._station.now, Stopwatch()
+        ProcedureGroup._current = step.suite, step.group, step.script
         try:
             with self._captured():
                 step.call()
@@ -372,6 +373,8 @@ class FlyingSuite:
             result.verdict = FAIL
             result.message = str(error) if named and str(error) else f"{type(error).__name__}: {error}"
             result.place = self._procedures.place(error)
+        finally:
+            ProcedureGroup._current = None
         result.seconds, result.wall = self._station.now - start, watch.elapsed_ns() / NS_PER_S
         result.output = list(self._lines)
         if self.flight is not None:

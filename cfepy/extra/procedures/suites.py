@@ -19,6 +19,22 @@ class ProcedureGroup:
     """Base class of the groups of procedures."""
 
     _write: Callable[[str], object] = staticmethod(print)
+    _current: tuple[str, str, str] | None = None  # of the running method, set on this class only
+
+    @classmethod
+    def current_suite(cls) -> str | None:
+        """Return the name of the running suite."""
+        return None if ProcedureGroup._current is None else ProcedureGroup._current[0]
+
+    @classmethod
+    def current_group(cls) -> str | None:
+        """Return the name of the running group."""
+        return None if ProcedureGroup._current is None else ProcedureGroup._current[1]
+
+    @classmethod
+    def current_script(cls) -> str | None:
+        """Return the name of the running method."""
+        return None if ProcedureGroup._current is None else ProcedureGroup._current[2]
 
     @classmethod
     def print(cls, *given: Any) -> None:

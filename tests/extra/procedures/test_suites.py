@@ -81,6 +81,22 @@ def test_test_is_racy_if_its_verdict_depends_on_the_schedule(tmp_path: Path) -> 
     assert notes[1].startswith("random:1, ground seed 1: ")
 
 
+def test_group_names_the_current_suite_group_and_script(tmp_path: Path) -> None:
+    file = tmp_path / "names.py"
+    file.write_text(
+        "from openc3.script.suite import Group, Suite\n"
+        "class Named(Group):\n"
+        "    def test_it(self):\n"
+        "        print(Group.current_suite(), self.current_group(), Named.current_script())\n"
+        "class All(Suite):\n"
+        "    def __init__(self):\n"
+        "        self.add_group(Named)\n",
+        encoding="utf-8",
+    )
+    (result,) = fly(file).tests
+    assert result.output == ["All Named test_it"], result.message
+
+
 def test_folder_without_a_suite_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "plain.py").write_text("x = 1\n", encoding="utf-8")
     assert main(["procedures", str(tmp_path), "lab"]) == 2
