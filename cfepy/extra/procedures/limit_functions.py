@@ -28,6 +28,7 @@ class LimitFunctions:
         self._station = station
         self._targets = targets
         self._limits_set = "DEFAULT"
+        self._limits_sets = ["DEFAULT"]
         self._disabled_limits: set[tuple[str, str, str]] = set()
         self._set_limits: dict[tuple[str, str, str], tuple[float, ...]] = {}
 
@@ -66,6 +67,14 @@ class LimitFunctions:
     def set_limits_set(self, name: str) -> None:
         """Use another limits set."""
         self._limits_set = name.upper()
+        if self._limits_set not in self._limits_sets:
+            self._limits_sets.append(self._limits_set)
+
+    def get_limits_sets(self, **options: Any) -> list[str]:
+        """Return the names of limits sets: those of definitions, and the ones that the procedure has used."""
+        packets = (each for target in self._targets.names() for each in self._targets.packets(target, False))
+        defined = (name for packet in packets for item in packet.items.values() for name in item.limits)
+        return list(dict.fromkeys([*self._limits_sets, *defined]))
 
     def get_out_of_limits(self) -> list[list[str]]:
         """Return the items that violate their limits, with the state, such as RED_LOW."""

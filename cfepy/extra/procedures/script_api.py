@@ -23,6 +23,7 @@ from cfepy.extra.procedures.packet_items import (
     squeezed,
 )
 from cfepy.extra.procedures.procedure_errors import CheckError, UnsupportedError
+from cfepy.extra.procedures.record_functions import RecordFunctions
 from cfepy.extra.procedures.script_words import (
     command_words,
     comparison_words,
@@ -69,6 +70,7 @@ class ScriptApi:
         self._line_delay = line_delay
         self._is_instrumented = True
         self._limits = LimitFunctions(station, targets)
+        self._records = RecordFunctions(station, targets, EPOCH)
         self._state_of = self._limits._limits_state
         self._overrides: dict[tuple[str, str, str], Any] = {}
         self._subscriptions: list[tuple[dict[int, PacketDefinition], list[dict[str, Any]]]] = []
@@ -131,11 +133,6 @@ class ScriptApi:
     def send_raw(self, interface: str, data: bytes) -> None:
         """Send bytes unchanged."""
         self._station.send(bytes(data), is_raw=True)
-
-    def get_cmd_cnt(self, *given: Any) -> int:
-        """Return how often a command was sent."""
-        packet = self._targets.command(*packet_words(given))
-        return self._station.sent.get((packet.msg_id, packet.code or 0), 0)
 
     def get_cmd_hazardous(self, *given: Any) -> bool:
         """Return whether a command is hazardous."""
@@ -226,11 +223,6 @@ class ScriptApi:
             found.append([value, self._state_of(self._targets.telemetry(target, name), item)])
         return found
 
-    def get_tlm_cnt(self, *given: Any) -> int:
-        """Return how many packets have arrived."""
-        newest = self._station.newest(self._targets.telemetry(*packet_words(given)).msg_id)
-        return 0 if newest is None else newest.number
-
     def subscribe_packets(self, packets: list[list[str]]) -> int:
         """Collect packets from now on; returns an id for `get_packets`."""
         wanted = {found.msg_id: found for found in (self._targets.telemetry(*each) for each in packets)}
@@ -270,6 +262,12 @@ class ScriptApi:
         """End `override_tlm` of an item."""
         target, name, item = item_words(given)
         self._overrides.pop(self._override_key(target, name, item), None)
+
+    def get_overrides(self, **options: Any) -> list[dict[str, Any]]:
+        """Return the overridden items with their values."""
+        names = "target_name", "packet_name", "item_name", "value"
+        found = (dict(zip(names, (*key, value), strict=True)) for key, value in self._overrides.items())
+        return [{**each, "value_type": "ALL"} for each in found]
 
     def _override_key(self, target: str, name: str, item: str) -> tuple[str, str, str]:
         packet = self._targets.telemetry(target, name)
@@ -423,11 +421,11 @@ class ScriptApi:
 
     def _waited_packet(self, target: str, name: str, count: int, timeout: float, poll: float) -> tuple[bool, str]:
         packet = self._targets.telemetry(target, name)
-        first = self.get_tlm_cnt(target, name)
+        first = self._records.get_tlm_cnt(target, name)
         waited = self._station.until(
-            lambda: self.get_tlm_cnt(target, name) - first >= int(count), float(timeout), float(poll)
+            lambda: self._records.get_tlm_cnt(target, name) - first >= int(count), float(timeout), float(poll)
         )
-        arrived = self.get_tlm_cnt(target, name) - first
+        arrived = self._records.get_tlm_cnt(target, name) - first
         result = "success" if waited.passed else "failed"
         text = f"CHECK: {packet.full_name} {result}: {arrived} of {count} packets arrived in {waited.taken:.3f} seconds"
         return waited.passed, text
@@ -518,6 +516,9 @@ class ScriptApi:
     def set_max_output(self, characters: int) -> None:
         """Accept a limit of the output, which has none here."""
 
+    def enable_instrumentation(self) -> None:
+        """Pause before each line again, as always outside of `disable_instrumentation`."""
+
     def disable_instrumentation(self) -> Any:
         """Return a context manager without pauses between lines."""
         return self._without_pauses()
@@ -567,7 +568,7 @@ class ScriptApi:
 
     def _functions(self) -> dict[str, Any]:
         """Return all functions by name."""
-        return functions_of(self, self._limits)
+        return functions_of(self, self._limits, self._records)
 
 
 def _after(waited: Waited, poll: float) -> str:

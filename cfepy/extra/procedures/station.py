@@ -55,11 +55,13 @@ class Station(ABC):
 
     Attributes:
         sent: number of commands sent by MsgId and function code.
+        last_sent: the newest command by MsgId and function code, with the time in s.
         listeners: functions that get each received packet.
     """
 
     def __init__(self) -> None:
         self.sent: dict[tuple[int, int], int] = {}
+        self.last_sent: dict[tuple[int, int], tuple[bytes, float]] = {}
         self.listeners: list[Callable[[bytes], object]] = []
         self._newest: dict[int, Received] = {}
         self._arrivals: list[tuple[int, Received]] = []
@@ -93,6 +95,7 @@ class Station(ABC):
         code = msg.get_fcn_code(data) if len(data) >= msg.CMD_HEADER_SIZE else 0
         key = msg.get_msg_id(data), code
         self.sent[key] = self.sent.get(key, 0) + 1
+        self.last_sent[key] = bytes(data), self.now
         self._put(bytes(data))
 
     def newest(self, msg_id: int) -> Received | None:

@@ -43,6 +43,21 @@ START = "wait_check_packet('LAB', 'CFE_ES_HK', 1, 20)\n"
         "wait_check('LAB CFE_ES_HK RECEIVED_COUNT > 1', 10)\nassert tlm('LAB CFE_ES_HK RECEIVED_TIMESECONDS') > 1e9",
         "assert len(get_tlm_packet('LAB CFE_ES_HK')) > 20\nassert 'CFE_ES_NOOP' in get_all_cmd_names('LAB')",
         "assert get_tlm_values(['LAB__CFE_ES_HK__COMMAND_COUNTER__RAW']) == [[0, None]]",
+        "cmd('LAB CFE_ES_QUERY_ONE with APPLICATION TO_LAB')\n"
+        "assert get_cmd_value('LAB CFE_ES_QUERY_ONE APPLICATION') == 'TO_LAB'\n"
+        "assert get_cmd_value('LAB', 'CFE_ES_QUERY_ONE', 'APPLICATION') == 'TO_LAB'",
+        "assert get_cmd_time('LAB CFE_ES_NOOP') == ['LAB', 'CFE_ES_NOOP', None, None]\ncmd('LAB CFE_ES_NOOP')\n"
+        "import time\n*names, seconds, more = get_cmd_time('LAB', 'CFE_ES_NOOP')\n"
+        "assert 0 < time.time() - seconds - more / 1e6 < 1",
+        "cmd('LAB CFE_ES_NOOP')\nassert get_cmd_cnts([['LAB', 'CFE_ES_NOOP'], ['LAB', 'CFE_EVS_NOOP']]) == [1, 0]\n"
+        "assert get_tlm_cnts([['LAB', 'CFE_ES_HK']]) == [1]",
+        "cmd('LAB CFE_ES_NOOP')\nassert get_cmd_buffer('LAB CFE_ES_NOOP')['buffer'][:2] == b'\\x18\\x06'\n"
+        "assert get_tlm_buffer('LAB CFE_ES_HK')['buffer'][:2] == b'\\x08\\x00'",
+        "override_tlm('LAB CFE_ES_HK COMMAND_COUNTER = 5')\n(found,) = get_overrides()\n"
+        "assert (found['item_name'], found['value']) == ('COMMANDCOUNTER', 5)",
+        "before = get_limits_sets()\nset_limits_set('TVAC')\n"
+        "assert (before, get_limits_sets()) == (['DEFAULT'], ['DEFAULT', 'TVAC'])",
+        "enable_instrumentation()\nset_max_output(5)",
     ],
 )
 def test_function_does_as_documented(tmp_path: Path, lines: str) -> None:
@@ -55,6 +70,10 @@ def test_function_does_as_documented(tmp_path: Path, lines: str) -> None:
     [
         ("x = 1\nscript_run('a.py')", "script_run is not supported: scripts of a COSMOS server", 2),
         ("step_mode()", "step_mode requires a user", 1),
+        ("get_cmd_value('LAB CFE_ES_QUERY_ONE APPLICATION')", "LAB CFE_ES_QUERY_ONE was not sent", 1),
+        ("x = 1\nenable_cmd('LAB CFE_ES_NOOP')", "enable_cmd is not supported: it changes a COSMOS server", 2),
+        ("get_setting('x')", "get_setting is not supported: it belongs to the settings of a COSMOS server", 1),
+        ("enable_limits_group('A')", "enable_limits_group is not supported: definitions have no limits groups", 1),
         ("ask('Ready?')", "no answer to the question 'Ready?'", 1),
         ("load_utility('LAB/procedures/a.rb')", "is Ruby", 1),
         ("cmd('LAB CFE_ES_NOP')", "has no command CFE_ES_NOP; did you mean CFE_ES_NOOP", 1),
