@@ -55,7 +55,7 @@ class Settings:
         udp: address of a flight computer instead of a mission: host, command port, telemetry port.
         journals: folder for journals of suites with a failed test.
         line_delay: pause before each line of a procedure in s.
-        ground_seed: seed of the ground station's delays; 0 for none.
+        ground_seed: seed of the ground station's start and delays; 0 for none.
     """
 
     plan: RunPlan
@@ -274,7 +274,9 @@ class FlyingSuite:
         self.flight = Flight(plan, policy=policy, attachments=attachments, again=self.command)
         self._stack.callback(self.flight.close)
         self.flight.run_until_operational()
-        return FlightStation(self.flight, telemetry, self._settings.through_lab, self._pauses(self.flight))
+        pauses = self._pauses(self.flight)
+        self.flight.run_for(pauses.start())
+        return FlightStation(self.flight, telemetry, self._settings.through_lab, pauses)
 
     def _pauses(self, flight: Flight) -> Pauses:
         seed = self._settings.ground_seed

@@ -1,7 +1,8 @@
-"""Pauses of a ground station that last longer than the procedure asks for, as on a ground computer with other work.
+"""The time of a ground station: when a procedure starts, and pauses that last longer than it asks for.
 
-A seed gives each pause its additional time. If a racy test is analysed, each pause is also a question to the schedule:
-exact or late. So the analysis of schedules finds the few late pauses that decide the verdict.
+An operator starts a procedure at any time after the boot, and a ground computer has other work. A seed gives the start
+and each pause their additional times. If a racy test is analysed, each of them is also a question to the schedule:
+exact or late. So the analysis of schedules finds the few that decide the verdict.
 """
 
 from __future__ import annotations
@@ -14,7 +15,10 @@ from cfepy.rtos import AskingPolicy, Decision, Question
 
 LATEST_S = 0.05
 """By how much a pause of a busy ground computer lasts longer."""
+LATEST_START_S = 20.0
+"""By how much a procedure starts later."""
 LATE_PAUSE = "late pause"
+START = "start"
 EXACT = "exact"
 _MS_PER_S = 1_000
 
@@ -24,16 +28,19 @@ class Pauses:
 
     Args:
         seed: of the additional times; 0 for exact pauses.
-        latest_s: the longest additional time in s.
     """
 
-    def __init__(self, seed: int, latest_s: float = LATEST_S) -> None:
+    def __init__(self, seed: int) -> None:
+        self._seed = seed
         self._late = random.Random(seed) if seed else None
-        self._latest_s = latest_s
+
+    def start(self) -> float:
+        """Return by how much the procedure starts later, in s."""
+        return random.Random(f"start {self._seed}").uniform(0.0, LATEST_START_S) if self._seed else 0.0
 
     def additional(self) -> float:
         """Return the additional time of the next pause in s."""
-        return 0.0 if self._late is None else self._late.uniform(0.0, self._latest_s)
+        return 0.0 if self._late is None else self._late.uniform(0.0, LATEST_S)
 
 
 class AskedPauses(Pauses):
@@ -49,10 +56,14 @@ class AskedPauses(Pauses):
         super().__init__(seed)
         self._answer, self._place = answer, place
 
+    def start(self) -> float:
+        return self._asked(super().start(), START)
+
     def additional(self) -> float:
-        late = super().additional()
+        return self._asked(super().additional(), f"pause at {self._place() or 'the top'}")
+
+    def _asked(self, late: float, name: str) -> float:
         answers = (EXACT, f"{late * _MS_PER_S:.3f}ms")
-        name = f"pause at {self._place() or 'the start'}"
         return late if self._answer(Question(name, LATE_PAUSE, answers, f"{name} is {{}}")) else 0.0
 
 

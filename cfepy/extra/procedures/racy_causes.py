@@ -16,7 +16,7 @@ from cfepy.extra.exploration import Failure, Shrinker, Tried, Verdict, story_of
 from cfepy.extra.exploration.made_moves import MadeMove, MoveNotingPolicy
 from cfepy.extra.exploration.shrink import NotedFlight
 from cfepy.extra.procedures.flying_suites import FAIL, PASS, FlyingSuite, Observed, Settings, with_schedule
-from cfepy.extra.procedures.pauses import LATE_PAUSE, AllLate
+from cfepy.extra.procedures.pauses import LATE_PAUSE, START, AllLate
 from cfepy.extra.procedures.requirements import Requirements
 from cfepy.pilot import RunPlan
 from cfepy.rtos import HOLD, NotingPolicy, Policy
@@ -26,6 +26,7 @@ MOST_PROBES = 200
 SHRINK_S = 60.0
 """The most flights and the most wall time to shrink one racy test."""
 _MOST_MOVES = 4
+_MS_PER_S = 1_000
 _KINDS = {PASS: "test passed", FAIL: "test failed"}
 
 
@@ -129,6 +130,8 @@ def _moves_text(moves: Sequence[MadeMove]) -> str:
 
 
 def _late_text(name: str, times: Sequence[float]) -> str:
+    if name == START:
+        return f"the procedure starts {times[0] / _MS_PER_S:.2f} s later"
     if len(times) == 1:
         return f"a {name} lasts {times[0]:.0f} ms longer"
     return f"{len(times)} {name.replace('pause', 'pauses', 1)} last {sum(times):.0f} ms longer in all"

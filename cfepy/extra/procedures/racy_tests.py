@@ -1,8 +1,8 @@
 """Flies suites under many schedules and finds the tests whose verdict depends on the schedule.
 
-A ground station is not synchronous with the flight computer, so each schedule but the first has other pauses of the
-ground station, too. Applications then poll and send at another moment of each test. The first schedule that changes the
-verdict of a test is shrunk to the decisions that change it.
+A ground station is not synchronous with the flight computer, so each schedule but the first has another start of the
+procedure and other pauses, too. Applications then poll and send at another moment of each test. The first schedule that
+changes the verdict of a test is shrunk to the decisions that change it.
 """
 
 from __future__ import annotations
