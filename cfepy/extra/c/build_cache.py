@@ -83,7 +83,7 @@ def mark_used(*entries: Path) -> None:
 
 
 def remove_unused(folder: Path) -> None:
-    """Remove what was not used for the longest time, if a folder of the cache has grown above `MOST_BYTES`.
+    """Remove the entries with the oldest use, if a folder of the cache has grown above `MOST_BYTES`.
 
     Args:
         folder: the folder, whose files and folders are each one entry. One of them was used just now.

@@ -71,7 +71,7 @@ class LimitFunctions:
             self._limits_sets.append(self._limits_set)
 
     def get_limits_sets(self, **options: Any) -> list[str]:
-        """Return the names of limits sets: those of definitions, and the ones that the procedure has used."""
+        """Return the names of the limits sets that the definitions name, and that the procedure has used."""
         packets = (each for target in self._targets.names() for each in self._targets.packets(target, False))
         defined = (name for packet in packets for item in packet.items.values() for name in item.limits)
         return list(dict.fromkeys([*self._limits_sets, *defined]))

@@ -121,7 +121,7 @@ def entry(path: Path, size: int, used_s: float) -> Path:
     return path
 
 
-def test_a_large_cache_loses_what_was_not_used_for_longest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_large_cache_loses_entries_with_the_oldest_use(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(build_cache, "MOST_BYTES", 1000)
     monkeypatch.setattr(build_cache, "KEPT_BYTES", 500)
     folder = tmp_path / "roscfe"
@@ -134,7 +134,7 @@ def test_a_large_cache_loses_what_was_not_used_for_longest(tmp_path: Path, monke
     assert sorted(each.name for each in folder.iterdir()) == [now.name, "third.o"]
 
 
-def test_a_large_cache_keeps_what_was_used_within_a_day(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_large_cache_keeps_entries_of_the_last_day(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(build_cache, "MOST_BYTES", 1000)
     monkeypatch.setattr(build_cache, "KEPT_BYTES", 500)
     entry(tmp_path / "old.o", 300, 1000)
@@ -147,7 +147,7 @@ def test_a_large_cache_keeps_what_was_used_within_a_day(tmp_path: Path, monkeypa
     assert sorted(each.name for each in tmp_path.glob("*.*")) == ["old.o", "young.o"]
 
 
-def test_a_small_cache_keeps_what_is_old(tmp_path: Path) -> None:
+def test_small_cache_keeps_old_entries(tmp_path: Path) -> None:
     entry(tmp_path / "old.o", 300, 1000)
     entry(tmp_path / "node.so", 300, 2000 + 10 * KEPT_S)
     remove_unused(tmp_path)
