@@ -5,6 +5,7 @@ MsgIds are not among them: the mission's application ROS assigns them when the n
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from rospy_shim.types.msgs import Library, OnDisk, Packages, shipped
 
 LINES_SHOWN = 12
 """Lines of the compiler's output in the error for a node that cannot be built."""
+_OF_A_CHAIN = re.compile(r"(In file included|\s+) from \S+:\d+[,:]$|In file included from \S+:\d+:\d+[,:]$")
 
 
 def build_for_flight(
@@ -90,7 +92,7 @@ def message_library(packages: Packages) -> Library:
 
 
 def shortened(text: str) -> str:
-    """Return the first lines of a compiler's output."""
-    lines = text.splitlines()
+    """Return the first lines of a compiler's output, without the chains of headers that lead to a line."""
+    lines = [line for line in text.splitlines() if not _OF_A_CHAIN.match(line)]
     more = [f"... and {len(lines) - LINES_SHOWN} more lines"] if len(lines) > LINES_SHOWN else []
     return "\n".join([*lines[:LINES_SHOWN], *more])

@@ -20,6 +20,7 @@ from cfepy.extra.convert.build import (
     library_folder,
     unique_symbols,
 )
+from cfepy.extra.convert.flight_build import shortened
 from cfepy.journal import read_journal, replay
 from cfepy.mission import read_mission
 from cfepy.pilot.plan import built_node
@@ -200,6 +201,20 @@ def test_node_refused_by_the_compiler_is_left_out_with_the_error(
     told = capfd.readouterr().err
     assert "node /arm/left is left out: it cannot be built" in told
     assert "nothing_such" in told
+
+
+def test_error_of_the_compiler_is_shown_without_the_headers_that_lead_to_it() -> None:
+    chain = [f"                 from /usr/include/boost/h{number}.hpp:{number}," for number in range(20)]
+    said = [
+        "In file included from /usr/include/boost/first.hpp:22,",
+        *chain,
+        "                 from node.cpp:3:",
+        "helper.h: In function 'int f()':",
+        "In file included from node.cpp:39:",
+        "helper.h:58:5: error: '_type' was not declared in this scope",
+        "   58 |     _type = 1; // from here on,",
+    ]
+    assert shortened("\n".join(said)).splitlines() == [said[-4], *said[-2:]]
 
 
 def test_second_type_on_a_topic_of_a_node_is_refused(package: Path, capfd: pytest.CaptureFixture[str]) -> None:
