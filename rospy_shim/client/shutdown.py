@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rospy_shim.client.node import Node
 
 LOOK_NS = 100_000_000  # period at which a node asks ES whether to go on
-SPIN_NS = 500_000_000
+SPIN_NS = 500_000_000  # period at which `spin` looks
 
 
 class Life:
@@ -139,7 +139,7 @@ class Life:
         self._node.require_initialized()
         try:
             while not self.is_shutdown():
-                self.wait(WaitList(f"shutdown of node {self._node.names.name}"), SPIN_NS)
+                self._kernel.delay(SPIN_NS)
         except (KeyboardInterrupt, NodeInterrupt):
             self.signal_shutdown("keyboard interrupt")
 

@@ -77,8 +77,8 @@ def make_timer(node: Node) -> type:
                     if life.is_shutdown():
                         break
                     raise
-                if self._shutdown or life.is_shutdown():
-                    break
+                if self._shutdown:
+                    break  # on the wall clock a timer that sleeps at the shutdown calls once more, as in ROS
                 real, began = clock.get_rostime(), clock.wall_ns()
                 self._callback(TimerEvent(last_expected, last_real, expected, real, last_duration))
                 if self._oneshot:

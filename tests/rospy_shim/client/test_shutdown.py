@@ -21,6 +21,28 @@ def printed(tmp_path: Path, body: str, **options: object) -> list[str]:
     return [line for lines in result.printed.values() for line in lines] or result.lines
 
 
+def test_timer_calls_once_more_and_spin_ends_at_its_next_look_after_the_shutdown(tmp_path: Path) -> None:
+    lines = printed(
+        tmp_path,
+        """
+rospy.init_node("probe")
+def tick(event):
+    if rospy.is_shutdown():
+        print("tick")
+rospy.Timer(rospy.Duration(0.02), tick)
+def end(event):
+    rospy.signal_shutdown("test")
+    print("shut down", round(rospy.get_time() - begun, 1))
+rospy.on_shutdown(lambda: print("hook"))
+begun = rospy.get_time()
+rospy.Timer(rospy.Duration(0.7), end, oneshot=True)
+rospy.spin()
+print("spun", round(rospy.get_time() - begun, 1))
+""",
+    )
+    assert lines == ["hook", "shut down 0.7", "tick", "spun 1.0"]
+
+
 def test_before_init_node(tmp_path: Path) -> None:
     lines = printed(
         tmp_path,
