@@ -6,9 +6,10 @@ process, are refused or have no effect.
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, MutableMapping
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -41,18 +42,81 @@ _NO_EFFECT = (
 # fmt: on
 
 
-class Environ(dict[str, str]):
-    """`os.environ`: changes stay in the node."""
+class Environ(MutableMapping[Any, Any]):
+    """`os.environ`, or `os.environb` with bytes; changes stay in the node.
 
-    def __setitem__(self, name: str, value: str) -> None:
-        if not isinstance(name, str) or not isinstance(value, str):
-            raise TypeError(f"str expected, not {type(value if isinstance(name, str) else name).__name__}")
-        super().__setitem__(name, value)
+    Args:
+        values: the variables.
+        kind: of names and values, `str` or `bytes`.
+    """
 
-    def setdefault(self, name: str, default: str = "") -> str:
-        if name not in self:
-            self[name] = default
-        return self[name]
+    def __init__(self, values: Mapping[str, str], kind: type = str) -> None:
+        self._values = dict(values)
+        self._kind: Any = kind
+
+    def as_bytes(self) -> Environ:
+        """Return the same variables as bytes (os.environb)."""
+        made = Environ({}, bytes)
+        made._values = self._values
+        return made
+
+    def __getitem__(self, name: Any) -> Any:
+        try:
+            return self._shown(self._values[self._text(name)])
+        except KeyError:
+            raise KeyError(name) from None
+
+    def __setitem__(self, name: Any, value: Any) -> None:
+        key, text = self._text(name), self._text(value)
+        if "\0" in key or "\0" in text:
+            raise ValueError("embedded null byte")
+        if "=" in key:
+            raise ValueError("illegal environment variable name")
+        if not key:
+            raise OSError(errno.EINVAL, os.strerror(errno.EINVAL))
+        self._values[key] = text
+
+    def __delitem__(self, name: Any) -> None:
+        try:
+            del self._values[self._text(name)]
+        except KeyError:
+            raise KeyError(name) from None
+
+    def __iter__(self) -> Iterator[Any]:
+        return map(self._shown, list(self._values))
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __repr__(self) -> str:
+        return f"environ({dict(self)!r})"
+
+    def __or__(self, other: Any) -> Any:
+        return {**self, **other} if isinstance(other, Mapping) else NotImplemented
+
+    def __ror__(self, other: Any) -> Any:
+        return {**other, **self} if isinstance(other, Mapping) else NotImplemented
+
+    def __ior__(self, other: Any) -> Environ:
+        self.update(other)
+        return self
+
+    def copy(self) -> dict[Any, Any]:
+        """Return the variables as a dict."""
+        return dict(self)
+
+    def _shown(self, text: str) -> Any:
+        return text if self._kind is str else os.fsencode(text)
+
+    def _text(self, value: Any) -> str:
+        if not isinstance(value, self._kind):
+            raise TypeError(f"{self._kind.__name__} expected, not {type(value).__name__}")
+        text: str = os.fsdecode(value)
+        return text
+
+
+Environ.__name__ = Environ.__qualname__ = "_Environ"
+Environ.__module__ = "os"
 
 
 def os_module(universe: Universe) -> ModuleType:
@@ -165,6 +229,7 @@ def _process(universe: Universe) -> dict[str, Any]:
         "abort": lambda: universe.exit_now(134),
         "cpu_count": lambda: 1,
         "environ": environ,
+        **({"environb": environ.as_bytes()} if os.supports_bytes_environ else {}),
         "get_terminal_size": get_terminal_size,
         "getloadavg": lambda: (0.0, 0.0, 0.0),
         "getpid": lambda: universe.pid,

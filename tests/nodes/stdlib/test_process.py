@@ -10,6 +10,38 @@ import pytest
 from tests.own_paths import own_files
 
 
+def test_environment_refuses_what_python_refuses_and_shows_only_variables_of_the_node(run):
+    code = """
+        import os
+        print(type(os.environ).__name__, isinstance(os.environ, dict), repr(os.environ)[:9])
+        os.environ["X"] = "1"
+        print(os.environb[b"X"], os.getenvb(b"X"), b"CFEPY_OF_HOST" in os.environb)
+        for name, value in ((1, "a"), ("a", 1), (b"a", "a"), ("A=B", "1"), ("A", "\\0"), ("", "1")):
+            try:
+                os.environ[name] = value
+            except Exception as error:
+                print(type(error).__name__, error)
+        for call in (lambda: 1 in os.environ, lambda: os.getenv(b"X"), lambda: os.environ["NONE"]):
+            try:
+                print(call())
+            except Exception as error:
+                print(type(error).__name__, error)
+    """
+    os.environ["CFEPY_OF_HOST"] = "1"
+    try:
+        lines = run(code).lines
+    finally:
+        del os.environ["CFEPY_OF_HOST"]
+    assert lines == [
+        "_Environ False environ({",
+        "b'1' b'1' False",
+        *("TypeError str expected, not int", "TypeError str expected, not int", "TypeError str expected, not bytes"),
+        *("ValueError illegal environment variable name", "ValueError embedded null byte"),
+        "OSError [Errno 22] Invalid argument",
+        *("TypeError str expected, not int", "TypeError str expected, not bytes", "KeyError 'NONE'"),
+    ]
+
+
 def test_arguments_environment_and_names(run, tmp_path):
     program = run(
         """
