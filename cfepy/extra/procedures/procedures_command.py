@@ -31,7 +31,11 @@ from cfepy.writing.junit import FAILURE, SKIPPED, Case, Problem, Suite
 
 _LAST_EVENTS = 8
 _HIGHEST_PORT = 65_535
-RULE = {"failed-test": "a test of a procedure failed"}
+RULE = {
+    "failed-test": "a test of a procedure failed",
+    "racy-test": "the verdict of a test depends on the schedule or on the ground station",
+}
+_OF_ONE_FLIGHT = ("json", "csv", "html", "baseline", "journals")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -165,16 +169,37 @@ def _places(each: ProcedureResult) -> tuple[FindingPlace, ...]:
 
 
 def _explore(files: Sequence[Path], settings: Settings, arguments: argparse.Namespace) -> int:
+    for name in _OF_ONE_FLIGHT:
+        if getattr(arguments, name) is not None:
+            raise UsageError("is about one flight; leave it out, or fly without --explore", field=f"--{name}")
     found = explore_procedures(files, settings, arguments.explore, print)
     racy = [each for each in found if each.is_racy]
     always = [each for each in found if each.failed and not each.passed]
     print(f"{len(found)} tests under {arguments.explore} schedules: {len(racy)} racy, {len(always)} always failed")
+    _write_explored(found, arguments)
     for each in racy:
         _print_racy(each)
     for each in always:
         assert each.first is not None
         print(f"always failed: {each.name}: {each.first.message}")
     return 1 if racy or always else 0
+
+
+def _write_explored(found: Sequence[Verdicts], arguments: argparse.Namespace) -> None:
+    cases, findings = [], []
+    for each in found:
+        suite, _, name = each.name.partition("::")
+        if each.first is None:
+            cases.append(Case(suite, name, 0.0))
+            continue
+        rule = "racy-test" if each.is_racy else "failed-test"
+        counts = f"{each.passed} passed, {each.failed} failed"
+        text = f"{each.first.message}; {each.cause}" if each.is_racy else each.first.message
+        problem = Problem(FAILURE, f"{rule.replace('-', ' ')}: {counts}: {text}")
+        cases.append(Case(suite, name, each.first.seconds, (problem,), _place(each.first)))
+        findings.append(CiFinding(rule, f"{each.name}: {counts}: {text}", _places(each.first)))
+    suite_of_all = Suite(f"cfepy procedures {arguments.mission}", cases, {"schedules": str(arguments.explore)})
+    write_ci_outputs(arguments, "cfepy procedures", suite_of_all, findings, RULE)
 
 
 def _print_racy(each: Verdicts) -> None:

@@ -97,6 +97,20 @@ def test_group_names_the_current_suite_group_and_script(tmp_path: Path) -> None:
     assert result.output == ["All Named test_it"], result.message
 
 
+def test_explored_tests_are_written_for_ci(tmp_path: Path) -> None:
+    junit, sarif = tmp_path / "a.xml", tmp_path / "a.sarif"
+    options = ["--explore", "2", "--test", "test_wrong", "--junit", str(junit), "--sarif", str(sarif)]
+    assert main(["procedures", str(SUITE), "lab", *options]) == 1
+    assert 'message="failed test: 0 passed, 2 failed: CHECK' in junit.read_text(encoding="utf-8")
+    assert "failed-test" in sarif.read_text(encoding="utf-8")
+
+
+def test_output_about_one_flight_is_refused_with_explore(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    page = str(tmp_path / "a.html")
+    assert main(["procedures", str(SUITE), "lab", "--explore", "2", "--html", page]) == 2
+    assert "--html: is about one flight" in capsys.readouterr().err
+
+
 def test_folder_without_a_suite_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "plain.py").write_text("x = 1\n", encoding="utf-8")
     assert main(["procedures", str(tmp_path), "lab"]) == 2
