@@ -115,6 +115,8 @@ def cause_of_racy(trial: SuiteTrial, schedule: Schedule, probes: int = MOST_PROB
     story = story_of(trial, shrunk.verdict, failure, shrunk.moves)
     does = "fails" if trial.verdict == FAIL else "passes"
     decided = f"it {does} if {_moves_text(shrunk.moves)}" if shrunk.moves else f"it {does} with exact pauses"
+    if shrunk.is_cut_short:
+        decided += f" (not all of them may be necessary: the search ended after {most_s:g} s)"
     return f"{decided}; {story.cause}" if story.cause and story.cause not in decided else decided
 
 

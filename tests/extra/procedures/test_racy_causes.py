@@ -7,6 +7,9 @@ from pathlib import Path
 import pytest
 
 from cfepy.extra.procedures import Verdicts, explore_procedures
+from cfepy.extra.procedures.flying_suites import FAIL
+from cfepy.extra.procedures.racy_causes import SuiteTrial, cause_of_racy
+from cfepy.schedules import Schedule
 from tests.extra.procedures.demo import settings
 
 ALIGNED = "import time\nwait(3 - time.time() % 1)\nfirst = get_tlm_cnt('LAB CFE_ES_HK')\n"
@@ -40,6 +43,16 @@ def test_late_pauses_of_one_line_are_counted(tmp_path: Path) -> None:
     found = explored(tmp_path, text, 2, probes=40)
     assert found.is_racy
     assert found.cause.startswith("it fails if 2 pauses at script.py:4 last ")
+
+
+def test_search_that_ends_early_says_so(tmp_path: Path) -> None:
+    file = tmp_path / "script.py"
+    file.write_text("wait(0.5)\nassert get_tlm_cnt('LAB CFE_ES_HK') == 0\n", encoding="utf-8")
+    late = settings(through_lab=False, line_delay=0.0, ground_seed=3)
+    trial = SuiteTrial(file, "", late, "script::script::script", FAIL)
+    text = cause_of_racy(trial, Schedule(), most_s=0.0)
+    assert text.startswith("it fails if ")
+    assert "the search ended after 0 s" in text
 
 
 def test_test_with_one_verdict_has_no_cause(tmp_path: Path) -> None:
