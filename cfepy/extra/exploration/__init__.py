@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from cfepy.extra.exploration.exploration import DEFAULT_SEEDS, Expedition, Report, Told
     from cfepy.extra.exploration.field_measures import FieldMeasure, FieldValue
     from cfepy.extra.exploration.longest import Worst
+    from cfepy.extra.exploration.made_moves import MadeMove, MoveNotingPolicy
     from cfepy.extra.exploration.mission_transfer import files_read, ship
     from cfepy.extra.exploration.monte_carlo import Group, Quantity, groups_of
     from cfepy.extra.exploration.monte_carlo_picture import picture_of_draws
@@ -27,7 +28,7 @@ if TYPE_CHECKING:
     from cfepy.extra.exploration.replays import GONE, NOT_POSSIBLE, STILL_THERE, ReplayedFailure, replay_all
     from cfepy.extra.exploration.schedule_kinds import seeded_kinds
     from cfepy.extra.exploration.search import SeededSearch
-    from cfepy.extra.exploration.shrink import SHRINK_S, Shrinkable, Shrinker, Shrunk, budget_of
+    from cfepy.extra.exploration.shrink import SHRINK_S, NotedFlight, Shrinkable, Shrinker, Shrunk, budget_of
     from cfepy.extra.exploration.sweep import (
         Knee,
         Point,
@@ -62,6 +63,9 @@ __all__ = [
     "Group",
     "Knee",
     "Lot",
+    "MadeMove",
+    "MoveNotingPolicy",
+    "NotedFlight",
     "Point",
     "PointNumbers",
     "Quantity",
@@ -115,6 +119,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
                 "answers",
             ),
             ".progress": ("make_progress",),
+            ".made_moves": ("MadeMove", "MoveNotingPolicy"),
             ".search": ("SeededSearch",),
             ".mission_transfer": (
                 "files_read",
@@ -151,6 +156,7 @@ if not TYPE_CHECKING:  # a type checker sees the names above, and no others
             ".replays": ("GONE", "NOT_POSSIBLE", "STILL_THERE", "ReplayedFailure", "replay_all"),
             ".shrink": (
                 "SHRINK_S",
+                "NotedFlight",
                 "Shrinkable",
                 "Shrinker",
                 "Shrunk",

@@ -15,6 +15,7 @@ from typing import Any
 
 from cfepy.extra.procedures.connection import CfepyConnection, CfsTest_Connection
 from cfepy.extra.procedures.erb import Template
+from cfepy.extra.procedures.limit_functions import functions_of
 from cfepy.extra.procedures.procedure_errors import (
     REFUSED,
     CheckError,
@@ -103,7 +104,7 @@ class Procedures:
         self._folders = folders
         self._names: dict[str, Any] = {
             **{name: refusing(name) for name in REFUSED},
-            **api._functions(),
+            **functions_of(api, api._limits, api._records),
             "load_utility": self.load,
             "require_utility": self.require,
             "start": self.load,

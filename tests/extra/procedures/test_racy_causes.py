@@ -8,7 +8,7 @@ import pytest
 
 from cfepy.extra.procedures import Verdicts, explore_procedures
 from cfepy.extra.procedures.flying_suites import FAIL
-from cfepy.extra.procedures.racy_causes import SuiteTrial, cause_of_racy
+from cfepy.extra.procedures.racy_tests import SuiteTrial, cause_of_racy
 from cfepy.schedules import Schedule
 from tests.extra.procedures.demo import settings
 
