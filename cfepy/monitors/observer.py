@@ -166,7 +166,7 @@ class Observer(Attachment):
             return
         now = self._kernel.now
         if before is not None:
-            self.on_leave(before, now, False)
+            self.on_leave(before, before.since if before.done else now, False)  # the clock may have gone on since
         self._running = None if task is self._kernel.host else task
         if self._running is not None:
             self.on_run(task, now)

@@ -213,6 +213,7 @@ class Kernel(Scheduler):
         if task.done:  # the host has continued without it
             return self.host
         task.done = True
+        task.since = self.now
         task.entry = None
         self._leave_held(task)
         self.tasks.remove(task)

@@ -534,6 +534,7 @@ class Scheduler:
     def _leave_behind(self, task: Task, killer: Task) -> None:
         """Abandon a task that swallows every TaskExit: it never runs again, and its killer continues."""
         task.done = True
+        task.since = self.now
         self.tasks.remove(task)
         self.stuck.append(task)
         self._leave_held(task)

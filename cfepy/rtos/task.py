@@ -100,7 +100,7 @@ class Task:
         self.timer = 0  # number of the pending timer, 0 if there is none
         self.waits: WaitList | None = None
         self.awaits: WaitList | None = None  # the list in which it waits repeatedly, each time with a time limit
-        self.since = 0  # virtual ns at which its last wait without a time limit began
+        self.since = 0  # virtual ns at which its last wait without a time limit began, or at which it ended
         self.mutex: Mutex | None = None  # the mutex it waits for
         self.joiners: WaitList | None = None  # the tasks that wait until it can be deleted
         self.held: list[Mutex] = []

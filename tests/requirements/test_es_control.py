@@ -214,7 +214,7 @@ def test_cES1311_1_invalid_child_tasks_are_refused(make_lab: Make) -> None:
         return [
             status_of(cfe.es.create_child_task, "CHILD", print, 4096, 60),
             status_of(cfe.es.create_child_task, "NO_STACK", print, 0, 60),
-            status_of(cfe.es.create_child_task, "", print, 4096, 60),
+            status_of(cfe.es.create_child_task, None, print, 4096, 60),
         ]
 
     found, lab = ask(make_lab, question)

@@ -68,7 +68,7 @@ def _add_inputs(group: argparse._ArgumentGroup) -> None:
         type=int,
         default=0,
         metavar="N",
-        help="seed of a later start, up to 20 s, and of longer pauses, up to 50 ms",
+        help="seed of a start up to 20 s later and longer pauses",
     )
     group.add_argument("--explore", type=int, metavar="N", help="fly under N schedules, and report racy tests")
     group.add_argument("--bus", action="store_true", help="command and hear the bus itself, not CI_LAB and TO_LAB")

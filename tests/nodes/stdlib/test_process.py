@@ -10,7 +10,7 @@ import pytest
 from tests.own_paths import own_files
 
 
-def test_environment_refuses_what_python_refuses_and_shows_only_variables_of_the_node(run):
+def test_environment_refuses_as_python_does_and_shows_only_variables_of_the_node(run):
     code = """
         import os
         print(type(os.environ).__name__, isinstance(os.environ, dict), repr(os.environ)[:9])
