@@ -56,3 +56,24 @@ def test_blocks_are_aligned_and_texts_copied(tmp_path: Path, guard: bool) -> Non
         assert [found[0], *found[3:]] == [LINES[0], *LINES[3:]]
     else:
         assert found == LINES
+
+
+LARGE = """
+void TEST_Main(void)
+{
+    unsigned long sizes[] = {3000000, 5000000, 100000000, 600000000, 2000000000};
+    for (int i = 0; i < 5; i++)
+    {
+        char *block = malloc(sizes[i]);
+        if (block != 0)
+            block[0] = block[sizes[i] - 1] = 1;
+        SAY("%lu %d", sizes[i], block != 0);
+    }
+}
+"""
+
+
+def test_large_blocks_are_given_until_memory_ends(tmp_path: Path) -> None:
+    compile_c(tmp_path, "TEST", LARGE, "-O0", "-w")
+    found = said(console_of(fly(write_mission(tmp_path, "TEST"), 1)))
+    assert found == ["3000000 1", "5000000 1", "100000000 1", "600000000 1", "2000000000 0"]

@@ -9,7 +9,7 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { GRAIN = 16, CLASSES = 64, POISON = 0xA5, PAST_END = -1, BEFORE_START = -2 };
+enum { GRAIN = 16, CLASSES = 100, POISON = 0xA5, PAST_END = -1, BEFORE_START = -2 };
 
 typedef struct {
     uint64_t address, end, next;                /* of a guarded one: where its pages end, and the guard behind them */
