@@ -54,6 +54,7 @@ int main(int argc, char **argv)
   ROS_INFO("calls");
   const bool good = client.call(call);
   ROS_INFO("answered %d, valid %d, ok %d", good, client.isValid(), ros::ok());
+  std::printf("answered %d, valid %d, ok %d\\n", good, client.isValid(), ros::ok());
   ros::WallDuration(1.5).sleep();
   ROS_INFO("service there %d", ros::service::exists("serve", false));
   ROS_INFO("waited %d", ros::service::waitForService("serve", ros::Duration(0.5)));

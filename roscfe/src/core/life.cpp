@@ -216,12 +216,13 @@ bool ok()
         std::uint32_t status = CFE_ES_RunStatus_APP_RUN;
         if (!CFE_ES_RunLoop(&status))
         {
-            g_node.asked_to_end = true;
-            shutdown();
+            g_node.asked_to_end  = true;
+            g_node.shutting_down = true;
             if (roscfe::call_handler_of_end != nullptr)
             {
-                roscfe::call_handler_of_end();
+                roscfe::call_handler_of_end(); // in place of roscpp's, so its log is shown
             }
+            shutdown();
         }
     }
     return !g_node.shutting_down;

@@ -98,7 +98,16 @@ def test_signal_handler_is_called_when_the_application_ends() -> None:
         mission.cfe.sb.transmit_msg(STOP_APP.packet(Application="HANDLER"))
         mission.run_for(3)
         said = [line.rpartition(": ")[2] for line in mission.console.lines if line.startswith("[/handler] ")]
-    assert said == ["first 1", "then 1", "asked 0 1", "refused 1", "drawn 1804289383", "clock 0", "signal 2", "spun"]
+    assert said == [
+        "first 1",
+        "then 1",
+        "asked 0 1",
+        "refused 1",
+        "drawn 1804289383",
+        "clock 0",
+        "signal 2",
+        "[/handler] spun",
+    ]
 
 
 def test_node_with_many_subscriptions_starts_at_once() -> None:
