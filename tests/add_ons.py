@@ -43,6 +43,7 @@ NEEDS = {
     "docs": EVERY,
     "extra/convert": "c",
     "extra/convert/test_interface_library.py::test_linear_math_exists_for_python": "ros_libraries",
+    "extra/procedures": "exploration",
     "extra/reports/test_board_fit.py": "c",
     "extra/viewers/rosbridge/test_applications.py": "ros_host",
     "extra/viewers/rosbridge/test_endurance.py": "ros_host",
